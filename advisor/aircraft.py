@@ -1,0 +1,94 @@
+"""The aircraft as its crew describes it: what the aircraft file may say, with defaults.
+
+These classes are data only. ``advisor.config`` reads them from YAML and lists every
+mistake at once; the core takes them as arguments and never touches a file.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+Rule = Literal["continuous", "separate", "information"]
+
+PARAMETERS = ("Z_0", "Z_alpha", "Z_q", "Z_delta_e", "M_0", "M_alpha", "M_q", "M_delta_e")
+"""Names of θ, Eq. (3), in the order used by every vector of parameters here."""
+
+
+@dataclass(frozen=True)
+class Elevator:
+    """How the elevator command becomes a deflection."""
+
+    output: int | Literal["auto"] = "auto"
+    """Servo output 1..32; auto: the one whose SERVOn_FUNCTION is 19."""
+    calibration: tuple[tuple[float, float], ...] | None = None
+    """Pairs (PWM in us, deflection in deg, trailing edge down positive), linear between."""
+    lag_s: float | None = None
+    """First-order lag of the servo; None: unknown, and every output says so."""
+    delay_s: float | None = None
+    """Delay between command and servo; None: unknown."""
+
+
+@dataclass(frozen=True)
+class Alpha:
+    """Where the angle of attack comes from."""
+
+    source: str = "auto"
+    """auto | aoa_ssa | derived | named_value:NAME"""
+    vane_arm_m: float | None = None
+    """Distance of the vane ahead of the centre of gravity; None: unknown, 0: corrected already."""
+
+
+@dataclass(frozen=True)
+class Accelerometer:
+    """Where the accelerometer sits."""
+
+    arm_m: float | None = None
+    """Distance of the IMU ahead of the centre of gravity; None: unknown."""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Geometry and mass for non-dimensional coefficients."""
+
+    mass_kg: float | None = None
+    wing_area_m2: float | None = None
+    chord_m: float | None = None
+    iyy_kg_m2: float | None = None
+
+
+@dataclass(frozen=True)
+class CampaignPlan:
+    """The stop criterion the crew chose."""
+
+    rule: Rule = "continuous"
+    window: int = 3
+    """n of Eq. (12)."""
+    limit_percent: float = 25.0
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a test manoeuvre may not exceed."""
+
+    bank_deg: float = 30.0
+    airspeed_change_percent: float = 15.0
+    alpha_deg: float | None = None
+
+
+@dataclass(frozen=True)
+class Aircraft:
+    """The whole aircraft file."""
+
+    name: str = "aircraft"
+    elevator: Elevator = field(default_factory=Elevator)
+    alpha: Alpha = field(default_factory=Alpha)
+    accelerometer: Accelerometer = field(default_factory=Accelerometer)
+    airspeed_m_s: float | None = None
+    reference_airspeed_m_s: float | None = None
+    reference: Reference = field(default_factory=Reference)
+    model: Mapping[str, float] = field(default_factory=dict)
+    """What the simulator believes today: any of ``PARAMETERS``."""
+    effects: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Effects added to the simulator's model: effect name of the gap analysis to its parameters."""
+    campaign: CampaignPlan = field(default_factory=CampaignPlan)
+    limits: Limits = field(default_factory=Limits)

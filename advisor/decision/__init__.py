@@ -1,0 +1,1 @@
+"""Was that manoeuvre good, may we stop, what to fly next."""

@@ -1,0 +1,41 @@
+"""A manoeuvre: the stretch of flight that one estimate is made from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from advisor.flight.record import Channel
+
+InputKind = Literal["3-2-1-1", "reverse 3-2-1-1", "doublet", "pulse", "multisine", "other"]
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Where a manoeuvre lies in the stream of elevator samples, as the segmenter found it."""
+
+    record_from_s: float
+    """First stamp of the record: the lead-in before the first step, used by the fit."""
+    start_s: float
+    """Onset of the first elevator step."""
+    last_step_s: float
+    """Onset of the last elevator step (the return to trim)."""
+    end_s: float
+    """End of the free response; last stamp of the record."""
+    kind: InputKind
+    steps: tuple[tuple[float, float], ...]
+    """The input as told apart: (onset s, level in rad from trim), one a step."""
+    closed_by: str
+    """Why it ended: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Maneuver:
+    """A span with its data. ``channels`` holds at least ``elevator``; every channel at its own stamps."""
+
+    number: int
+    boot: int
+    """Which power-on of the vehicle, 0 for the first in the stream."""
+    span: Span
+    channels: Mapping[str, Channel]
+    mode: str = ""
+    """Flight mode in which it was flown, as the autopilot names or numbers it."""

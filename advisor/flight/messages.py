@@ -1,0 +1,37 @@
+"""Decoded MAVLink messages as columns: what the core is fed with."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """Messages of one type from one system, in their order of arrival.
+
+    A log and a live link both end here, so whatever consumes columns cannot
+    tell replay from live.
+    """
+
+    name: str
+    """Message name of the MAVLink definition, e.g. ``ATTITUDE``."""
+    system: int
+    """System id of the sender."""
+    component: int
+    """Component id of the sender."""
+    order: IntArray
+    """Shape (n,). Arrival index in the whole stream: strictly increasing over all types."""
+    arrival_s: FloatArray
+    """Shape (n,). Host time of arrival, seconds since 1970; orders things, never enters dynamics."""
+    fields: Mapping[str, NDArray[Any]]
+    """Field name to raw values, shape (n,) or (n, k), in the units of the message definition.
+    Text fields are arrays of ``bytes`` (NumPy kind ``S``)."""
+
+    def __len__(self) -> int:
+        return len(self.order)

@@ -1,0 +1,1 @@
+"""Bytes and messages: logs, live link, and who the vehicle is."""

@@ -1,0 +1,1 @@
+"""Output error: cost, optimiser, covariance, joint estimate."""

@@ -1,0 +1,101 @@
+"""What an estimate is: values, errors one can believe, and how well the model explains the data."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.flight.messages import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelFit:
+    """Measured against fitted, for one output at its own stamps."""
+
+    name: str
+    t: FloatArray
+    measured: FloatArray
+    fitted: FloatArray
+    noise: float
+    """Estimated standard deviation of the measurement noise, SI of the channel."""
+
+    @property
+    def residual(self) -> FloatArray:
+        """Measured minus fitted, ν̂ of Eq. (9)."""
+        return self.measured - self.fitted
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the residual, SI of the channel."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    def r2(self) -> float:
+        """Share of the measured variance explained."""
+        spread = float(np.var(self.measured))
+        return 1.0 - self.rms**2 / spread if spread > 0.0 else float("nan")
+
+    @property
+    def tic(self) -> float:
+        """Theil's inequality coefficient, 0 (perfect) to 1."""
+        size = np.sqrt(np.mean(self.measured**2)) + np.sqrt(np.mean(self.fitted**2))
+        return self.rms / float(size) if size > 0.0 else float("nan")
+
+    @property
+    def lag1(self) -> float:
+        """Lag-1 autocorrelation of the residual: 0 when white, near 1 when coloured."""
+        v = self.residual - np.mean(self.residual)
+        power = float(v @ v)
+        return float(v[1:] @ v[:-1]) / power if power > 0.0 else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """The eight parameters of Eq. (3) from one manoeuvre or from several at once."""
+
+    theta: FloatArray
+    """Shape (8,), order of ``PARAMETERS``. For a joint estimate Z_0 and M_0 are means over manoeuvres."""
+    covariance_cr: FloatArray
+    """Shape (8, 8). Cramér-Rao bound: right when residuals are white."""
+    covariance: FloatArray
+    """Shape (8, 8). Corrected for coloured residuals."""
+    cost: float
+    """J = det R of Eq. (7) over angle of attack and pitch rate."""
+    fits: tuple[Mapping[str, ChannelFit], ...]
+    """One mapping of output name to fit per manoeuvre."""
+    iterations: int
+    not_identifiable: Mapping[str, str]
+    """Parameter name to the reason, in words; such a parameter has no usable value."""
+    correlated: tuple[tuple[str, str, float], ...]
+    """Pairs of parameters with |correlation| above 0.9."""
+    condition: float
+    """Condition number of the normalised information matrix."""
+    airspeed_m_s: float | None
+    """Speed at which the derivatives are given; None when no air speed was measured."""
+    notes: tuple[str, ...] = ()
+    """What the user must know about these numbers, one sentence each."""
+
+    @property
+    def std(self) -> FloatArray:
+        """Shape (8,), standard deviations corrected for coloured residuals."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def std_cr(self) -> FloatArray:
+        """Shape (8,), plain Cramér-Rao standard deviations."""
+        return np.sqrt(np.diag(self.covariance_cr))
+
+    def value(self, parameter: str) -> float:
+        """One parameter by name."""
+        return float(self.theta[PARAMETERS.index(parameter)])
+
+
+@dataclass(frozen=True, slots=True)
+class NoEstimate:
+    """Why there is no estimate: a numerical failure is a value, not an exception."""
+
+    code: str
+    """``too_few_samples``, ``no_input``, ``not_converged``, ``singular``, ..."""
+    text: str
+    """The sentence for people."""

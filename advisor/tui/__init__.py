@@ -1,0 +1,1 @@
+"""The Textual application. Imports everything; nothing imports it."""
