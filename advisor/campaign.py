@@ -1,0 +1,53 @@
+"""The flight test as a pure state machine: columns of messages in, events out."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
+from advisor.flight.maneuver import Maneuver
+from advisor.oem.estimate import Estimate, NoEstimate
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedManeuver:
+    """One manoeuvre, its estimate and the verdict on it."""
+
+    maneuver: Maneuver
+    estimate: Estimate | NoEstimate
+    verdict: ManeuverVerdict
+    excluded_because: str | None = None
+    """Set when an engineer took it out by hand."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelStatus:
+    """How one channel arrives."""
+
+    source: str
+    provenance: str
+    rate_hz: float
+    largest_gap_s: float
+    last_s: float
+    """Vehicle time of the newest sample."""
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignState:
+    """Everything a face may show, as of the newest sample."""
+
+    vehicle: str | None
+    """``ardupilot 1/1``; None before the first heartbeat."""
+    now_s: float
+    """Vehicle time of the newest sample, seconds since boot."""
+    mode: str
+    channels: Mapping[str, ChannelStatus]
+    maneuvers: tuple[JudgedManeuver, ...]
+    flight_test: FlightTestVerdict
+    model: Estimate | None
+    """Joint estimate over the accepted manoeuvres."""
+    flying: Maneuver | None = None
+    """The manoeuvre being flown now, cut so far."""
+    settling: Estimate | None = None
+    """Estimate from the manoeuvre being flown, refreshed as it goes."""
+    notices: tuple[str, ...] = ()
+    """Sentences for the event log, oldest first."""

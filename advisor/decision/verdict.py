@@ -1,0 +1,88 @@
+"""What the crew is told: verdict, sentence, evidence."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from advisor.aircraft import Rule
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """Why a manoeuvre is not accepted: a number beside its limit, and what to do."""
+
+    code: str
+    """Stable: ``bank``, ``amplitude``, ``information``, ``fit``, ``rate``, ``gap``, ``cost``, ..."""
+    text: str
+    """A sentence for pilots, with what to do."""
+    value: float
+    limit: float
+
+
+@dataclass(frozen=True, slots=True)
+class RuleResult:
+    """What one rule says of one manoeuvre."""
+
+    accepted: bool
+    limit: float | None
+    """The cost J it was held against; None where the rule had nothing to compare with."""
+
+
+@dataclass(frozen=True, slots=True)
+class ManeuverVerdict:
+    """Was that manoeuvre good."""
+
+    accepted: bool
+    sentence: str
+    """One line a pilot can act on, e.g. ``REPEAT: too gentle, ...``."""
+    reasons: tuple[Reason, ...]
+    """Empty when accepted; the most telling first."""
+    rules: Mapping[str, RuleResult]
+    """What every rule would have said, by its name."""
+    cautions: tuple[str, ...] = ()
+    """What does not reject the manoeuvre but belongs on its verdict: provenance of alpha, lags, ..."""
+
+
+@dataclass(frozen=True, slots=True)
+class RuleProgress:
+    """The stop criterion under one rule."""
+
+    stopped_at: int | None
+    """Number of manoeuvres flown when this rule said stop; None: not yet."""
+    history_percent: tuple[float | None, ...]
+    """The criterion after each manoeuvre; None while there are too few."""
+
+
+@dataclass(frozen=True, slots=True)
+class Remaining:
+    """How many more manoeuvres are expected; None: no end in sight."""
+
+    median: int | None
+    p90: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class NextInput:
+    """What to fly next."""
+
+    advice: str
+    """As a pilot hears it: ``next: reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
+    remaining: Remaining
+    holding_back: str | None = None
+    """The parameter that keeps the stop away."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlightTestVerdict:
+    """May we stop testing."""
+
+    rule: Rule
+    decision: Literal["stop", "continue"]
+    sentence: str
+    criterion_percent: float | None
+    limit_percent: float
+    stopped_at: int | None
+    by_rule: Mapping[str, RuleProgress] = field(default_factory=dict)
+    next: NextInput | None = None
+    warnings: tuple[str, ...] = ()
+    """Something changed between manoeuvres, the criterion cannot fall, ..."""

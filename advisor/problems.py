@@ -1,0 +1,30 @@
+"""What goes wrong and how to mend it: the two errors a user may meet."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One obstacle, as the JSON documents list it."""
+
+    code: str
+    """Short and stable: ``no_vehicle``, ``no_elevator``, ``rate``, ``not_a_tlog``, ``empty``, ..."""
+    text: str
+    """What is wrong, one sentence with the numbers."""
+    fix: str
+    """How to mend it, one sentence."""
+
+    def __str__(self) -> str:
+        return f"{self.text} {self.fix}".strip()
+
+
+class UnusableInputError(Exception):
+    """The input cannot serve this purpose (exit code 3)."""
+
+    def __init__(self, code: str, text: str, fix: str = "") -> None:
+        self.problem = Problem(code, text, fix)
+        super().__init__(str(self.problem))
+
+
+class ConfigurationError(Exception):
+    """The user's call or file is wrong (exit code 2); the message lists every mistake."""
