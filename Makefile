@@ -1,0 +1,54 @@
+# Everything a newcomer needs: `make run`, `make test`. Python 3.11 or newer and make, nothing else.
+PYTHON ?= python3
+BIN := .venv/bin
+STAMP := .venv/.installed
+export OPENBLAS_NUM_THREADS ?= 1
+export PIP_DISABLE_PIP_VERSION_CHECK = 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test check format lint types imports bench clean
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
+
+$(STAMP): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, this is " + sys.version.split()[0] + ": make PYTHON=python3.12")'
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable .
+	$(BIN)/python -m advisor.oem.warm
+	touch $@
+
+# What tests, checks and benchmarks need beyond running: installed only for them.
+.venv/.developed: $(STAMP)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev,report,logs,jsbsim,bench]'
+	touch $@
+
+setup: $(STAMP) ## build .venv with the advisor in it
+
+run: setup ## the bundled aircraft flies, the advisor advises (HEADLESS=1: as text)
+	@$(BIN)/advisor demo
+
+test: .venv/.developed ## run all tests (long studies have their own targets)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup
+
+check: .venv/.developed format-check lint types imports test ## format, lint, types, import contracts, tests
+
+format: .venv/.developed ## format the code
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+.PHONY: format-check
+format-check: .venv/.developed
+	$(BIN)/ruff format --check .
+
+lint: .venv/.developed
+	$(BIN)/ruff check .
+
+types: .venv/.developed
+	$(BIN)/mypy
+
+imports: .venv/.developed ## the walls of the house
+	$(BIN)/lint-imports
+
+clean: ## remove .venv and caches
+	rm -rf .venv build *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

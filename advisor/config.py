@@ -1,0 +1,165 @@
+"""The aircraft file: YAML to :class:`advisor.aircraft.Aircraft`, every mistake listed at once."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.problems import ConfigurationError
+
+
+def load_aircraft(path: Path | None) -> Aircraft:
+    """Read an aircraft file; without one, the defaults.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be read, is not YAML, or holds unknown keys or unusable values.
+    """
+    if path is None:
+        return Aircraft()
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigurationError(
+            f"{path}: cannot be read ({error.strerror}); give an aircraft file."
+        ) from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        where = f", line {mark.line + 1}" if (mark := getattr(error, "problem_mark", None)) else ""
+        raise ConfigurationError(f"{path}: not a YAML file{where}; see the example in the README.") from None
+    return parse_aircraft({} if content is None else content, str(path))
+
+
+def parse_aircraft(content: Any, origin: str = "aircraft file") -> Aircraft:
+    """Turn the parsed YAML into an aircraft.
+
+    Raises
+    ------
+    ConfigurationError
+        Lists every mistake with its path, e.g. ``elevator.calibration[1]``.
+    """
+    reader = _reader()
+    content = _without_empty(content)
+    mistakes: list[str] = []
+    while True:
+        try:
+            aircraft = reader.validate_python(content)
+        except ValidationError as error:
+            mistakes += dict.fromkeys(_sentence(item) for item in error.errors())
+            # What remains is read again, so that one wrong key does not hide another's mistake.
+            remainder = _without(content, [item["loc"] for item in error.errors()])
+            if remainder == content:
+                break
+            content = remainder
+        else:
+            mistakes += _beyond_types(aircraft)
+            if not mistakes:
+                return aircraft
+            break
+    raise ConfigurationError(f"{origin}: " + "; ".join(mistakes) + ".")
+
+
+def _without_empty(content: Any) -> Any:
+    # "elevator:" with nothing under it is how people leave a section for later.
+    return {k: v for k, v in content.items() if v is not None} if isinstance(content, dict) else content
+
+
+def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
+    if not isinstance(content, dict):
+        return content
+    kept = {k: dict(v) if isinstance(v, dict) else v for k, v in content.items()}
+    for section, *inside in locations:
+        if inside and isinstance(kept.get(section), dict):
+            kept[section].pop(inside[0], None)
+        else:
+            kept.pop(section, None)
+    return kept
+
+
+def _reader() -> TypeAdapter[Aircraft]:
+    # The core's dataclasses stay free of pydantic; the rule "unknown keys are refused"
+    # is attached here, where a file is read.
+    from advisor import aircraft
+
+    strict = with_config(ConfigDict(extra="forbid", allow_inf_nan=False))
+    for part in (
+        aircraft.Elevator,
+        aircraft.Alpha,
+        aircraft.Accelerometer,
+        aircraft.Reference,
+        aircraft.CampaignPlan,
+        aircraft.Limits,
+        aircraft.Aircraft,
+    ):
+        strict(part)
+    return TypeAdapter(Aircraft)
+
+
+def _sentence(item: Any) -> str:
+    path = ""
+    # Union members add the member's type to the location; a user's file has no such key.
+    for step in item["loc"]:
+        if isinstance(step, int):
+            path += f"[{step}]"
+        elif (
+            not step.startswith(("literal[", "tuple[", "function-", "constrained-"))
+            and step not in _UNION_TAGS
+        ):
+            path += f".{step}" if path else str(step)
+    if item["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
+        return f"{path or 'file'}: unknown key"
+    if item["type"] == "dataclass_type":
+        return f"{path or 'file'}: must hold keys with values"
+    return f"{path or 'file'}: {item['msg'][0].lower()}{item['msg'][1:]}"
+
+
+_UNION_TAGS = frozenset({"int", "str", "float", "none"})
+
+
+def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
+    """Yield mistakes that types do not show, as ``path: what is wrong``."""
+    elevator = aircraft.elevator
+    if isinstance(elevator.output, int) and not 1 <= elevator.output <= 32:
+        yield f"elevator.output: {elevator.output} is not a servo output 1..32 (or auto)"
+    points = elevator.calibration
+    if points is not None:
+        if len(points) < 2:
+            yield "elevator.calibration: needs at least two points [PWM us, deflection deg]"
+        for i, (below, above) in enumerate(pairwise(points), start=1):
+            if above[0] <= below[0]:
+                yield f"elevator.calibration[{i}]: PWM must rise from point to point"
+        rises = {(b[1] > a[1]) - (b[1] < a[1]) for a, b in pairwise(points)}
+        if len(rises) > 1 or rises == {0}:
+            yield "elevator.calibration: deflection must rise all the way or fall all the way"
+    for path, value in (("elevator.lag_s", elevator.lag_s), ("elevator.delay_s", elevator.delay_s)):
+        if value is not None and not 0.0 <= value <= 2.0:
+            yield f"{path}: {value} s is outside 0..2"
+    source = aircraft.alpha.source
+    if source not in ("auto", "aoa_ssa", "derived") and not (
+        source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
+    ):
+        yield f"alpha.source: {source!r} is none of auto, aoa_ssa, derived, named_value:NAME"
+    positive = {
+        "airspeed_m_s": aircraft.airspeed_m_s,
+        "reference_airspeed_m_s": aircraft.reference_airspeed_m_s,
+        "reference.mass_kg": aircraft.reference.mass_kg,
+        "reference.wing_area_m2": aircraft.reference.wing_area_m2,
+        "reference.chord_m": aircraft.reference.chord_m,
+        "reference.iyy_kg_m2": aircraft.reference.iyy_kg_m2,
+        "campaign.limit_percent": aircraft.campaign.limit_percent,
+        "limits.bank_deg": aircraft.limits.bank_deg,
+        "limits.airspeed_change_percent": aircraft.limits.airspeed_change_percent,
+        "limits.alpha_deg": aircraft.limits.alpha_deg,
+    }
+    for path, value in positive.items():
+        if value is not None and value <= 0.0:
+            yield f"{path}: must be above 0, is {value}"
+    for name in aircraft.model:
+        if name not in PARAMETERS:
+            yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
+    if aircraft.campaign.window < 1:
+        yield f"campaign.window: must be at least 1, is {aircraft.campaign.window}"

@@ -1,0 +1,105 @@
+"""The aircraft file: what is read, and how mistakes are told."""
+
+from pathlib import Path
+
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.config import load_aircraft, parse_aircraft
+from advisor.problems import ConfigurationError
+
+CONTRACT_EXAMPLE = """
+name: my aircraft
+elevator:
+  output: auto
+  calibration: [[1100, -25.0], [1500, 0.0], [1900, 25.0]]
+  lag_s: null
+  delay_s: null
+alpha: {source: auto, vane_arm_m: null}
+accelerometer: {arm_m: null}
+airspeed_m_s: null
+reference_airspeed_m_s: null
+reference: {mass_kg: null, wing_area_m2: null, chord_m: null, iyy_kg_m2: null}
+model: {Z_0: 0.04, Z_alpha: -1.0, Z_q: 0.0, Z_delta_e: -0.1, M_0: 0.47,
+        M_alpha: -4.9, M_q: -1.5, M_delta_e: -7.2}
+campaign: {rule: continuous, window: 3, limit_percent: 25}
+limits: {bank_deg: 30, airspeed_change_percent: 15, alpha_deg: null}
+"""
+
+
+def test_no_file_means_the_defaults() -> None:
+    assert load_aircraft(None) == Aircraft()
+
+
+def test_the_example_of_the_contract_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "aircraft.yaml"
+    path.write_text(CONTRACT_EXAMPLE)
+    aircraft = load_aircraft(path)
+    assert aircraft.name == "my aircraft"
+    assert aircraft.elevator.calibration == ((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))
+    assert aircraft.model["M_alpha"] == -4.9
+    assert aircraft.limits.alpha_deg is None
+
+
+def test_an_empty_file_and_empty_sections_mean_the_defaults(tmp_path: Path) -> None:
+    path = tmp_path / "aircraft.yaml"
+    path.write_text("")
+    assert load_aircraft(path) == Aircraft()
+    assert parse_aircraft({"elevator": None, "model": None}) == Aircraft()
+
+
+def test_every_mistake_is_listed_at_once_with_its_path() -> None:
+    with pytest.raises(ConfigurationError) as caught:
+        parse_aircraft(
+            {
+                "elevator": {"calibration": [[1500, 0.0], [1100, 25.0]], "lagg_s": 0.1},
+                "limits": {"bank_deg": "steep"},
+                "model": {"Z_alfa": -1.0},
+                "campaign": {"rule": "best", "window": 0},
+                "wingspan": 2.0,
+            }
+        )
+    message = str(caught.value)
+    for part in (
+        "elevator.calibration[1]",
+        "elevator.lagg_s: unknown key",
+        "limits.bank_deg",
+        "model.Z_alfa: unknown key",
+        "campaign.rule",
+        "campaign.window",
+        "wingspan: unknown key",
+    ):
+        assert part in message
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        ([1, 2], "must hold keys"),
+        ("text", "must hold keys"),
+        ({"elevator": 5}, "elevator: must hold keys"),
+        ({"elevator": {"calibration": [[1100]]}}, "elevator.calibration[0]"),
+        ({"elevator": {"calibration": [[1100, 1.0], [1500, 1.0]]}}, "rise all the way or fall"),
+        ({"elevator": {"output": 40}}, "elevator.output"),
+        ({"elevator": {"lag_s": -0.1}}, "elevator.lag_s"),
+        ({"alpha": {"source": "vane"}}, "alpha.source"),
+        ({"airspeed_m_s": 0}, "airspeed_m_s"),
+        ({"airspeed_m_s": float("nan")}, "airspeed_m_s"),
+    ],
+)
+def test_a_mistake_is_told_by_its_path(content: object, expected: str) -> None:
+    with pytest.raises(ConfigurationError, match="aircraft file: ") as caught:
+        parse_aircraft(content)
+    assert expected in str(caught.value)
+
+
+def test_a_file_that_is_no_yaml_is_told_with_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "aircraft.yaml"
+    path.write_text("name: x\nelevator: [1, 2\n")
+    with pytest.raises(ConfigurationError, match="not a YAML file, line"):
+        load_aircraft(path)
+
+
+def test_a_missing_file_is_told(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match="cannot be read"):
+        load_aircraft(tmp_path / "none.yaml")
