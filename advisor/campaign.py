@@ -49,5 +49,9 @@ class CampaignState:
     """The manoeuvre being flown now, cut so far."""
     settling: Estimate | None = None
     """Estimate from the manoeuvre being flown, refreshed as it goes."""
+    enough: str | None = None
+    """Set when further free response would add nothing: the pilot may recover."""
+    estimate_from: tuple[int, ...] = ()
+    """Numbers of the manoeuvres that ``model`` is made from."""
     notices: tuple[str, ...] = ()
     """Sentences for the event log, oldest first."""

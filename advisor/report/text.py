@@ -1,0 +1,135 @@
+"""The analysis as text for people: degrees, a sentence a verdict, stop or continue last."""
+
+import math
+from collections.abc import Iterator
+
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.table import Table
+from rich.text import Text
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.campaign import CampaignState, JudgedManeuver
+from advisor.decision.verdict import FlightTestVerdict
+from advisor.oem.estimate import Estimate
+
+SYMBOLS = {
+    "Z_0": "Z_0",
+    "Z_alpha": "Z_α",
+    "Z_q": "Z_q",
+    "Z_delta_e": "Z_δe",
+    "M_0": "M_0",
+    "M_alpha": "M_α",
+    "M_q": "M_q",
+    "M_delta_e": "M_δe",
+}
+UNITS = {
+    "Z_0": "deg/s",
+    "Z_alpha": "1/s",
+    "Z_q": "1",
+    "Z_delta_e": "1/s",
+    "M_0": "deg/s²",
+    "M_alpha": "1/s²",
+    "M_q": "1/s",
+    "M_delta_e": "1/s²",
+}
+"""As people read them: only Z_0 and M_0 carry an angle."""
+
+
+def shown(parameter: str, value: float) -> float:
+    """A parameter's value in the unit of ``UNITS`` (SI inside, degrees for people)."""
+    return math.degrees(value) if parameter in ("Z_0", "M_0") else value
+
+
+def maneuver_line(judged: JudgedManeuver) -> str:
+    """One line a verdict: number, time, input, verdict and why."""
+    span, verdict = judged.maneuver.span, judged.verdict
+    mark = "✓ ACCEPTED" if verdict.accepted else "✗ REJECTED"
+    return f"{judged.maneuver.number:2d}  {span.start_s:8.2f} s  {span.kind:<15}  {mark}  {verdict.sentence}"
+
+
+def stop_line(verdict: FlightTestVerdict) -> str:
+    """Stop or continue, with the criterion beside its limit."""
+    word = "■ STOP TESTING" if verdict.decision == "stop" else "▶ CONTINUE"
+    return f"{word}  {verdict.sentence}"
+
+
+class AnalysisText:
+    """The whole analysis; rich prints it at the width of the terminal, plain where colour is unwanted."""
+
+    def __init__(self, state: CampaignState, file: str, aircraft: Aircraft) -> None:
+        self.state, self.file, self.aircraft = state, file, aircraft
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        vehicle = self.state.vehicle
+        yield Text(f"{self.file}: {vehicle if vehicle else 'no vehicle'}", style="bold")
+        yield self._channels()
+        for notice in self.state.notices:
+            yield Text(f"note: {notice}")
+        yield Text()
+        for judged in self.state.maneuvers:
+            yield Text(maneuver_line(judged), style="green" if judged.verdict.accepted else "red")
+            yield from (Text(f"      {caution}", style="dim") for caution in judged.verdict.cautions)
+        yield Text()
+        if self.state.model is not None:
+            yield self._parameters(self.state.model)
+            yield from (Text(f"note: {note}") for note in self.state.model.notes)
+            yield Text()
+        yield from self._decision()
+
+    def _channels(self) -> Table:
+        table = Table(box=None, pad_edge=False, header_style="dim")
+        for column in ("channel", "source", "provenance"):
+            table.add_column(column)
+        for column in ("rate Hz", "largest gap s"):
+            table.add_column(column, justify="right")
+        for name, channel in self.state.channels.items():
+            table.add_row(
+                name,
+                channel.source,
+                channel.provenance,
+                f"{channel.rate_hz:.1f}",
+                f"{channel.largest_gap_s:.2f}",
+            )
+        return table
+
+    def _parameters(self, model: Estimate) -> Table:
+        speed = "" if model.airspeed_m_s is None else f" at {model.airspeed_m_s:.1f} m/s"
+        numbers = ", ".join(str(number) for number in self.state.estimate_from)
+        table = Table(
+            title=f"Joint estimate from manoeuvres {numbers}{speed}",
+            title_justify="left",
+            title_style="bold",
+            box=None,
+            pad_edge=False,
+            header_style="dim",
+        )
+        table.add_column("parameter")
+        for column in ("value", "± 95 %", "± 95 % if white", "today's model"):
+            table.add_column(column, justify="right")
+        table.add_column("unit")
+        for i, name in enumerate(PARAMETERS):
+            prior = self.aircraft.model.get(name)
+            known = "" if prior is None else f"{shown(name, prior):.4g}"
+            if name in model.not_identifiable:
+                table.add_row(SYMBOLS[name], "–", "", "", known, model.not_identifiable[name])
+                continue
+            table.add_row(
+                SYMBOLS[name],
+                f"{shown(name, model.theta[i]):.4g}",
+                f"{shown(name, 1.96 * model.std[i]):.2g}",
+                f"{shown(name, 1.96 * model.std_cr[i]):.2g}",
+                known,
+                UNITS[name],
+            )
+        return table
+
+    def _decision(self) -> Iterator[Text]:
+        verdict = self.state.flight_test
+        for name, progress in verdict.by_rule.items():
+            history = " ".join("–" if v is None else f"{v:.1f}" for v in progress.history_percent)
+            stopped = "not yet" if progress.stopped_at is None else f"after manoeuvre {progress.stopped_at}"
+            yield Text(f"rule {name:<12} stop: {stopped:<20} criterion %: {history}")
+        yield from (Text(f"warning: {warning}", style="yellow") for warning in verdict.warnings)
+        yield Text(stop_line(verdict), style="bold")
+        if verdict.next is not None:
+            yield Text(verdict.next.advice)
