@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 Rule = Literal["continuous", "separate", "information"]
+Criterion = Literal["eq12", "eq13"]
 
 PARAMETERS = ("Z_0", "Z_alpha", "Z_q", "Z_delta_e", "M_0", "M_alpha", "M_q", "M_delta_e")
 """Names of θ, Eq. (3), in the order used by every vector of parameters here."""
@@ -64,6 +65,12 @@ class CampaignPlan:
     window: int = 3
     """n of Eq. (12)."""
     limit_percent: float = 25.0
+    criterion: Criterion = "eq12"
+    """Which form of the scatter criterion: Eq. (12), or Eq. (13) as the paper writes it out."""
+    tolerance_percent: float = 5.0
+    """How narrow the rule ``information`` wants each 95 % interval, in percent of the parameter."""
+    tolerance: Mapping[str, float] = field(default_factory=dict)
+    """The same for single parameters by name, in the parameter's own unit."""
 
 
 @dataclass(frozen=True)

@@ -51,6 +51,8 @@ class RuleProgress:
     """Number of manoeuvres flown when this rule said stop; None: not yet."""
     history_percent: tuple[float | None, ...]
     """The criterion after each manoeuvre; None while there are too few."""
+    limit_percent: float = 25.0
+    """What the criterion must fall below: 25 % of Eq. (12), 100 % of the tolerance for ``information``."""
 
 
 @dataclass(frozen=True, slots=True)

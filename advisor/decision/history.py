@@ -1,0 +1,30 @@
+"""What the rules look at: the manoeuvres of a campaign in the order flown, nothing else.
+
+Every rule is a function of the whole history. Nothing is carried from one call to the next,
+so that excluding a manoeuvre by hand recomputes every decision that followed it.
+"""
+
+from dataclasses import dataclass
+
+from advisor.decision.verdict import Reason
+from advisor.oem.estimate import Estimate, NoEstimate
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """One manoeuvre before the rules judge it."""
+
+    estimate: Estimate | NoEstimate
+    reasons: tuple[Reason, ...] = ()
+    """What speaks against the manoeuvre itself (too gentle, banked, ...), the most telling first."""
+    cautions: tuple[str, ...] = ()
+    """What does not speak against it but belongs on its verdict."""
+    excluded_because: str | None = None
+    """Set when an engineer took it out by hand."""
+
+    @property
+    def usable(self) -> Estimate | None:
+        """Its estimate, if the manoeuvre may be held against any rule at all."""
+        if isinstance(self.estimate, Estimate) and not self.reasons and self.excluded_because is None:
+            return self.estimate
+        return None

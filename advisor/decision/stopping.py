@@ -1,0 +1,122 @@
+"""May we stop testing: flight-test validation under every rule, and the verdict of the one chosen."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS, CampaignPlan, Rule
+from advisor.decision.acceptance import MANEUVER_RULES
+from advisor.decision.history import Flown
+from advisor.decision.information import Knowledge, knowledge
+from advisor.decision.judge import accepted_estimates, rule_results
+from advisor.decision.scatter import scatter_by_parameter, scatter_percent, window
+from advisor.decision.verdict import FlightTestVerdict, RuleProgress
+from advisor.decision.warnings import warnings
+from advisor.oem.estimate import Estimate
+
+INFORMATION_LIMIT_PERCENT = 100.0
+"""The rule ``information`` counts in percent of the tolerance."""
+
+
+def flight_test(history: Sequence[Flown], plan: CampaignPlan) -> FlightTestVerdict:
+    """May we stop testing, as of the last manoeuvre of ``history``.
+
+    The decision says whether the chosen rule's criterion holds *now*; ``stopped_at`` keeps when it
+    first held. They differ when a later manoeuvre contradicts the earlier ones.
+    """
+    by_rule: dict[str, RuleProgress] = {rule: progress(history, rule, plan) for rule in MANEUVER_RULES}
+    chosen = by_rule[plan.rule]
+    criterion = chosen.history_percent[-1] if chosen.history_percent else None
+    stop = _holds_now(history, plan, criterion)
+    return FlightTestVerdict(
+        rule=plan.rule,
+        decision="stop" if stop else "continue",
+        sentence=_sentence(history, plan, criterion, stop),
+        criterion_percent=criterion,
+        limit_percent=chosen.limit_percent,
+        stopped_at=chosen.stopped_at,
+        by_rule=by_rule,
+        warnings=warnings(history, plan, chosen, stop),
+    )
+
+
+def progress(history: Sequence[Flown], rule: Rule, plan: CampaignPlan) -> RuleProgress:
+    """The stop criterion of one rule after each manoeuvre flown."""
+    accepted = [result.accepted for result in rule_results(history)[rule]]
+    limit = limit_percent(rule, plan)
+    values: list[float | None] = []
+    stopped_at = None
+    taken: list[Estimate] = []
+    value, sufficient = None, False
+    for number, (flown, ok) in enumerate(zip(history, accepted, strict=True), start=1):
+        if ok and (estimate := flown.usable):
+            taken.append(estimate)
+            if rule == "information":
+                known = knowledge(taken, plan)
+                value, sufficient = _finite(known.percent), known.sufficient
+            else:
+                value = _scatter(taken, plan)
+                sufficient = value is not None and value < limit
+        values.append(value)
+        if sufficient and stopped_at is None:
+            stopped_at = number
+    return RuleProgress(stopped_at, tuple(values), limit)
+
+
+def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
+    """What the criterion of ``rule`` must fall below."""
+    return INFORMATION_LIMIT_PERCENT if rule == "information" else plan.limit_percent
+
+
+def _scatter(accepted: Sequence[Estimate], plan: CampaignPlan) -> float | None:
+    theta = window(accepted, plan)
+    return None if theta is None else _finite(scatter_percent(theta, plan.criterion))
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def _holds_now(history: Sequence[Flown], plan: CampaignPlan, criterion: float | None) -> bool:
+    if criterion is None:
+        return False
+    if plan.rule == "information":
+        return knowledge(accepted_estimates(history, plan.rule), plan).sufficient
+    return criterion < plan.limit_percent
+
+
+def _sentence(history: Sequence[Flown], plan: CampaignPlan, criterion: float | None, stop: bool) -> str:
+    accepted = accepted_estimates(history, plan.rule)
+    if plan.rule == "information":
+        return _information_sentence(knowledge(accepted, plan) if accepted else None, stop)
+    if criterion is None:
+        return f"CONTINUE: {len(accepted)} of {plan.window} accepted manoeuvres."
+    verb = "STOP TESTING" if stop else "CONTINUE"
+    held = "" if stop else f"; {_scattered_most(accepted, plan)} scatters most"
+    return (
+        f"{verb}: the last {plan.window} accepted manoeuvres agree within {criterion:.0f} % "
+        f"(limit {plan.limit_percent:.0f} %){held}."
+    )
+
+
+def _information_sentence(known: Knowledge | None, stop: bool) -> str:
+    if known is None:
+        return "CONTINUE: no usable manoeuvre yet."
+    if stop:
+        return (
+            f"STOP TESTING: every interval is within {known.percent:.0f} % of its tolerance and the newest "
+            "manoeuvre was predicted."
+        )
+    if known.percent >= INFORMATION_LIMIT_PERCENT:
+        return (
+            f"CONTINUE: the error of {known.holding_back} is {known.percent / 100.0:.1f} times its tolerance."
+        )
+    if np.isnan(known.surprise):
+        return "CONTINUE: narrow enough; one more manoeuvre to check the prediction."
+    return "CONTINUE: narrow enough, but the newest manoeuvre was not predicted; one more will show which is right."
+
+
+def _scattered_most(accepted: Sequence[Estimate], plan: CampaignPlan) -> str:
+    theta = window(accepted, plan)
+    assert theta is not None
+    return PARAMETERS[int(np.nanargmax(scatter_by_parameter(theta, plan.criterion)))]

@@ -1,0 +1,57 @@
+"""What the crew must know beside the criterion: it no longer holds, cannot fall, or locks manoeuvres out."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS, CampaignPlan
+from advisor.decision.history import Flown
+from advisor.decision.judge import accepted_estimates, rule_results
+from advisor.decision.scatter import SCATTER_FACTOR, window
+from advisor.decision.verdict import RuleProgress
+from advisor.oem.estimate import Estimate
+
+
+def warnings(
+    history: Sequence[Flown], plan: CampaignPlan, chosen: RuleProgress, stop: bool
+) -> tuple[str, ...]:
+    """Sentences on what the criterion alone does not show."""
+    found = []
+    if chosen.stopped_at is not None and not stop:
+        found.append(
+            f"The criterion held after manoeuvre {chosen.stopped_at} and does not hold any more: "
+            "later manoeuvres contradict the earlier ones."
+        )
+    if plan.rule != "information" and not stop:
+        found += _cannot_fall(accepted_estimates(history, plan.rule), plan)
+        found += _locked_out(history, plan)
+    return tuple(found)
+
+
+def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
+    """A parameter so small beside the error of one manoeuvre that single estimates always scatter."""
+    theta = window(accepted, plan)
+    if theta is None or plan.criterion != "eq12":
+        return []
+    error = np.sqrt(np.mean([np.diag(e.covariance) for e in accepted[-plan.window :]], axis=0))
+    mean = np.abs(theta.mean(axis=0))
+    return [
+        f"One manoeuvre gives {name} as {value:.2g} +- {std:.2g}: its relative scatter alone keeps the criterion "
+        f"above {plan.limit_percent:.0f} %, however many are flown. The rule information has no such flaw."
+        for name, value, std in zip(PARAMETERS, mean, error, strict=True)
+        if 100.0 * SCATTER_FACTOR * std > plan.limit_percent * value
+    ]
+
+
+def _locked_out(history: Sequence[Flown], plan: CampaignPlan) -> list[str]:
+    """Manoeuvres that are good in themselves, refused one after another for their cost alone."""
+    refused = 0
+    for flown, result in zip(history, rule_results(history)[plan.rule], strict=True):
+        if flown.usable is not None:
+            refused = 0 if result.accepted else refused + 1
+    if refused < plan.window:
+        return []
+    return [
+        f"{refused} usable manoeuvres in a row were refused for their cost alone: the air has become rougher "
+        "or the aircraft has changed. Exclude the manoeuvre that set the limit, or use the rule information."
+    ]
