@@ -1,0 +1,31 @@
+"""The checksum of MAVLink frames: CRC-16/MCRF4XX, which MAVLink calls X.25."""
+
+import numpy as np
+
+INITIAL = 0xFFFF
+
+
+def _table() -> list[int]:
+    table = []
+    for byte in range(256):
+        crc = byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x8408 if crc & 1 else 0)
+        table.append(crc)
+    return table
+
+
+TABLE = np.array(_table(), dtype=np.int64)
+"""Remainder of each byte under the reversed polynomial 0x8408."""
+
+FROM_HIGH_BYTE = np.argsort(TABLE >> 8)
+"""Index into ``TABLE`` of the entry with a given high byte: every high byte occurs once."""
+
+_REMAINDERS: list[int] = TABLE.tolist()
+
+
+def crc16(data: bytes, crc: int = INITIAL) -> int:
+    """Checksum of ``data``, continued from ``crc``."""
+    for byte in data:
+        crc = crc >> 8 ^ _REMAINDERS[(crc ^ byte) & 0xFF]
+    return crc

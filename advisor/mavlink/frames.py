@@ -1,0 +1,163 @@
+"""From bytes to columns: the one reader behind logs and live links."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.flight.messages import Columns
+from advisor.mavlink import scan as kernel
+from advisor.mavlink.definitions import DEFINITIONS, Definition
+from advisor.mavlink.signing import RADIO_STATUS, SignatureCheck, Verdict
+
+_SOURCES = 1 << 16
+
+
+@dataclass(frozen=True, slots=True)
+class ScanStatistics:
+    """What a stream was made of, up to the last byte fed."""
+
+    frames: int
+    """Good frames of any message."""
+    known_frames: int
+    """Those of messages the advisor has a definition of, their checksum proven."""
+    damaged: int
+    """Places where no good frame was found where one was due."""
+    skipped_bytes: int
+    """Bytes that belong to no good frame or time stamp."""
+    lost: Mapping[tuple[int, int], int]
+    """Frames missing by their sequence numbers, by (system, component)."""
+    refused: Mapping[Verdict, int]
+    """Frames of wanted messages refused for their signature, by verdict; empty without a key."""
+
+
+class FrameScanner:
+    """Finds MAVLink 1 and 2 frames in a stream of tlog records and decodes the wanted ones.
+
+    The stream is a row of records, 8 bytes of big-endian microseconds since 1970 and one
+    frame, cut into pieces anywhere: the columns of all feeds together do not depend on the
+    cuts. A frame counts when its checksum is right; everything else is stepped over.
+
+    Parameters
+    ----------
+    wanted : iterable of str, optional
+        Names of the messages to decode; all of ``DEFINITIONS`` by default.
+    key : bytes, optional
+        Signing key of 32 bytes: frames without a good, fresh signature are refused, but for
+        RADIO_STATUS, which radios inject unsigned.
+
+    Raises
+    ------
+    KeyError
+        For a wanted message that has no definition.
+    """
+
+    def __init__(self, wanted: Iterable[str] | None = None, key: bytes | None = None) -> None:
+        self._definitions = [DEFINITIONS[name] for name in (DEFINITIONS if wanted is None else wanted)]
+        ids = 1 + max(definition.id for definition in DEFINITIONS.values())
+        self._kinds = np.full(ids, -1)
+        for kind, definition in enumerate(self._definitions):
+            self._kinds[definition.id] = kind
+        self._seeds = np.full(ids, -1)
+        for definition in DEFINITIONS.values():
+            self._seeds[definition.id] = definition.crc_extra
+        self._state = np.zeros(kernel.STATE_ENTRIES, dtype=np.int64)
+        self._state[[kernel.AT, kernel.IN_STEP]] = kernel.STAMP_BYTES, True
+        self._last_sequence = np.full(_SOURCES, -1)
+        self._lost = np.zeros(_SOURCES, dtype=np.int64)
+        self._signatures = SignatureCheck(key) if key is not None else None
+        self._refused: dict[Verdict, int] = {}
+        self._tail = b""
+        self._offset = 0
+
+    def feed(self, data: bytes) -> list[Columns]:
+        """Take the next bytes of the stream; give the messages they complete.
+
+        Returns
+        -------
+        list of Columns
+            One for each message and sender; ``order`` is where the frame begins in the
+            stream, in bytes.
+        """
+        return self._scan(self._tail + data, final=False)
+
+    def close(self) -> list[Columns]:
+        """The stream ends here: what the last bytes still hold when nothing follows."""
+        return self._scan(self._tail, final=True)
+
+    @property
+    def statistics(self) -> ScanStatistics:
+        """What the stream was made of so far."""
+        state = self._state
+        return ScanStatistics(
+            frames=int(state[kernel.FRAMES]),
+            known_frames=int(state[kernel.KNOWN]),
+            damaged=int(state[kernel.DAMAGED]),
+            skipped_bytes=int(state[kernel.SKIPPED]),
+            lost={divmod(int(s), 256): int(self._lost[s]) for s in np.flatnonzero(self._lost)},
+            refused=dict(self._refused),
+        )
+
+    def _scan(self, data: bytes, final: bool) -> list[Columns]:
+        stream = np.frombuffer(data, dtype=np.uint8)
+        found = np.empty((len(stream) // 8 + 1, kernel.FOUND_COLUMNS), dtype=np.int64)
+        rows, keep = kernel.scan(
+            stream, final, self._kinds, self._seeds, self._state, self._last_sequence, self._lost, found
+        )
+        found = found[:rows]
+        if self._signatures is not None:
+            found = found[[self._believed(self._signatures, data, row) for row in found]]
+        columns = self._columns(stream, found)
+        self._tail = data[keep:]
+        self._offset += keep
+        return columns
+
+    def _believed(self, signatures: SignatureCheck, data: bytes, row: NDArray[np.int64]) -> bool:
+        start = row[kernel.START]
+        verdict = signatures.verdict(data[start : start + row[kernel.LENGTH]])
+        definition = self._definitions[row[kernel.KIND]]
+        if verdict == "ok" or (verdict == "unsigned" and definition.id == RADIO_STATUS):
+            return True
+        self._refused[verdict] = self._refused.get(verdict, 0) + 1
+        return False
+
+    def _columns(self, stream: NDArray[np.uint8], found: NDArray[np.int64]) -> list[Columns]:
+        """Sort the frames found by message and sender, keeping their order, and decode them."""
+        if not len(found):
+            return []
+        sender = found[:, kernel.KIND] * _SOURCES + found[:, kernel.SOURCE]
+        by_sender = np.argsort(sender, kind="stable")
+        found, sender = found[by_sender], sender[by_sender]
+        edges = [0, *(np.flatnonzero(np.diff(sender)) + 1).tolist(), len(found)]
+        columns = []
+        for first, last in pairwise(edges):
+            group = found[first:last]
+            kind, source = divmod(int(sender[first]), _SOURCES)
+            definition = self._definitions[kind]
+            payloads = np.zeros((len(group), definition.layout.itemsize), dtype=np.uint8)
+            kernel.copy_payloads(stream, group[:, kernel.START], payloads)
+            columns.append(
+                Columns(
+                    name=definition.name,
+                    system=source >> 8,
+                    component=source & 0xFF,
+                    order=group[:, kernel.START] + self._offset,
+                    arrival_s=group[:, kernel.STAMP].astype(np.float64) * 1e-6,
+                    fields=_fields(definition, payloads),
+                )
+            )
+        return columns
+
+
+def _fields(definition: Definition, payloads: NDArray[np.uint8]) -> dict[str, NDArray[Any]]:
+    """The payloads seen through the layout of their message; texts end at their first zero."""
+    records = payloads.view(definition.layout)[:, 0]
+    fields: dict[str, NDArray[Any]] = {name: records[name] for name in definition.layout.names or ()}
+    for name, column in fields.items():
+        if column.dtype.kind == "S":
+            texts = [text.partition(b"\0")[0] for text in column.tolist()]
+            fields[name] = np.array(texts, dtype=column.dtype)
+    return fields

@@ -1,0 +1,51 @@
+"""Opening a log of any kind: what it is, is read from its first bytes, not from its name."""
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from advisor.flight.messages import Columns
+from advisor.mavlink.tlog import read_tlog
+from advisor.problems import UnusableInputError
+
+
+def open_log(
+    path: Path, wanted: Iterable[str] | None = None, key: bytes | None = None
+) -> Iterator[list[Columns]]:
+    """Stream the messages of a ``.tlog``.
+
+    Parameters
+    ----------
+    path : Path
+    wanted : iterable of str, optional
+        Names of the messages to give; all that are defined by default.
+    key : bytes, optional
+        Signing key of a tlog.
+
+    Raises
+    ------
+    UnusableInputError
+        When the file is missing, no file, empty or unreadable; while reading, when it holds
+        no messages.
+    """
+    _check_readable(path)
+    return read_tlog(path, wanted, key)
+
+
+def _check_readable(path: Path) -> None:
+    if path.is_dir():
+        raise UnusableInputError("not_a_file", f"{path} is a folder.", "Give the log file inside it.")
+    try:
+        with path.open("rb") as file:
+            first = file.read(1)
+    except FileNotFoundError:
+        raise UnusableInputError(
+            "no_such_file", f"There is no file {path}.", "Check the name and the folder."
+        ) from None
+    except OSError as error:
+        raise UnusableInputError(
+            "unreadable", f"{path} cannot be read: {error.strerror}.", "Check its permissions."
+        ) from None
+    if not first:
+        raise UnusableInputError(
+            "empty", f"{path.name} is empty.", "Give a log that was recorded to its end."
+        )

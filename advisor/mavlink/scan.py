@@ -1,0 +1,204 @@
+"""The inner loop of the frame scanner, compiled.
+
+A stream is a row of records: 8 bytes of time stamp, then one frame. ``scan`` steps from
+record to record; where no good frame is due it looks at every byte for the next one. A
+decision never depends on how much of the stream is at hand: where bytes are missing it
+stops and says where to go on.
+"""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from advisor.mavlink.checksum import FROM_HIGH_BYTE, INITIAL, TABLE
+
+Bytes = NDArray[np.uint8]
+Ints = NDArray[np.int64]
+
+V1, V2 = 0xFE, 0xFD
+SIGNED = 0x01
+STAMP_BYTES = 8
+
+# Columns of the table of frames found.
+KIND, SOURCE, START, LENGTH, STAMP = range(5)
+FOUND_COLUMNS = 5
+# Entries of the running state.
+AT, IN_STEP, LAST_STAMP, FRAMES, KNOWN, DAMAGED, SKIPPED = range(7)
+STATE_ENTRIES = 7
+
+# Stamps outside are no times of arrival: before the first second of 1970, after the year 2112.
+_EARLIEST_US, _LATEST_US = 1_000_000, 1 << 52
+
+_WAIT, _NONE = -1, 0
+
+
+@njit(cache=True)
+def _little_endian(stream: Bytes, at: int, size: int) -> int:
+    value = 0
+    for i in range(size):
+        value |= int(np.int64(stream[at + i])) << (8 * i)
+    return value
+
+
+@njit(cache=True)
+def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
+    """Length of the good frame that begins at ``at``; ``_NONE``, or ``_WAIT`` for more bytes.
+
+    ``seeds`` holds the CRC_EXTRA of each message id, -1 where it is not known. The checksum
+    of an unknown message then fits one seed in 256 of the possible remainders; that, and
+    another frame due right behind it, makes it a frame to step over.
+    """
+    n = len(stream)
+    short = _NONE if final else _WAIT
+    if at >= n:
+        return short
+    magic = stream[at]
+    if magic != V1 and magic != V2:
+        return _NONE
+    header = 6 if magic == V1 else 10
+    if at + header > n:
+        return short
+    end = at + header + _little_endian(stream, at + 1, 1)
+    length = end + 2 - at
+    message = _little_endian(stream, at + 5, 1)
+    if magic == V2:
+        if stream[at + 2] & ~SIGNED:  # a flag that must not be ignored, and is not known
+            return _NONE
+        if stream[at + 2] & SIGNED:
+            length += 13
+        message = _little_endian(stream, at + 7, 3)
+    if at + length > n:
+        return short
+
+    crc = INITIAL
+    for i in range(at + 1, end):
+        crc = crc >> 8 ^ int(TABLE[(crc ^ stream[i]) & 0xFF])
+    wanted = _little_endian(stream, end, 2)
+    seed = seeds[message] if message < len(seeds) else -1
+    if seed >= 0:
+        fits = crc >> 8 ^ TABLE[(crc ^ seed) & 0xFF] == wanted
+        return length if fits else _NONE
+    last_step = wanted ^ crc >> 8
+    if TABLE[FROM_HIGH_BYTE[last_step >> 8]] != last_step:
+        return _NONE
+    following = at + length + STAMP_BYTES
+    if following >= n:
+        return length if final else _WAIT
+    return length if stream[following] == V1 or stream[following] == V2 else _NONE
+
+
+@njit(cache=True)
+def _stamp(stream: Bytes, at: int, last: int) -> int:
+    """Big-endian microseconds at ``at``; the last good stamp instead of an impossible one."""
+    stamp = 0
+    for i in range(at, at + STAMP_BYTES):
+        stamp = stamp << 8 | int(np.int64(stream[i]))
+    return stamp if _EARLIEST_US <= stamp < _LATEST_US else last
+
+
+@njit(cache=True)
+def _count_lost(last_sequence: Ints, lost: Ints, source: int, sequence: int) -> None:
+    """Count sequence numbers left out; a number that goes back is a late or repeated frame."""
+    if last_sequence[source] >= 0:
+        ahead = (sequence - last_sequence[source]) & 0xFF
+        if ahead == 0 or ahead > 128:
+            return
+        lost[source] += ahead - 1
+    last_sequence[source] = sequence
+
+
+@njit(cache=True)
+def scan(
+    stream: Bytes,
+    final: bool,
+    kinds: Ints,
+    seeds: Ints,
+    state: Ints,
+    last_sequence: Ints,
+    lost: Ints,
+    found: Ints,
+) -> tuple[int, int]:
+    """Find the good frames of a stretch of stream.
+
+    Parameters
+    ----------
+    stream : shape (n,)
+        Bytes at hand, from the end of the last frame (or 8 bytes before the place reached) on.
+    final : bool
+        Nothing follows: an incomplete frame at the end is garbage.
+    kinds, seeds : shape (largest known id + 1,)
+        For each message id the caller's number of a wanted message or -1, and its CRC_EXTRA or -1.
+    state, last_sequence, lost : shape (STATE_ENTRIES,), (65536,), (65536,)
+        Carried from call to call; the latter two by ``system << 8 | component``.
+    found : shape (at least n // 8 + 1, FOUND_COLUMNS)
+        Receives one row a wanted frame.
+
+    Returns
+    -------
+    rows : int
+        Rows of ``found`` in use.
+    keep : int
+        Index of the first byte that the next call needs again.
+    """
+    n = len(stream)
+    rows = 0
+    at, in_step, end = int(state[AT]), bool(state[IN_STEP]), 0
+    while True:
+        length = _frame_length(stream, at, final, seeds)
+        if length == _WAIT or (at >= n and not in_step):
+            break
+        if length == _NONE:
+            if in_step:
+                state[DAMAGED] += end < n
+                in_step = False
+                at = end
+            else:
+                at += 1
+                state[SKIPPED] += 1
+            continue
+
+        # sequence, system, component and message id stand side by side in either version
+        v1 = stream[at] == V1
+        address = at + (2 if v1 else 4)
+        source = _little_endian(stream, address + 1, 1) << 8 | _little_endian(stream, address + 2, 1)
+        message = _little_endian(stream, address + 3, 1 if v1 else 3)
+        if at - end >= STAMP_BYTES:
+            state[LAST_STAMP] = _stamp(stream, at - STAMP_BYTES, int(state[LAST_STAMP]))
+        state[FRAMES] += 1
+        _count_lost(last_sequence, lost, source, _little_endian(stream, address, 1))
+        if message < len(kinds) and seeds[message] >= 0:
+            state[KNOWN] += 1
+            if kinds[message] >= 0:
+                found[rows, KIND] = kinds[message]
+                found[rows, SOURCE] = source
+                found[rows, START] = at
+                found[rows, LENGTH] = length
+                found[rows, STAMP] = state[LAST_STAMP]
+                rows += 1
+        end = at + length
+        at = end + STAMP_BYTES
+        in_step = True
+
+    keep = end if in_step else max(end, at - STAMP_BYTES)
+    state[AT], state[IN_STEP] = at - keep, in_step
+    return rows, keep
+
+
+@njit(cache=True)
+def copy_payloads(stream: Bytes, starts: Ints, payloads: Bytes) -> None:
+    """Copy the payload of each frame into its row; the zeros MAVLink 2 cut off stay zeros.
+
+    Parameters
+    ----------
+    stream : shape (n,)
+    starts : shape (m,)
+        Where the frames begin.
+    payloads : shape (m, size)
+        Zeros on entry.
+    """
+    m, size = payloads.shape
+    for row in range(m):
+        start = int(starts[row])
+        body = start + (6 if stream[start] == V1 else 10)
+        for i in range(min(size, _little_endian(stream, start + 1, 1))):
+            payloads[row, i] = stream[body + i]
