@@ -1,0 +1,256 @@
+"""Is the angle of attack what it claims to be? A check without any aerodynamics.
+
+What the accelerometers, the pitch rate and the attitude say about the angle of attack is
+integrated and held against the α channel. No derivative enters, so whatever disagrees is
+an instrument, not the aircraft. (Klein & Morelli, *Aircraft System Identification*,
+chapter 10, "data compatibility"; here for the longitudinal motion.)
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+
+GRAVITY_M_S2 = 9.80665
+NEEDED = ("alpha", "q", "theta", "a_z")
+CORRUPTED_BY_LAG = ("Z_delta_e", "Z_q", "Z_alpha", "M_q")
+"""What a late α spoils. M_alpha and M_delta_e keep their values: the lag only mixes α with
+its own rate, and the rate of α enters the moment equation as a change of M_q."""
+SMALLEST_LAG_S = 0.004
+SMALLEST_SCALE = 0.01
+SMALLEST_BIAS_RAD = np.radians(0.1)
+
+Finding = Literal["consistent", "late", "early", "scaled", "inconsistent", "not possible"]
+
+
+@dataclass(frozen=True, slots=True)
+class KinematicCheck:
+    """What the kinematics say about the α channel. NaN where it could not be told."""
+
+    finding: Finding
+    sentence: str
+    missing: tuple[str, ...] = ()
+    """Channels whose absence prevents the check."""
+    lag_s: float = float("nan")
+    """How late α arrives (negative: early)."""
+    lag_std_s: float = float("nan")
+    scale: float = float("nan")
+    """Scale error k: the channel reads (1 + k)·α."""
+    scale_std: float = float("nan")
+    bias_rad: float = float("nan")
+    """Mean of α minus (θ − flight-path angle); NaN without a climb rate."""
+    bias_std_rad: float = float("nan")
+    drift_rad_s: float = float("nan")
+    """Rate at which reconstruction and α part: bias of pitch rate and accelerometers together."""
+    rms_rad: float = float("nan")
+    """What is left between the two when lag, scale and drift are allowed for."""
+    explained: float = float("nan")
+    """Share of the variance of α that the reconstruction explains."""
+
+    @property
+    def possible(self) -> bool:
+        """Whether the channels sufficed."""
+        return self.finding != "not possible"
+
+    @property
+    def corrupts(self) -> tuple[str, ...]:
+        """Derivatives that a fit of this α gets wrong; empty when none is known to be."""
+        return CORRUPTED_BY_LAG if self.finding in ("late", "early") else ()
+
+
+def check_alpha(
+    maneuver: Maneuver, airspeed_m_s: float | None = None, accelerometer_arm_m: float | None = None
+) -> KinematicCheck:
+    """Compare α with what α̇ = q + (a_z cos α − a_x sin α + g cos(θ − α))/V integrates to.
+
+    Parameters
+    ----------
+    maneuver
+        With channels ``alpha``, ``q``, ``theta``, ``a_z``, and ``airspeed`` unless given; ``a_x``
+        and ``climb_rate`` are used when present.
+    airspeed_m_s
+        Speed to use when the log has none.
+    accelerometer_arm_m
+        Distance of the accelerometer ahead of the centre of gravity, removed when known.
+        An arm that is there and not given reads as a small negative lag.
+    """
+    found = maneuver.channels
+    missing = [name for name in NEEDED if name not in found or len(found[name]) < 20]
+    if airspeed_m_s is None and ("airspeed" not in found or len(found["airspeed"]) < 2):
+        missing.append("airspeed")
+    if missing:
+        listed = ", ".join(missing)
+        return KinematicCheck(
+            "not possible",
+            f"alpha cannot be checked against the motion: no {listed} in this log.",
+            tuple(missing),
+        )
+    t_alpha, alpha = _renewed(found["alpha"].t, found["alpha"].y)
+    t = found["q"].t
+
+    def at(name: str) -> FloatArray:
+        return np.interp(t, found[name].t, found[name].y)
+
+    speed = at("airspeed") if airspeed_m_s is None else np.full(len(t), airspeed_m_s)
+    if np.min(speed) < 1.0 or len(t_alpha) < 12:
+        return KinematicCheck("not possible", "alpha cannot be checked against the motion: no usable speed.")
+    q, theta, a_z = found["q"].y, at("theta"), at("a_z")
+    if accelerometer_arm_m:
+        a_z = a_z + accelerometer_arm_m * np.gradient(q, t)
+    a_x = at("a_x") if "a_x" in found and len(found["a_x"]) > 1 else GRAVITY_M_S2 * np.sin(theta)
+    alpha_now = np.interp(t, t_alpha, alpha)
+    rate = (
+        q
+        + (a_z * np.cos(alpha_now) - a_x * np.sin(alpha_now) + GRAVITY_M_S2 * np.cos(theta - alpha_now))
+        / speed
+    )
+    rebuilt = np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
+    return _compare(t, rebuilt, rate, t_alpha, alpha, _bias(maneuver, speed, t, theta))
+
+
+def _renewed(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Only the samples that bring a new value, when the channel repeats old ones under fresh stamps."""
+    new = np.concatenate(([True], np.diff(y) != 0.0))
+    return (t[new], y[new]) if np.mean(new) < 0.7 else (t, y)
+
+
+def _bias(maneuver: Maneuver, speed: FloatArray, t: FloatArray, theta: FloatArray) -> tuple[float, float]:
+    """Mean of α − (θ − γ) and its error, from the climb rate; NaN without one."""
+    found = maneuver.channels
+    if "climb_rate" not in found or len(found["climb_rate"]) < 3:
+        return float("nan"), float("nan")
+    climb = found["climb_rate"]
+    gamma = np.arcsin(np.clip(climb.y / np.interp(climb.t, t, speed), -0.9, 0.9))
+    apart = np.interp(climb.t, found["alpha"].t, found["alpha"].y) - (np.interp(climb.t, t, theta) - gamma)
+    # The climb rate is slow and smoothed: count one independent reading a second.
+    independent = max(2.0, climb.t[-1] - climb.t[0])
+    return float(np.mean(apart)), float(np.std(apart) / np.sqrt(independent))
+
+
+def _compare(
+    t: FloatArray,
+    rebuilt: FloatArray,
+    rate: FloatArray,
+    t_alpha: FloatArray,
+    alpha: FloatArray,
+    bias: tuple[float, float],
+) -> KinematicCheck:
+    """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b."""
+    inside = (t_alpha >= t[0] + 0.3) & (t_alpha <= t[-1] - 0.3)
+    tm, y = t_alpha[inside], alpha[inside]
+    if len(tm) < 12 or np.ptp(y) < 1e-4:
+        return KinematicCheck("not possible", "alpha cannot be checked against the motion: it hardly moved.")
+    s = (tm - tm.mean()) / max(np.ptp(tm), 1e-9)
+    slow = np.column_stack([np.ones_like(s), s, s**2])
+    best: tuple[float, FloatArray, FloatArray, FloatArray] | None = None
+    for start in (0.0, 0.08, -0.08):
+        tau = start
+        for _ in range(12):
+            shape, slope = np.interp(tm - tau, t, rebuilt), np.interp(tm - tau, t, rate)
+            linear = np.linalg.lstsq(np.column_stack([shape, slow]), y, rcond=None)[0]
+            jacobian = np.column_stack([-linear[0] * slope, shape, slow])
+            left = y - jacobian[:, 1:] @ linear
+            step = float(np.linalg.lstsq(jacobian, left, rcond=None)[0][0])
+            tau = float(np.clip(tau + np.clip(step, -0.05, 0.05), -0.29, 0.29))
+            if abs(step) < 1e-5:
+                break
+        cost = float(left @ left)
+        if best is None or cost < best[0]:
+            best = (cost, np.array([tau, *linear]), jacobian, left)
+    assert best is not None
+    cost, fitted, jacobian, left = best
+    std = np.sqrt(np.diag(coloured_covariance(jacobian, left)))
+    explained = 1.0 - cost / float(np.sum((y - slow @ np.linalg.lstsq(slow, y, rcond=None)[0]) ** 2))
+    finding, sentence = _judge(fitted[0], std[0], fitted[1] - 1.0, std[1], explained)
+    return KinematicCheck(
+        finding, sentence, (), float(fitted[0]), float(std[0]), float(fitted[1] - 1.0), float(std[1]), *bias,
+        float(fitted[3] / max(np.ptp(tm), 1e-9)), float(np.sqrt(cost / len(y))), explained,
+    )  # fmt: skip
+
+
+def _judge(
+    lag: float, lag_std: float, scale: float, scale_std: float, explained: float
+) -> tuple[Finding, str]:
+    """The finding in a word and in a sentence."""
+    if explained < 0.7:
+        share = 100 * max(explained, 0.0)
+        return "inconsistent", (
+            f"alpha does not follow the motion: the accelerometers explain {share:.0f} % of it (gusts do this)."
+        )
+    if abs(lag) > max(SMALLEST_LAG_S, 3.0 * lag_std):
+        word: Finding = "late" if lag > 0 else "early"
+        return word, (
+            f"alpha is {abs(lag) * 1e3:.0f} ± {lag_std * 1e3:.0f} ms {word}: its fit gets "
+            f"{', '.join(CORRUPTED_BY_LAG)} wrong, not M_alpha and M_delta_e; "
+            "give alpha.vane_arm_m if it is a vane."
+        )
+    if abs(scale) > max(SMALLEST_SCALE, 3.0 * scale_std, 0.05):
+        return (
+            "scaled",
+            f"alpha reads {100 * scale:+.0f} ± {100 * scale_std:.0f} % off in scale against the motion.",
+        )
+    return "consistent", f"alpha follows the motion (lag {lag * 1e3:+.0f} ± {lag_std * 1e3:.0f} ms)."
+
+
+def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
+    """Covariance of a least-squares fit whose residuals are coloured.
+
+    (JᵀJ)⁻¹ (Σ_ij R(i−j) J_iᵀ J_j) (JᵀJ)⁻¹ with the residuals' own autocovariance R, tapered to zero
+    at a fifth of the record (Klein & Morelli, Eq. 6.38 f.).
+
+    Parameters
+    ----------
+    jacobian
+        Shape (n, p).
+    residual
+        Shape (n,), evenly sampled enough for lags to mean time.
+    """
+    n = len(residual)
+    inverse = np.linalg.pinv(jacobian.T @ jacobian)
+    lags = max(1, n // 5)
+    inner = float(residual @ residual) / n * (jacobian.T @ jacobian)
+    for k in range(1, lags):
+        weight = (1.0 - k / lags) * float(residual[k:] @ residual[:-k]) / n
+        cross = jacobian[k:].T @ jacobian[:-k]
+        inner = inner + weight * (cross + cross.T)
+    plain = float(residual @ residual) / max(n - jacobian.shape[1], 1) * inverse
+    # The tapered sum may come out below the white-noise value by chance: never trust it that far.
+    wider = np.sqrt(np.maximum(np.diag(inverse @ inner @ inverse) / np.maximum(np.diag(plain), 1e-300), 1.0))
+    return np.asarray(plain * np.outer(wider, wider))
+
+
+def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:
+    """One check for the aircraft from those of its manoeuvres: means weighted by their errors.
+
+    The scatter between manoeuvres widens the error where it exceeds what each claims.
+    """
+    usable = [c for c in checks if c.possible and np.isfinite(c.lag_std_s) and c.lag_std_s > 0.0]
+    if not usable:
+        return checks[0] if checks else KinematicCheck("not possible", "No manoeuvre to check alpha on.")
+    lag, lag_std = _weighted([c.lag_s for c in usable], [c.lag_std_s for c in usable])
+    scale, scale_std = _weighted([c.scale for c in usable], [c.scale_std for c in usable])
+    biased = [c for c in usable if np.isfinite(c.bias_rad)]
+    bias = (
+        _weighted([c.bias_rad for c in biased], [c.bias_std_rad for c in biased])
+        if biased
+        else (np.nan, np.nan)
+    )
+    explained = float(np.median([c.explained for c in usable]))
+    finding, sentence = _judge(lag, lag_std, scale, scale_std, explained)
+    drift = float(np.mean([c.drift_rad_s for c in usable]))
+    rms = float(np.sqrt(np.mean([c.rms_rad**2 for c in usable])))
+    return KinematicCheck(
+        finding, sentence, (), lag, lag_std, scale, scale_std, *bias, drift, rms, explained
+    )  # fmt: skip
+
+
+def _weighted(values: Sequence[float], stds: Sequence[float]) -> tuple[float, float]:
+    y, s = np.array(values), np.maximum(np.array(stds), 1e-12)
+    w = 1.0 / s**2
+    mean = float(np.sum(w * y) / np.sum(w))
+    chi2 = float(np.sum(w * (y - mean) ** 2)) / max(len(y) - 1, 1)
+    return mean, float(np.sqrt(max(chi2, 1.0) / np.sum(w)))

@@ -1,0 +1,292 @@
+"""A third coding of the aircraft, for the tests of the gap alone.
+
+Nonlinear longitudinal motion in body velocities u, w (neither the advisor's α, q form nor the
+simulator's code), integrated by Euler-Cromer at 0.5 ms, with one physical switch per effect.
+Used to develop and to test the diagnosis; it shares nothing with what it tests.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numba import njit
+
+from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.record import Channel
+
+H = 0.0005
+G = 9.80665
+
+
+@dataclass(frozen=True)
+class Airframe:
+    mass: float = 10.0
+    iyy: float = 1.1
+    area: float = 0.62
+    chord: float = 0.30
+    speed: float = 22.0
+    cl0: float = 0.25
+    cl_alpha: float = 5.1
+    cl_q: float = 6.0
+    cl_de: float = 0.35
+    cd0: float = 0.035
+    induced: float = 0.055
+    cm_alpha: float = -0.75
+    cm_q: float = -14.0
+    cm_de: float = -1.05
+    cm_alphadot: float = 0.0
+    unit_s: float = 0.35
+    amplitude_deg: float = 3.0
+
+
+UAV = Airframe()
+LIGHT_AIRCRAFT = Airframe(
+    mass=1200.0, iyy=1900.0, area=16.0, chord=1.5, speed=55.0, cl0=0.28, cl_alpha=4.9, cl_q=5.0, cl_de=0.4,
+    cd0=0.03, induced=0.05, cm_alpha=-0.9, cm_q=-13.0, cm_de=-1.2, unit_s=0.5, amplitude_deg=3.0,
+)  # fmt: skip
+# Order of the physical switches handed to the integrator, with their neutral values.
+SWITCHES = {
+    "lag": 0.0, "rate_limit": 1e9, "play": 0.0, "deadband": 0.0, "delay": 0.0,
+    "de2": 0.0, "de3": 0.0, "cm_a2": 0.0, "cm_a3": 0.0, "thrust_arm": 0.0, "cm_alphadot": 0.0,
+    "cl_a2": 0.0, "cl_a3": 0.0, "lift_lag": 0.0, "lift_lag_share": 0.0,
+    "ice_t": 1e9, "ice": 0.0, "height": 1e9, "ground": 0.0,
+    "vane_lag": 0.0, "vane_arm": 0.0, "mode_gain": 0.0, "mode_hz": 5.0, "acc_arm": 0.0,
+    "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
+}  # fmt: skip
+_K = {name: i for i, name in enumerate(SWITCHES)}
+(LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET, ICE, HEIGHT,
+ GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM) = range(len(SWITCHES))  # fmt: skip
+
+
+@njit(cache=True)
+def _integrate(n, command, gust, thrust_wave, body, sw, out):
+    (mass, iyy, area, chord, speed, cl0, cla, clq, clde, cd0, induced, cma, cmq, cmde, cmad) = body
+    rho = 1.225
+    # Trim: α for lift = weight at level flight, thrust for drag, elevator taken as zero there.
+    qs = 0.5 * rho * speed * speed * area
+    a0 = (mass * G / qs - cl0) / cla
+    cm0 = -cma * a0
+    trim_thrust = qs * (cd0 + induced * (mass * G / qs) ** 2)
+    u, w, q, th = speed * np.cos(a0), speed * np.sin(a0), 0.0, a0
+    de, link, lag_state = 0.0, 0.0, 0.0
+    x_lift, vane = a0, a0
+    eta, deta = 0.0, 0.0
+    alphadot, height = 0.0, sw[HEIGHT]
+    hyst, extra = 0.0, 0.0
+    shift = round(sw[DELAY] / H)
+    for k in range(n):
+        t = k * H
+        want = command[max(k - shift, 0)]
+        if sw[DEAD] > 0.0:
+            want = np.sign(want) * max(abs(want) - sw[DEAD], 0.0)
+        speed_wanted = (want - lag_state) / max(sw[LAG], H)
+        lag_state += H * min(max(speed_wanted, -sw[RATE]), sw[RATE])
+        if lag_state - link > sw[PLAY]:
+            link = lag_state - sw[PLAY]
+        elif lag_state - link < -sw[PLAY]:
+            link = lag_state + sw[PLAY]
+        de = link
+        wa = w + gust[k]
+        V = np.sqrt(u * u + wa * wa)
+        a = np.arctan2(wa, u)
+        qb = 0.5 * rho * V * V * area
+        x_lift += H * (a - x_lift) / max(sw[LLAG], 10 * H)
+        ae = a - sw[LSHARE] * (a - x_lift)
+        da = ae - a0
+        ice = sw[ICE] if t > sw[ICET] else 0.0
+        near = sw[GROUND] * np.exp(-height / (6.0 * chord))
+        hyst += H * (a - hyst) / 0.4
+        extra += H * (de - extra) / max(sw[ECMLAG], 10 * H)
+        cl = (
+            cl0
+            + cla * (1.0 - ice) * (1.0 + near) * ae
+            + sw[CLA2] * da * da
+            + sw[CLA3] * da**3
+            + clq * q * chord / (2 * V)
+            + clde * (1 - 0.5 * ice) * de
+        )
+        cd = cd0 + induced * cl * cl + 3.0 * ice * cd0
+        cm = (
+            cm0
+            + cma * (1.0 - 0.6 * ice) * a
+            + sw[CMA2] * (a - a0) ** 2
+            + sw[CMA3] * (a - a0) ** 3
+            + (cmq * q + (cmad + sw[CMAD]) * alphadot) * chord / (2 * V)
+            + cmde * (1 - 0.5 * ice) * (de + sw[DE2] * de * de + sw[DE3] * de**3)
+            - 0.4 * near
+            + sw[HYST] * (a - hyst)
+            + sw[QSQ] * q * abs(q)
+            + sw[ECM] * (extra - de)
+        )
+        thrust = trim_thrust * (1.0 + thrust_wave[k])
+        lift, drag = qb * cl, qb * cd
+        fx = -drag * np.cos(a) + lift * np.sin(a) + thrust
+        fz = -drag * np.sin(a) - lift * np.cos(a)
+        ax, az = fx / mass, fz / mass
+        qdot = (qb * chord * cm + sw[TARM] * trim_thrust * thrust_wave[k]) / iyy
+        om = 2 * np.pi * sw[MHZ]
+        deta += H * (om * om * (sw[MGAIN] * de - eta) - 2 * 0.05 * om * deta)
+        eta += H * deta
+        if sw[VLAG] > 0.0:
+            vane += H * (a - sw[VARM] * q / V - vane) / sw[VLAG]
+        else:
+            vane = a - sw[VARM] * q / V
+        out[0, k], out[1, k], out[2, k], out[3, k] = vane, q + deta / om, az - sw[AARM] * qdot, th
+        out[4, k], out[5, k], out[6, k], out[7, k] = V, ax, u * np.sin(th) - w * np.cos(th), de
+        udot = ax - q * w - G * np.sin(th)
+        wdot = az + q * u + G * np.cos(th)
+        alphadot = (wdot * u - w * udot) / (u * u + w * w)
+        u += H * udot
+        w += H * wdot
+        q += H * qdot
+        th += H * q
+        height += H * out[6, k]
+
+
+@dataclass(frozen=True)
+class Setup:
+    """One case: what is true of the aircraft and of its instruments."""
+
+    airframe: Airframe = UAV
+    switches: dict[str, float] = field(default_factory=dict)
+    alpha_scale: float = 0.0
+    alpha_bias: float = 0.0
+    q_bias: float = 0.0
+    q_scale: float = 0.0
+    skew: dict[str, float] = field(default_factory=dict)
+    thrust_amplitude: float = 0.0
+    gust_std: float = 0.0
+    gust_pulse: float = 0.0
+    cg_drift: float = 0.0
+    """Relative change of Cm_α from first to last manoeuvre."""
+    mass_step: float = 0.0
+    """Relative change of mass and inertia halfway."""
+    ice_after: int = 99
+    noise: float = 0.01
+    coloured: float = 0.0
+    jitter: float = 0.0
+    maneuvers: int = 9
+    speed_change: float = 0.0
+    rate_hz: float = 50.0
+    held: bool = False
+    seed: int = 0
+
+
+def command_of(kind: int, unit: float, amplitude: float, t: np.ndarray, start: float) -> np.ndarray:
+    """3-2-1-1 with balanced areas, its reverse, or doublet, as a pilot's step input."""
+    steps = {0: [(3, 0.8), (2, -1.0), (1, 1.1), (1, -1.5)], 1: [(3, -0.8), (2, 1.0), (1, -1.1), (1, 1.5)],
+             2: [(2, 1.0), (2, -1.0)]}[kind]  # fmt: skip
+    y, at = np.zeros_like(t), start
+    for width, level in steps:
+        y[(t >= at) & (t < at + width * unit)] = amplitude * level
+        at += width * unit
+    return y
+
+
+def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
+    """Fly the manoeuvres and return them as the segmenter would."""
+    rng = np.random.default_rng(setup.seed)
+    frame = setup.airframe
+    n = int(duration / H)
+    t = np.arange(n) * H
+    result = []
+    for i in range(setup.maneuvers):
+        kind = (0, 1, 1, 0, 1, 0, 1, 0, 1)[i % 9]
+        size = np.radians(frame.amplitude_deg) * (1.0, 1.0, 0.6, 1.0, 1.0, 0.6, 1.0, 1.0, 0.6)[i % 9]
+        start = 1.0 + 0.02 * rng.random()
+        command = command_of(kind, frame.unit_s, size, t, start)
+        # A servo of 8 ms is not an effect but the hand that moves it.
+        command = _soften(command, 0.008)
+        sw = np.array([setup.switches.get(k, v) for k, v in SWITCHES.items()])
+        sw[ICET] = 1e9 if i < setup.ice_after else -1.0
+        mass_factor = 1.0 + (setup.mass_step if i >= setup.maneuvers // 2 else 0.0)
+        cm_alpha = frame.cm_alpha * (1.0 + setup.cg_drift * i / max(setup.maneuvers - 1, 1))
+        body = (
+            frame.mass * mass_factor, frame.iyy * mass_factor, frame.area, frame.chord,
+            frame.speed * (1.0 + setup.speed_change * rng.uniform(-1, 1)), frame.cl0, frame.cl_alpha,
+            frame.cl_q, frame.cl_de, frame.cd0, frame.induced, cm_alpha, frame.cm_q, frame.cm_de, frame.cm_alphadot,
+        )  # fmt: skip
+        wave = (
+            setup.thrust_amplitude * ((t > start + 1.5) & (t < start + 3.0))
+            if setup.thrust_amplitude
+            else 0 * t
+        )
+        gust = _dryden(rng, n, setup.gust_std, body[4])
+        if setup.gust_pulse and i % 3 == 1:
+            at = start + rng.uniform(0.5, 5.0)
+            inside = (t > at) & (t < at + 0.8)
+            gust = gust + setup.gust_pulse * 0.5 * (1 - np.cos(2 * np.pi * (t - at) / 0.8)) * inside
+        out = np.zeros((8, n))
+        _integrate(n, command, gust, wave, body, sw, out)
+        result.append(_measure(setup, rng, i, t, command, out, start))
+    return result
+
+
+def _soften(y: np.ndarray, tau: float) -> np.ndarray:
+    from scipy.signal import lfilter
+
+    a = np.exp(-H / tau)
+    return np.asarray(lfilter([1 - a], [1, -a], y))
+
+
+def _dryden(rng: np.random.Generator, n: int, std: float, speed: float) -> np.ndarray:
+    from scipy.signal import lfilter
+
+    if std == 0.0:
+        return np.zeros(n)
+    tau = 50.0 / speed
+    a = np.exp(-H / tau)
+    y = lfilter([std * np.sqrt(1 - a * a)], [1, -a], rng.standard_normal(n + int(3 * tau / H)))
+    return np.asarray(y)[-n:]
+
+
+def _measure(setup, rng, i, t, command, out, start) -> Maneuver:
+    channels = {}
+    boot = 80.0 + 30.0 * i
+
+    def add(name, y, rate, noise, skew=0.0):
+        stamps = np.arange(0.003 + 0.9 / rate * rng.random(), t[-1] - 0.2, 1.0 / rate)
+        if setup.jitter:
+            stamps = stamps + rng.uniform(-setup.jitter, setup.jitter, len(stamps))
+            stamps = np.sort(np.clip(stamps, 0.0, t[-1]))
+        true = np.interp(np.clip(stamps - skew, 0.0, t[-1]), t, y)
+        e = rng.standard_normal(len(stamps))
+        if setup.coloured:
+            for k in range(1, len(e)):
+                e[k] = setup.coloured * e[k - 1] + np.sqrt(1 - setup.coloured**2) * e[k]
+        channels[name] = Channel(
+            name, boot + stamps, true + noise * e, "generator", "vane" if name == "alpha" else "measured"
+        )
+
+    # Noise in per cent of each channel's usual peak.
+    peak = {
+        "alpha": np.max(np.abs(out[0] - out[0][0])),
+        "q": np.max(np.abs(out[1])),
+        "a_z": np.max(np.abs(out[2] - out[2][0])),
+        "theta": np.max(np.abs(out[3] - out[3][0])),
+    }
+    rate = setup.rate_hz
+    add(
+        "alpha",
+        (1 + setup.alpha_scale) * out[0] + setup.alpha_bias,
+        rate,
+        setup.noise * peak["alpha"],
+        setup.skew.get("alpha", 0),
+    )
+    add(
+        "q",
+        (1 + setup.q_scale) * out[1] + setup.q_bias,
+        rate,
+        setup.noise * peak["q"],
+        setup.skew.get("q", 0),
+    )
+    add("a_z", out[2], rate, setup.noise * peak["a_z"], setup.skew.get("a_z", 0))
+    add("theta", out[3], rate, setup.noise * peak["theta"] * 0.5, setup.skew.get("theta", 0))
+    add("a_x", out[5], rate, 0.03)
+    add("airspeed", out[4], 10.0, 0.1)
+    add("climb_rate", out[6], 10.0, 0.05)
+    add("elevator", command, rate, 0.0)
+    if setup.thrust_amplitude:
+        wave = setup.thrust_amplitude * ((t > start + 1.5) & (t < start + 3.0))
+        add("throttle", 0.4 * (1 + wave), rate, 0.0)
+    span = Span(boot, boot + start, boot + start + 2.4, boot + t[-1] - 0.2, "3-2-1-1", (), "quiet")
+    return Maneuver(i + 1, 0, span, channels, "MANUAL")

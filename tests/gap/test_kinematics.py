@@ -1,0 +1,76 @@
+"""The kinematic check tells instruments from aircraft without any aerodynamics."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.flight.kinematics import check_alpha, coloured_covariance, combine
+from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
+
+
+def flown(**changes):
+    return fly(Setup(maneuvers=3, seed=5, **changes))
+
+
+def checked(**changes):
+    return combine([check_alpha(m) for m in flown(**changes)])
+
+
+def test_a_sound_alpha_is_consistent_whatever_the_aerodynamics():
+    for frame in (Setup().airframe, LIGHT_AIRCRAFT, replace(Setup().airframe, cm_alpha=-2.0, cl_alpha=3.0)):
+        found = checked(airframe=frame)
+        assert found.finding == "consistent"
+        assert abs(found.lag_s) < 0.003
+
+
+@pytest.mark.parametrize("late_s", [-0.03, 0.02, 0.06])
+def test_a_late_alpha_is_measured_with_its_error(late_s):
+    found = checked(skew={"alpha": late_s})
+    assert abs(found.lag_s - late_s) < 0.002 + 3 * found.lag_std_s
+    assert found.finding == ("late" if late_s > 0 else "early")
+    assert set(found.corrupts) == {"Z_delta_e", "Z_q", "Z_alpha", "M_q"}
+    assert "not M_alpha and M_delta_e" in found.sentence
+
+
+def test_a_scale_error_is_not_taken_for_a_lag():
+    found = checked(alpha_scale=0.12)
+    assert found.finding == "scaled"
+    assert found.scale == pytest.approx(0.12, abs=0.02)
+
+
+def test_the_climb_rate_shows_a_constant_offset():
+    assert checked(alpha_bias=0.01).bias_rad == pytest.approx(0.01, abs=0.001)
+
+
+def test_a_known_accelerometer_arm_is_removed_and_an_unknown_one_is_not():
+    maneuvers = flown(switches={"acc_arm": 0.4})
+    known = combine([check_alpha(m, accelerometer_arm_m=0.4) for m in maneuvers])
+    unknown = combine([check_alpha(m) for m in maneuvers])
+    assert abs(known.lag_s) < 0.003 < abs(unknown.lag_s)
+
+
+def test_a_repeated_alpha_is_used_at_its_true_rate():
+    maneuver = flown()[0]
+    channel = maneuver.channels["alpha"]
+    held = np.repeat(channel.y[::3], 3)[: len(channel)]
+    staircase = replace(maneuver, channels={**maneuver.channels, "alpha": replace(channel, y=held)})
+    assert abs(check_alpha(staircase).lag_s) < 0.005
+
+
+@pytest.mark.parametrize("absent", ["a_z", "theta", "airspeed"])
+def test_missing_channels_are_named_instead_of_guessed(absent):
+    maneuver = flown()[0]
+    channels = {k: v for k, v in maneuver.channels.items() if k != absent}
+    found = check_alpha(replace(maneuver, channels=channels))
+    assert not found.possible
+    assert found.missing == (absent,)
+    assert absent in found.sentence
+
+
+def test_errors_of_a_coloured_fit_are_wider_than_those_of_a_white_one():
+    rng = np.random.default_rng(1)
+    slow = np.cumsum(rng.standard_normal(400)) * 0.1
+    jacobian = np.column_stack([np.ones(400), np.linspace(-1, 1, 400)])
+    plain = np.linalg.inv(jacobian.T @ jacobian) * float(slow @ slow) / 398
+    assert np.all(np.diag(coloured_covariance(jacobian, slow)) > 4 * np.diag(plain))
