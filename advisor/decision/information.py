@@ -14,7 +14,14 @@ import numpy as np
 from scipy.stats import chi2
 
 from advisor.aircraft import PARAMETERS, CampaignPlan
-from advisor.decision.pooling import Belief, beliefs_at_one_speed, disagreement, information_of, pool
+from advisor.decision.pooling import (
+    Belief,
+    beliefs_at_one_speed,
+    disagreement,
+    inconsistency,
+    information_of,
+    pool,
+)
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import Estimate
 
@@ -43,8 +50,9 @@ class Knowledge:
 
     @property
     def share(self) -> FloatArray:
-        """Shape (8,). Half-width of each 95 % interval as a share of its tolerance."""
-        return Z95 * self.belief.std / self.tolerance
+        """Shape (8,). Half-width of each 95 % interval as a share of its tolerance; infinite when unknown."""
+        known = np.isfinite(self.belief.std) & np.isfinite(self.belief.theta)
+        return np.where(known, Z95 * np.where(known, self.belief.std, 0.0) / self.tolerance, np.inf)
 
     @property
     def percent(self) -> float:
@@ -132,10 +140,5 @@ def _excess(beliefs: Sequence[Belief]) -> float:
     """
     if len(beliefs) < 2:
         return 1.0
-    total, dof = 0.0, 0
-    for k in range(1, len(beliefs)):
-        distance, size = disagreement(pool(beliefs[:k]), beliefs[k])
-        total, dof = total + distance, dof + size
-    if dof == 0 or total < float(chi2.ppf(CONSISTENCY_LEVEL, dof)):
-        return 1.0
-    return total / dof
+    total, dof = inconsistency(beliefs)
+    return 1.0 if dof < 1 or total < float(chi2.ppf(CONSISTENCY_LEVEL, dof)) else total / dof

@@ -12,15 +12,15 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
+from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
 
 INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))
 """Trim and speed differ from one manoeuvre to the next, so each has its own Z_0 and M_0."""
 DERIVATIVES = tuple(k for k in range(len(PARAMETERS)) if k not in INTERCEPTS)
 
-# Powers of the air speed that the parameters go with at constant aerodynamic coefficients and air
-# density. Z_q does not depend on speed; Z_0 and M_0 hold the trim and are left alone.
-_SPEED_POWER = np.array([0.0, 1.0, 0.0, 1.0, 0.0, 2.0, 1.0, 2.0])
+_SPEED_POWER = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS], dtype=float)
+_GRAVITY = 9.80665
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,18 +41,22 @@ class Belief:
 def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
     """The estimates brought to their mean air speed, where every one of them knows its own.
 
-    Z_α, Z_δe and M_q go with V, M_α and M_δe with V². Estimates that already stand at one speed
-    are left as they are.
+    Each parameter goes with its power of V (``SPEED_EXPONENTS``), gravity's part g/V of Z_0 apart.
+    Estimates that already stand at one speed, or do not know theirs, are left as they are.
     """
-    speeds = [e.airspeed_m_s for e in estimates]
-    known = [v for v in speeds if v is not None and v > 0.0]
-    if len(known) < len(speeds):
+    known = [e.airspeed_m_s for e in estimates if e.airspeed_m_s is not None and e.airspeed_m_s > 0.0]
+    if len(known) < len(estimates):
         return [Belief(e.theta, e.covariance) for e in estimates]
     reference = float(np.mean(known))
-    scales = [(reference / v) ** _SPEED_POWER for v in known]
-    return [
-        Belief(e.theta * s, e.covariance * np.outer(s, s)) for e, s in zip(estimates, scales, strict=True)
-    ]
+    return [_at_speed(e, v, reference) for e, v in zip(estimates, known, strict=True)]
+
+
+def _at_speed(estimate: Estimate, speed: float, reference: float) -> Belief:
+    scale = (reference / speed) ** _SPEED_POWER
+    gravity = np.zeros(len(PARAMETERS))
+    gravity[PARAMETERS.index("Z_0")] = _GRAVITY
+    theta = (estimate.theta - gravity / speed) * scale + gravity / reference
+    return Belief(theta, estimate.covariance * np.outer(scale, scale))
 
 
 def pool(beliefs: Sequence[Belief]) -> Belief:
@@ -74,7 +78,9 @@ def pool(beliefs: Sequence[Belief]) -> Belief:
         information += weight
         weighted += weight @ np.where(np.isfinite(belief.theta[d]), belief.theta[d], 0.0)
     covariance_d = covariance_of(information)
-    theta_d = np.where(np.isfinite(np.diag(covariance_d)), _solve(information, weighted), np.nan)
+    known = np.isfinite(np.diag(covariance_d))
+    shared = np.where(np.isfinite(covariance_d), covariance_d, 0.0)
+    theta_d = np.where(known, shared @ weighted, np.nan)
 
     theta = np.empty(len(PARAMETERS))
     covariance = np.zeros((len(PARAMETERS), len(PARAMETERS)))
@@ -88,11 +94,10 @@ def pool(beliefs: Sequence[Belief]) -> Belief:
         own += belief.covariance[np.ix_(c, c)] - gain @ np.nan_to_num(cross).T
     n = len(beliefs)
     gain = np.mean(gains, axis=0)
-    known = np.where(np.isfinite(covariance_d), covariance_d, 0.0)
     theta[c] = np.mean(intercepts, axis=0)
-    covariance[np.ix_(c, c)] = own / n**2 + gain @ known @ gain.T
-    covariance[np.ix_(c, d)] = gain @ known
-    covariance[np.ix_(d, c)] = (gain @ known).T
+    covariance[np.ix_(c, c)] = own / n**2 + gain @ shared @ gain.T
+    covariance[np.ix_(c, d)] = gain @ shared
+    covariance[np.ix_(d, c)] = (gain @ shared).T
     return Belief(theta, covariance)
 
 
@@ -106,13 +111,32 @@ def disagreement(belief: Belief, other: Belief) -> tuple[float, int]:
         distributed with that many degrees of freedom when nothing but noise separates the two.
     """
     d = list(DERIVATIVES)
-    difference = belief.theta[d] - other.theta[d]
     total = belief.covariance[np.ix_(d, d)] + other.covariance[np.ix_(d, d)]
-    both = np.isfinite(difference) & np.isfinite(np.diag(total))
-    if not both.any():
-        return 0.0, 0
-    difference, total = difference[both], total[np.ix_(both, both)]
-    return float(difference @ _solve(total, difference)), int(both.sum())
+    return _distance(belief.theta[d] - other.theta[d], information_of(total))
+
+
+def inconsistency(beliefs: Sequence[Belief]) -> tuple[float, int]:
+    """How far several estimates of the derivatives lie from their pooled value.
+
+    Returns
+    -------
+    tuple of float and int
+        χ² and its degrees of freedom: those the estimates have together, less those the pooled value
+        took.
+    """
+    d = list(DERIVATIVES)
+    centre = pool(beliefs).theta[d]
+    total, dof = 0.0, -int(np.isfinite(centre).sum())
+    for belief in beliefs:
+        distance, size = _distance(belief.theta[d] - centre, information_of(belief.covariance[np.ix_(d, d)]))
+        total, dof = total + distance, dof + size
+    return total, dof
+
+
+def _distance(difference: FloatArray, information: FloatArray) -> tuple[float, int]:
+    known = np.isfinite(difference) & (np.diag(information) > 0.0)
+    inside = np.where(known, difference, 0.0)
+    return float(inside @ information @ inside), int(known.sum())
 
 
 def information_of(covariance: FloatArray) -> FloatArray:
@@ -142,11 +166,3 @@ def _inverse(matrix: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.pinv(matrix * np.outer(scale, scale), hermitian=True)) * np.outer(
         scale, scale
     )
-
-
-def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    known = np.diag(matrix) > 0.0
-    solution = np.zeros_like(right)
-    if known.any():
-        solution[known] = _inverse(matrix[np.ix_(known, known)]) @ right[known]
-    return solution

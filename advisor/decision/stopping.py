@@ -107,13 +107,17 @@ def _information_sentence(known: Knowledge | None, stop: bool) -> str:
             f"STOP TESTING: every interval is within {known.percent:.0f} % of its tolerance and the newest "
             "manoeuvre was predicted."
         )
+    if np.isinf(known.percent):
+        return f"CONTINUE: {known.holding_back} cannot be estimated from these manoeuvres."
     if known.percent >= INFORMATION_LIMIT_PERCENT:
         return (
             f"CONTINUE: the error of {known.holding_back} is {known.percent / 100.0:.1f} times its tolerance."
         )
     if np.isnan(known.surprise):
         return "CONTINUE: narrow enough; one more manoeuvre to check the prediction."
-    return "CONTINUE: narrow enough, but the newest manoeuvre was not predicted; one more will show which is right."
+    return (
+        "CONTINUE: narrow enough, but the newest manoeuvre was not predicted; one more shows which is right."
+    )
 
 
 def _scattered_most(accepted: Sequence[Estimate], plan: CampaignPlan) -> str:

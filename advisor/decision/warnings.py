@@ -36,8 +36,8 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
     error = np.sqrt(np.mean([np.diag(e.covariance) for e in accepted[-plan.window :]], axis=0))
     mean = np.abs(theta.mean(axis=0))
     return [
-        f"One manoeuvre gives {name} as {value:.2g} +- {std:.2g}: its relative scatter alone keeps the criterion "
-        f"above {plan.limit_percent:.0f} %, however many are flown. The rule information has no such flaw."
+        f"One manoeuvre gives {name} as {value:.2g} +- {std:.2g}: its relative scatter keeps the "
+        f"criterion above {plan.limit_percent:.0f} %, however many are flown; the rule information does not."
         for name, value, std in zip(PARAMETERS, mean, error, strict=True)
         if 100.0 * SCATTER_FACTOR * std > plan.limit_percent * value
     ]

@@ -1,0 +1,59 @@
+"""Campaigns written down by hand: estimates with chosen values, costs and errors."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.decision.history import Flown
+from advisor.flight.messages import FloatArray
+from advisor.oem.estimate import ChannelFit, Estimate
+
+THETA = np.array([-0.009, -0.483, 0.104, 0.676, 0.475, -4.93, -2.01, -7.21])
+"""The twin-jet research aircraft of the study, rad and s."""
+
+SAMPLES = 500
+
+
+def estimate(
+    theta: FloatArray = THETA,
+    *,
+    cost: float = 1e-9,
+    std_percent: float = 1.0,
+    covariance: FloatArray | None = None,
+    airspeed_m_s: float | None = None,
+) -> Estimate:
+    """An estimate with independent errors of ``std_percent`` of the reference aircraft's values."""
+    if covariance is None:
+        covariance = np.diag((0.01 * std_percent * THETA) ** 2)
+    t = np.arange(SAMPLES) / 50.0
+    fits = {name: ChannelFit(name, t, np.zeros(SAMPLES), np.zeros(SAMPLES), 1e-3) for name in ("alpha", "q")}
+    return Estimate(
+        theta=np.asarray(theta, dtype=float),
+        covariance_cr=covariance,
+        covariance=covariance,
+        cost=cost,
+        fits=(fits,),
+        iterations=4,
+        not_identifiable={},
+        correlated=(),
+        condition=10.0,
+        airspeed_m_s=airspeed_m_s,
+    )
+
+
+def flown(costs: Sequence[float]) -> list[Flown]:
+    """A campaign of usable manoeuvres with these costs."""
+    return [Flown(estimate(cost=cost)) for cost in costs]
+
+
+def with_change(parameter: str, factor: float) -> FloatArray:
+    """The reference aircraft with one parameter multiplied."""
+    theta = THETA.copy()
+    theta[PARAMETERS.index(parameter)] *= factor
+    return theta
+
+
+def drawn(rng: np.random.Generator, theta: FloatArray = THETA, std_percent: float = 1.0) -> Estimate:
+    """An estimate whose error is drawn from the covariance it states."""
+    return estimate(theta + 0.01 * std_percent * THETA * rng.standard_normal(8), std_percent=std_percent)

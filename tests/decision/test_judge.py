@@ -1,0 +1,97 @@
+"""Verdicts on manoeuvres: their own faults first, then the chosen rule, every rule shown."""
+
+from dataclasses import replace
+
+from advisor.aircraft import CampaignPlan
+from advisor.decision.history import Flown
+from advisor.decision.judge import accepted_estimates, judge, judge_campaign
+from advisor.decision.verdict import Reason
+from advisor.oem.estimate import NoEstimate
+from tests.decision.campaigns import estimate, flown
+
+QUIET = Reason("amplitude", "too gentle, pitch rate 3 deg/s; use about 1.5 times the stick", 3.0, 5.0)
+PLAN = CampaignPlan()
+
+
+def test_a_quiet_record_with_a_tiny_cost_is_refused_and_poisons_no_limit() -> None:
+    history = [
+        Flown(estimate(cost=1e-9)),
+        Flown(estimate(cost=1e-15), reasons=(QUIET,)),
+        Flown(estimate(cost=1.5e-9)),
+    ]
+    verdicts = judge_campaign(history, PLAN)
+    assert [v.accepted for v in verdicts] == [True, False, True]
+    assert verdicts[1].sentence == "REPEAT: too gentle, pitch rate 3 deg/s; use about 1.5 times the stick"
+    assert verdicts[1].reasons == (QUIET,)
+    assert not any(result.accepted for result in verdicts[1].rules.values())
+
+
+def test_every_verdict_shows_what_every_rule_says() -> None:
+    verdict = judge_campaign(flown([1e-9, 1.5e-9]), PLAN)[-1]
+    assert verdict.accepted
+    assert {name: r.accepted for name, r in verdict.rules.items()} == {
+        "continuous": True,
+        "separate": False,
+        "information": True,
+    }
+    assert verdict.rules["continuous"].limit == 2e-9
+    assert verdict.rules["separate"].limit == 1e-9
+
+
+def test_the_chosen_rule_decides() -> None:
+    history = flown([1e-9, 1.5e-9])
+    assert not judge_campaign(history, replace(PLAN, rule="separate"))[-1].accepted
+    assert judge_campaign(history, replace(PLAN, rule="information"))[-1].accepted
+
+
+def test_a_cost_above_the_limit_is_a_reason_with_both_numbers() -> None:
+    verdict = judge_campaign(flown([1e-9, 3e-9]), PLAN)[-1]
+    (reason,) = verdict.reasons
+    assert (reason.code, reason.value, reason.limit) == ("cost", 3e-9, 2e-9)
+    assert verdict.sentence.startswith("REPEAT: ")
+    assert "3e-09" in verdict.sentence
+    assert "calmer air" in verdict.sentence
+
+
+def test_a_manoeuvre_without_an_estimate_is_refused_with_its_reason() -> None:
+    verdict = judge(Flown(NoEstimate("no_input", "the elevator did not move")), [], PLAN)
+    assert not verdict.accepted
+    assert verdict.reasons[0].code == "no_input"
+    assert verdict.sentence == "REPEAT: the elevator did not move"
+
+
+def test_excluding_a_manoeuvre_by_hand_recomputes_every_later_verdict() -> None:
+    history = flown([1e-12, 1e-9, 1.5e-9])
+    assert [v.accepted for v in judge_campaign(history, PLAN)] == [True, False, False]
+    history[0] = replace(history[0], excluded_because="wrong flap setting")
+    verdicts = judge_campaign(history, PLAN)
+    assert [v.accepted for v in verdicts] == [False, True, True]
+    assert verdicts[0].sentence == "EXCLUDED by hand: wrong flap setting"
+    assert verdicts[0].reasons[0].code == "excluded"
+
+
+def test_including_it_again_restores_the_verdicts() -> None:
+    history = flown([1e-12, 1e-9])
+    excluded = [replace(history[0], excluded_because="gust"), history[1]]
+    assert judge_campaign(excluded, PLAN) != judge_campaign(history, PLAN)
+    assert judge_campaign([replace(excluded[0], excluded_because=None), history[1]], PLAN) == judge_campaign(
+        history, PLAN
+    )
+
+
+def test_judging_one_by_one_and_all_at_once_agree() -> None:
+    history = flown([2e-9, 1e-9, 5e-9, 1.9e-9, 0.5e-9])
+    assert [judge(m, history[:i], PLAN) for i, m in enumerate(history)] == list(judge_campaign(history, PLAN))
+
+
+def test_cautions_stand_on_the_verdict_once() -> None:
+    noted = replace(estimate(), notes=("servo dynamics unknown",))
+    verdict = judge(Flown(noted, cautions=("alpha is derived", "servo dynamics unknown")), [], PLAN)
+    assert verdict.accepted
+    assert verdict.cautions == ("alpha is derived", "servo dynamics unknown")
+
+
+def test_only_accepted_manoeuvres_enter_the_model() -> None:
+    history = flown([1e-9, 3e-9, 1.1e-9])
+    assert [e.cost for e in accepted_estimates(history, "continuous")] == [1e-9, 1.1e-9]
+    assert len(accepted_estimates(history, "information")) == 3

@@ -1,0 +1,118 @@
+"""Manoeuvres combined by their information: equal to least squares over all of them at once."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import PARAMETERS
+from advisor.decision.pooling import (
+    DERIVATIVES,
+    INTERCEPTS,
+    Belief,
+    beliefs_at_one_speed,
+    disagreement,
+    inconsistency,
+    pool,
+)
+from advisor.flight.messages import FloatArray
+from tests.decision.campaigns import THETA, estimate
+
+
+def random_belief(rng: np.random.Generator, theta: FloatArray = THETA) -> Belief:
+    root = rng.standard_normal((8, 8)) * np.abs(THETA)[:, None] * 0.05
+    covariance = root @ root.T
+    return Belief(rng.multivariate_normal(theta, covariance), covariance)
+
+
+def test_pooling_equals_generalised_least_squares_with_shared_derivatives_and_own_intercepts() -> None:
+    rng = np.random.default_rng(4)
+    beliefs = [random_belief(rng) for _ in range(4)]
+    # Unknowns: six derivatives, then (Z_0, M_0) of each manoeuvre.
+    columns = 6 + 2 * len(beliefs)
+    design = np.zeros((8 * len(beliefs), columns))
+    weight = np.zeros((8 * len(beliefs), 8 * len(beliefs)))
+    for m, belief in enumerate(beliefs):
+        rows = slice(8 * m, 8 * m + 8)
+        for j, k in enumerate(DERIVATIVES):
+            design[8 * m + k, j] = 1.0
+        for j, k in enumerate(INTERCEPTS):
+            design[8 * m + k, 6 + 2 * m + j] = 1.0
+        weight[rows, rows] = np.linalg.inv(belief.covariance)
+    normal = design.T @ weight @ design
+    solution = np.linalg.solve(normal, design.T @ weight @ np.concatenate([b.theta for b in beliefs]))
+    covariance = np.linalg.inv(normal)
+    mean = np.zeros((8, columns))
+    mean[list(DERIVATIVES), range(6)] = 1.0
+    for j, k in enumerate(INTERCEPTS):
+        mean[k, 6 + j :: 2] = 1.0 / len(beliefs)
+
+    pooled = pool(beliefs)
+    np.testing.assert_allclose(pooled.theta, mean @ solution, rtol=1e-6)
+    np.testing.assert_allclose(pooled.covariance, mean @ covariance @ mean.T, rtol=1e-5, atol=1e-12)
+
+
+def test_one_manoeuvre_pools_to_itself() -> None:
+    belief = random_belief(np.random.default_rng(5))
+    pooled = pool([belief])
+    np.testing.assert_allclose(pooled.theta, belief.theta, rtol=1e-6)
+    np.testing.assert_allclose(pooled.covariance, belief.covariance, rtol=1e-5, atol=1e-12)
+
+
+def test_a_manoeuvre_that_cannot_know_a_parameter_leaves_it_to_the_others() -> None:
+    blind = np.diag((0.01 * THETA) ** 2)
+    blind[2, 2] = np.inf
+    theta = THETA.copy()
+    theta[2] = np.nan
+    seeing = Belief(THETA, np.diag((0.01 * THETA) ** 2))
+    pooled = pool([Belief(theta, blind), seeing])
+    assert pooled.theta[2] == pytest.approx(THETA[2])
+    assert pooled.std[2] == pytest.approx(seeing.std[2])
+    assert pooled.std[1] == pytest.approx(seeing.std[1] / np.sqrt(2.0))
+
+
+def test_what_no_manoeuvre_knows_stays_unknown() -> None:
+    covariance = np.diag((0.01 * THETA) ** 2)
+    covariance[2, 2] = np.inf
+    pooled = pool([Belief(THETA, covariance)] * 2)
+    assert np.isnan(pooled.theta[2])
+    assert np.isinf(pooled.std[2])
+
+
+def test_distances_between_estimates_are_chi_square_distributed() -> None:
+    rng = np.random.default_rng(6)
+    pairs = [disagreement(random_belief(rng), random_belief(rng)) for _ in range(800)]
+    assert {dof for _, dof in pairs} == {6}
+    assert np.mean([d for d, _ in pairs]) == pytest.approx(6.0, rel=0.08)
+    groups = [inconsistency([random_belief(rng) for _ in range(4)]) for _ in range(400)]
+    assert {dof for _, dof in groups} == {18}
+    assert np.mean([d for d, _ in groups]) == pytest.approx(18.0, rel=0.05)
+
+
+def test_estimates_at_different_speeds_are_brought_to_their_mean_speed() -> None:
+    # An aircraft at 20 and 30 m/s: forces with V, moments with V², gravity's g/V in Z_0.
+    lift_part, at_25 = -0.4, {}
+    for v in (20.0, 25.0, 30.0):
+        s = v / 25.0
+        at_25[v] = np.array(
+            [
+                lift_part * s + 9.80665 / v,
+                -1.0 * s,
+                0.1,
+                0.5 * s,
+                0.4 * s**2,
+                -5.0 * s**2,
+                -2.0 * s,
+                -7.0 * s**2,
+            ]
+        )
+    both = [estimate(at_25[v], airspeed_m_s=v) for v in (20.0, 30.0)]
+    for belief in beliefs_at_one_speed(both):
+        np.testing.assert_allclose(belief.theta, at_25[25.0], rtol=1e-12)
+
+
+def test_without_every_air_speed_nothing_is_scaled() -> None:
+    mixed = [estimate(airspeed_m_s=20.0), estimate(airspeed_m_s=None)]
+    assert all(np.array_equal(b.theta, THETA) for b in beliefs_at_one_speed(mixed))
+
+
+def test_the_order_of_parameters_is_that_of_the_house() -> None:
+    assert [PARAMETERS[k] for k in INTERCEPTS] == ["Z_0", "M_0"]

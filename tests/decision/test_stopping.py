@@ -1,0 +1,115 @@
+"""May we stop: Eq. (12) over the accepted manoeuvres, every rule side by side."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import CampaignPlan
+from advisor.decision.history import Flown
+from advisor.decision.scatter import scatter_percent
+from advisor.decision.stopping import flight_test
+from tests.decision.campaigns import THETA, drawn, estimate, flown, with_change
+
+PLAN = CampaignPlan()
+
+
+def test_nothing_flown_means_continue() -> None:
+    verdict = flight_test([], PLAN)
+    assert verdict.decision == "continue"
+    assert verdict.criterion_percent is None
+    assert verdict.sentence == "CONTINUE: 0 of 3 accepted manoeuvres."
+
+
+def test_three_agreeing_manoeuvres_stop_the_test() -> None:
+    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.0, 1.01)]
+    verdict = flight_test(history, PLAN)
+    assert verdict.decision == "stop"
+    assert verdict.stopped_at == 3
+    assert verdict.criterion_percent == pytest.approx(5.0 * np.sqrt(8.0))
+    assert verdict.by_rule["continuous"].history_percent == (None, None, verdict.criterion_percent)
+    assert verdict.sentence.startswith("STOP TESTING: the last 3 accepted manoeuvres agree within 14 %")
+
+
+def test_scattering_manoeuvres_continue_and_the_worst_parameter_is_named() -> None:
+    history = [Flown(estimate(with_change("Z_q", k))) for k in (0.5, 1.0, 1.5)]
+    verdict = flight_test(history, PLAN)
+    assert verdict.decision == "continue"
+    assert verdict.stopped_at is None
+    assert "Z_q scatters most" in verdict.sentence
+
+
+def test_the_window_holds_the_manoeuvres_its_own_rule_accepted() -> None:
+    costs = [1.0, 0.9, 1.5, 0.8, 0.7]
+    history = [
+        Flown(estimate(k * THETA, cost=c)) for k, c in zip((1.0, 1.01, 9.0, 1.02, 1.03), costs, strict=True)
+    ]
+    by_rule = flight_test(history, PLAN).by_rule
+    # `separate` refuses the third, so its window of three is manoeuvres 1, 2, 4.
+    assert by_rule["separate"].stopped_at == 4
+    assert by_rule["separate"].history_percent[3] == pytest.approx(
+        scatter_percent(np.outer([1.0, 1.01, 1.02], THETA))
+    )
+    # `continuous` accepts it and has it in its window until the end.
+    assert by_rule["continuous"].stopped_at is None
+
+
+def test_a_refused_manoeuvre_leaves_the_criterion_where_it_was() -> None:
+    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.0, 1.01)]
+    after = [*history, Flown(estimate(9.0 * THETA, cost=1.0))]
+    verdict = flight_test(after, PLAN)
+    assert verdict.decision == "stop"
+    assert verdict.stopped_at == 3
+    assert verdict.by_rule["continuous"].history_percent[3] == verdict.criterion_percent
+
+
+def test_a_later_contradiction_takes_the_stop_back_and_says_so() -> None:
+    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.0, 1.01, 2.0)]
+    verdict = flight_test(history, PLAN)
+    assert verdict.decision == "continue"
+    assert verdict.stopped_at == 3
+    assert any("does not hold any more" in w for w in verdict.warnings)
+
+
+def test_excluding_the_contradiction_gives_the_stop_again() -> None:
+    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.0, 1.01, 2.0)]
+    history[3] = replace(history[3], excluded_because="flaps were down")
+    assert flight_test(history, PLAN).decision == "stop"
+
+
+def test_window_and_limit_are_the_users() -> None:
+    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.01)]
+    assert flight_test(history, CampaignPlan(window=2)).decision == "stop"
+    assert flight_test(history, CampaignPlan(window=2, limit_percent=1.0)).decision == "continue"
+
+
+def test_the_written_out_form_is_available_by_name() -> None:
+    history = [Flown(estimate(with_change("M_alpha", k))) for k in (0.9, 1.0, 1.1)]
+    assert flight_test(history, PLAN).decision == "continue"
+    assert flight_test(history, replace(PLAN, criterion="eq13")).decision == "stop"
+
+
+def test_a_parameter_near_zero_is_named_as_what_keeps_the_criterion_up() -> None:
+    rng = np.random.default_rng(8)
+    near_zero = THETA.copy()
+    near_zero[2] = 0.0
+    history = [Flown(drawn(rng, near_zero, std_percent=2.0)) for _ in range(6)]
+    verdict = flight_test(history, PLAN)
+    assert verdict.decision == "continue"
+    assert any(w.startswith("One manoeuvre gives Z_q") and "rule information" in w for w in verdict.warnings)
+    assert flight_test(history, replace(PLAN, rule="information")).decision == "stop"
+
+
+def test_good_manoeuvres_refused_in_a_row_for_cost_alone_raise_a_warning() -> None:
+    verdict = flight_test(flown([1e-12, 1e-9, 1e-9, 1e-9]), PLAN)
+    assert any("3 usable manoeuvres in a row" in w for w in verdict.warnings)
+
+
+def test_every_rule_runs_whichever_is_chosen() -> None:
+    history = flown([1.0, 0.9, 0.8])
+    for rule in ("continuous", "separate", "information"):
+        verdict = flight_test(history, replace(PLAN, rule=rule))
+        assert set(verdict.by_rule) == {"continuous", "separate", "information"}
+        assert all(len(p.history_percent) == 3 for p in verdict.by_rule.values())
+        assert verdict.stopped_at == verdict.by_rule[rule].stopped_at
+        assert verdict.limit_percent == verdict.by_rule[rule].limit_percent
