@@ -1,0 +1,108 @@
+"""Cutting whole MAVLink frames out of what a socket or a serial line delivers."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from fastcrc.crc16 import mcrf4xx
+
+MAGIC_V1 = 0xFE
+MAGIC_V2 = 0xFD
+SIGNED = 0x01
+SIGNATURE_LENGTH = 13
+
+
+class Frame(NamedTuple):
+    """One frame as it was on the wire."""
+
+    raw: bytes
+    message_id: int
+    sequence: int
+    system: int
+    component: int
+    signed: bool
+
+    @property
+    def payload(self) -> bytes:
+        """The payload; in MAVLink 2 its trailing zeros are cut off."""
+        start = 6 if self.raw[0] == MAGIC_V1 else 10
+        return self.raw[start : start + self.raw[1]]
+
+
+class FrameCutter:
+    """Finds frames in a stream of bytes that starts anywhere and may hold garbage.
+
+    A frame of a known message must pass its checksum (CRC-16/MCRF4XX over everything
+    after the magic byte and the definition's CRC_EXTRA, as the MAVLink serialisation
+    guide defines it). A frame of an unknown message cannot be checked; it is taken only
+    where one is due: right after a good one, and followed by another or by nothing.
+    """
+
+    def __init__(self, crc_extra: Mapping[int, int]) -> None:
+        self._seeds = {message: bytes([extra]) for message, extra in crc_extra.items()}
+        self._rest = b""
+        self._in_step = True
+        self.bad_crc = 0
+        """Frames whose checksum did not fit."""
+        self.garbage_bytes = 0
+        """Bytes outside any frame."""
+
+    def feed(self, data: bytes) -> list[Frame]:
+        """Take the next bytes; give the frames they complete."""
+        buffer = self._rest + data if self._rest else data
+        frames = []
+        i, n = 0, len(buffer)
+        while i < n:
+            if buffer[i] not in (MAGIC_V1, MAGIC_V2):
+                i = self._skip(buffer, i)
+                continue
+            total = _frame_length(buffer, i)
+            if total is None or i + total > n:
+                break
+            frame = self._check(buffer, i, total)
+            if frame is None:
+                i = self._skip(buffer, i)
+                continue
+            frames.append(frame)
+            self._in_step = True
+            i += total
+        self._rest = buffer[i:]
+        return frames
+
+    def _skip(self, buffer: bytes, i: int) -> int:
+        """Give up the byte at ``i``; the next place where a frame may start."""
+        v1, v2 = buffer.find(MAGIC_V1, i + 1), buffer.find(MAGIC_V2, i + 1)
+        found = [k for k in (v1, v2) if k >= 0]
+        following = min(found) if found else len(buffer)
+        self.garbage_bytes += following - i
+        self._in_step = False
+        return following
+
+    def _check(self, buffer: bytes, i: int, total: int) -> Frame | None:
+        signed = False
+        if buffer[i] == MAGIC_V2:
+            if buffer[i + 2] & ~SIGNED:  # a flag we must not ignore and do not know
+                return None
+            signed = bool(buffer[i + 2])
+            message_id = buffer[i + 7] | buffer[i + 8] << 8 | buffer[i + 9] << 16
+            sequence, system, component = buffer[i + 4], buffer[i + 5], buffer[i + 6]
+        else:
+            sequence, system, component, message_id = buffer[i + 2 : i + 6]
+        end = i + total - (SIGNATURE_LENGTH if signed else 0)
+        seed = self._seeds.get(message_id)
+        if seed is None:
+            follower = buffer[i + total : i + total + 1]
+            if not self._in_step or (follower and follower[0] not in (MAGIC_V1, MAGIC_V2)):
+                return None
+        elif mcrf4xx(buffer[i + 1 : end - 2] + seed) != buffer[end - 2] | buffer[end - 1] << 8:
+            self.bad_crc += self._in_step
+            return None
+        return Frame(buffer[i : i + total], message_id, sequence, system, component, signed)
+
+
+def _frame_length(buffer: bytes, i: int) -> int | None:
+    """Length of the frame whose magic byte is at ``i``; None when its header is not whole yet."""
+    if buffer[i] == MAGIC_V1:
+        return 8 + buffer[i + 1] if len(buffer) > i + 1 else None
+    if len(buffer) < i + 3:
+        return None
+    return 12 + buffer[i + 1] + (SIGNATURE_LENGTH if buffer[i + 2] & SIGNED else 0)

@@ -1,0 +1,104 @@
+"""From pieces of a connection to frames one may believe, and to the vehicle that sends them."""
+
+from collections.abc import Mapping
+
+from advisor.mavlink.framing import Frame, FrameCutter
+from advisor.mavlink.health import LinkCounters
+from advisor.mavlink.signing import RADIO_STATUS, SignatureCheck
+from advisor.mavlink.transports import Peer
+
+HEARTBEAT = 0
+MOST_PEERS = 64
+
+_AUTOPILOT_INVALID = 8
+_NOT_VEHICLES = frozenset({5, 6, 18, 26, 27, 30})
+"""MAV_TYPE of antenna trackers, ground stations, onboard computers, gimbals, ADS-B, cameras."""
+
+
+class Intake:
+    """Cuts, believes, counts; knows the vehicle and where it is heard from.
+
+    Parameters
+    ----------
+    crc_extra
+        Message id to the checksum's seed.
+    target_system
+        System id of the vehicle; None: the first autopilot heard.
+    signatures
+        None: unsigned frames are taken as they are.
+    """
+
+    def __init__(
+        self, crc_extra: Mapping[int, int], target_system: int | None, signatures: SignatureCheck | None
+    ) -> None:
+        self._crc_extra = crc_extra
+        self._target_system = target_system
+        self._signatures = signatures
+        self._cutters: dict[Peer, FrameCutter] = {}
+        self._bad_crc = 0
+        self._garbage_bytes = 0
+        self.counters = LinkCounters()
+        self.vehicle: tuple[int, int] | None = None
+        self.vehicle_peer: Peer | None = None
+        """Who to answer."""
+        self.other_vehicles: set[int] = set()
+        """System ids of autopilots heard beside the vehicle."""
+
+    def take(self, pieces: list[tuple[Peer, bytes]], now_s: float) -> list[Frame]:
+        """The frames that these pieces complete, of every system, in order of arrival."""
+        taken: list[Frame] = []
+        for peer, data in pieces:
+            frames = [frame for frame in self._cutter(peer).feed(data) if self._believed(frame)]
+            for frame in frames:
+                if frame.message_id == HEARTBEAT:
+                    self._meet(frame)
+            if self.vehicle and any(frame.system == self.vehicle[0] for frame in frames):
+                self.vehicle_peer = peer
+            taken += frames
+        self.counters.add(taken, now_s)
+        return taken
+
+    def forget_pieces(self) -> None:
+        """A connection was cut: what was half received will never be whole."""
+        for cutter in self._cutters.values():
+            self._bad_crc += cutter.bad_crc
+            self._garbage_bytes += cutter.garbage_bytes
+        self._cutters.clear()
+
+    @property
+    def bad_crc(self) -> int:
+        """Frames whose checksum did not fit."""
+        return self._bad_crc + sum(cutter.bad_crc for cutter in tuple(self._cutters.values()))
+
+    @property
+    def garbage_bytes(self) -> int:
+        """Bytes outside any frame."""
+        return self._garbage_bytes + sum(cutter.garbage_bytes for cutter in tuple(self._cutters.values()))
+
+    def _cutter(self, peer: Peer) -> FrameCutter:
+        cutter = self._cutters.get(peer)
+        if cutter is None:
+            if len(self._cutters) >= MOST_PEERS:  # somebody changes his port with every packet
+                self.forget_pieces()
+            cutter = self._cutters[peer] = FrameCutter(self._crc_extra)
+        return cutter
+
+    def _believed(self, frame: Frame) -> bool:
+        if self._signatures is None or frame.message_id == RADIO_STATUS:
+            return True
+        verdict = self._signatures.verdict(frame.raw)
+        if verdict != "ok":
+            self.counters.refused[verdict] += 1
+        return verdict == "ok"
+
+    def _meet(self, heartbeat: Frame) -> None:
+        payload = heartbeat.payload.ljust(9, b"\0")
+        kind, autopilot = payload[4], payload[5]
+        if autopilot == _AUTOPILOT_INVALID or kind in _NOT_VEHICLES:
+            return
+        if self._target_system is not None and heartbeat.system != self._target_system:
+            return
+        if self.vehicle is None:
+            self.vehicle = (heartbeat.system, heartbeat.component)
+        elif heartbeat.system != self.vehicle[0]:
+            self.other_vehicles.add(heartbeat.system)

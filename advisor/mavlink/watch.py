@@ -1,0 +1,59 @@
+"""What a crew is told about its link: silence, cuts, coming back, a second vehicle."""
+
+from advisor.mavlink.framing import Frame
+from advisor.mavlink.intake import Intake
+
+SILENCE_S = 5.0
+
+
+class LinkWatch:
+    """Turns what arrives, and what does not, into sentences; times are the reader's monotonic seconds."""
+
+    def __init__(self, connection: str) -> None:
+        self._connection = connection
+        self._heard_s = 0.0
+        self._silence_told = False
+        self._cut_s: float | None = None
+        self._others_told: set[int] = set()
+        self.reconnects = 0
+
+    def begin(self, now_s: float) -> None:
+        """The connection is open; silence counts from here."""
+        self._heard_s = now_s
+
+    def silent_s(self, now_s: float) -> float:
+        """Time since the vehicle, or before it is known anything, was last heard."""
+        return max(0.0, now_s - self._heard_s)
+
+    def cut(self, why: str, now_s: float) -> str:
+        """The connection was cut."""
+        if self._cut_s is None:
+            self._cut_s = now_s
+        return f"{self._connection}: connection lost ({why}), trying again"
+
+    def look(self, intake: Intake, frames: list[Frame], now_s: float) -> list[str]:
+        """Sentences for what these frames, or their absence, mean."""
+        said = []
+        vehicle = intake.vehicle
+        if any(vehicle is None or frame.system == vehicle[0] for frame in frames):
+            said += self._heard(now_s)
+        elif not self._silence_told and self._cut_s is None and self.silent_s(now_s) >= SILENCE_S:
+            self._silence_told = True
+            who = f"vehicle {vehicle[0]} is" if vehicle else f"{self._connection}: no vehicle heard,"
+            said.append(f"{who} silent for {SILENCE_S:.0f} s")
+        for system in sorted(intake.other_vehicles - self._others_told):
+            said.append(f"vehicle {system} is heard too and ignored; choose with --target-system")
+        self._others_told |= intake.other_vehicles
+        return said
+
+    def _heard(self, now_s: float) -> list[str]:
+        said = []
+        if self._cut_s is not None:
+            self.reconnects += 1
+            said.append(f"{self._connection}: reconnected after {now_s - self._cut_s:.1f} s")
+        elif self._silence_told:
+            said.append(f"{self._connection}: heard again after {self.silent_s(now_s):.1f} s")
+        self._cut_s = None
+        self._silence_told = False
+        self._heard_s = now_s
+        return said

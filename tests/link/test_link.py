@@ -1,0 +1,291 @@
+import os
+import pty
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from advisor.flight.messages import Columns
+from advisor.mavlink.frames import FrameScanner
+from advisor.mavlink.link import Link
+from advisor.problems import UnusableInputError
+from tests.link.builders import (
+    Sender,
+    UdpVehicle,
+    attitude,
+    free_port,
+    heartbeat,
+    read_all,
+    values,
+    wait_until,
+)
+
+
+@pytest.fixture
+def port() -> int:
+    return free_port()
+
+
+@pytest.fixture
+def vehicle(port: int) -> Iterator[UdpVehicle]:
+    vehicle = UdpVehicle(port)
+    yield vehicle
+    vehicle.close()
+
+
+def notices(link: Link) -> str:
+    return "; ".join(notice.text for notice in link.take_notices())
+
+
+def stamps(columns: list[Columns]) -> list[float]:
+    return values(columns, "ATTITUDE", "time_boot_ms")
+
+
+def same(a: list[Columns], b: list[Columns]) -> bool:
+    def table(columns: list[Columns]) -> dict[tuple[str, int, int], dict[str, np.ndarray]]:
+        merged: dict[tuple[str, int, int], dict[str, list[np.ndarray]]] = {}
+        for part in columns:
+            into = merged.setdefault((part.name, part.system, part.component), {})
+            for name, column in {**part.fields, "order": part.order, "arrival_s": part.arrival_s}.items():
+                into.setdefault(name, []).append(column)
+        return {k: {n: np.concatenate(c) for n, c in fields.items()} for k, fields in merged.items()}
+
+    ta, tb = table(a), table(b)
+    return ta.keys() == tb.keys() and all(
+        np.array_equal(ta[key][name], tb[key][name]) for key in ta for name in ta[key]
+    )
+
+
+def test_what_is_heard_live_is_what_the_recording_replays(
+    port: int, vehicle: UdpVehicle, tmp_path: Path
+) -> None:
+    with Link(f"udpin:127.0.0.1:{port}", record_to=tmp_path / "own.tlog") as link:
+        for i in range(200):
+            vehicle.send(attitude(20 * i), *([heartbeat()] if i % 50 == 0 else []))
+        live = read_all(link)
+    replayed = FrameScanner().feed((tmp_path / "own.tlog").read_bytes())
+    assert stamps(live) == [20.0 * i for i in range(200)]
+    assert same(live, replayed)
+
+
+def test_a_passive_link_sends_nothing(port: int, vehicle: UdpVehicle) -> None:
+    vehicle.socket.settimeout(1.2)
+    with Link(f"udpin:127.0.0.1:{port}") as link:
+        vehicle.send(heartbeat(), attitude(1))
+        read_all(link)
+        with pytest.raises(TimeoutError):
+            vehicle.hear()
+
+
+def test_a_link_that_must_speak_first_greets_and_is_answered() -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.settimeout(5.0)
+        with Link(f"udpout:127.0.0.1:{listener.getsockname()[1]}") as link:
+            data, peer = listener.recvfrom(2048)
+            greeting = dialect.MAVLink(None).decode(bytearray(data))
+            assert greeting.get_type() == "HEARTBEAT"
+            assert greeting.type == dialect.MAV_TYPE_GCS
+            assert greeting.get_srcSystem() == 254
+            listener.sendto(Sender().pack(attitude(40)), peer)
+            wait_until(lambda: stamps(link.read()) == [40.0])
+
+
+def test_frames_are_cut_out_of_a_tcp_stream_and_a_lost_connection_comes_back() -> None:
+    with (
+        socket.create_server(("127.0.0.1", 0)) as server,
+        Link(f"tcp:127.0.0.1:{server.getsockname()[1]}") as link,
+    ):
+        sender = Sender()
+        first, _ = server.accept()
+        stream = b"".join(sender.pack(m) for m in (heartbeat(), *(attitude(20 * i) for i in range(30))))
+        for i in range(0, len(stream), 17):
+            first.sendall(stream[i : i + 17])
+        assert stamps(read_all(link)) == [20.0 * i for i in range(30)]
+        first.close()
+        second, _ = server.accept()
+        second.sendall(sender.pack(attitude(1000)))
+        wait_until(lambda: stamps(link.read()) == [1000.0])
+        told = notices(link)
+        assert "connection lost (closed by the other side)" in told
+        assert "reconnected after" in told
+        assert link.statistics.reconnects == 1
+        second.close()
+
+
+def test_a_waiting_tcp_link_takes_one_caller_after_the_other() -> None:
+    port = free_port(socket.SOCK_STREAM)
+    with Link(f"tcpin:127.0.0.1:{port}") as link:
+        for stamp in (100, 200):
+            caller: socket.socket | None = None
+            for _ in range(100):
+                try:
+                    caller = socket.create_connection(("127.0.0.1", port), timeout=1.0)
+                    break
+                except ConnectionRefusedError:
+                    time.sleep(0.02)
+            assert caller is not None
+            with caller:
+                caller.sendall(Sender().pack(heartbeat()) + Sender().pack(attitude(stamp)))
+                heard: list[float] = []
+                for _ in range(50):
+                    heard += stamps(link.read(0.1))
+                    if heard:
+                        break
+                assert heard == [float(stamp)]
+
+
+def test_a_serial_line_is_read_and_its_cable_may_be_pulled() -> None:
+    far, near = pty.openpty()
+    try:
+        with Link(f"{os.ttyname(near)},57600") as link:
+            sender = Sender()
+            os.write(far, b"\x00\x01boot noise" + sender.pack(heartbeat()) + sender.pack(attitude(60)))
+            heard = []
+            for _ in range(50):
+                heard += stamps(link.read(0.1))
+                if heard:
+                    break
+            assert heard == [60.0]
+            assert link.statistics.garbage_bytes == 12
+            os.close(near)
+            os.close(far)
+            wait_until(lambda: not link.statistics.connected)
+            assert "connection lost" in notices(link)
+    finally:
+        for end in (far, near):
+            try:
+                os.close(end)
+            except OSError:
+                continue
+
+
+def test_silence_is_told_once_and_so_is_its_end(
+    port: int, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("advisor.mavlink.watch.SILENCE_S", 0.3)
+    with Link(f"udpin:127.0.0.1:{port}") as link:
+        vehicle.send(heartbeat(), attitude(0))
+        read_all(link)
+        time.sleep(0.6)
+        assert notices(link).count("silent for") == 1
+        assert link.statistics.silent_s > 0.3
+        vehicle.send(attitude(900))
+        read_all(link)
+        assert "heard again after" in notices(link)
+        assert link.statistics.silent_s < 0.5
+
+
+def test_another_station_talking_on_does_not_hide_that_the_vehicle_is_silent(
+    port: int, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("advisor.mavlink.watch.SILENCE_S", 0.3)
+    station = UdpVehicle(port, system=255)
+    with Link(f"udpin:127.0.0.1:{port}") as link:
+        vehicle.send(heartbeat(), attitude(0))
+        for _ in range(12):
+            station.send(heartbeat(dialect.MAV_TYPE_GCS, dialect.MAV_AUTOPILOT_INVALID))
+            time.sleep(0.05)
+        assert "vehicle 1 is silent" in notices(link)
+    station.close()
+
+
+def test_losses_duplicates_and_late_packets_are_counted_by_sequence_number(
+    port: int, vehicle: UdpVehicle
+) -> None:
+    packets = [vehicle.pack(heartbeat())] + [vehicle.pack(attitude(20 * i)) for i in range(300)]
+    order = [*range(100), 99, *range(103, 200), 201, 200, *range(202, 301)]
+    with Link(f"udpin:127.0.0.1:{port}") as link:
+        for i in order:
+            vehicle.send_raw(packets[i])
+        assert len(stamps(read_all(link))) == len(order) - 1
+        seen = link.statistics
+    assert (seen.lost, seen.duplicated, seen.late) == (3, 1, 1)
+    assert seen.lost_percent == pytest.approx(100 * 3 / (len(order) + 3))
+
+
+def test_the_first_autopilot_is_the_vehicle_and_a_second_one_is_named(port: int, vehicle: UdpVehicle) -> None:
+    station, other = UdpVehicle(port, system=255), UdpVehicle(port, system=9)
+    with Link(f"udpin:127.0.0.1:{port}") as link:
+        station.send(heartbeat(dialect.MAV_TYPE_GCS, dialect.MAV_AUTOPILOT_INVALID))
+        vehicle.send(heartbeat())
+        wait_until(lambda: link.statistics.vehicle is not None)
+        other.send(heartbeat())
+        read_all(link)
+        assert link.statistics.vehicle == (1, 1)
+        assert "vehicle 9 is heard too and ignored; choose with --target-system" in notices(link)
+    with Link(f"udpin:127.0.0.1:{port}", target_system=9) as link:
+        vehicle.send(heartbeat())
+        other.send(heartbeat())
+        read_all(link)
+        assert link.statistics.vehicle == (9, 1)
+    station.close()
+    other.close()
+
+
+def test_with_a_key_only_what_the_vehicle_signed_is_heard_and_recorded(port: int, tmp_path: Path) -> None:
+    key = bytes(range(32))
+    genuine, intruder = UdpVehicle(port, key=key), UdpVehicle(port)
+    with Link(f"udpin:127.0.0.1:{port}", key=key, record_to=tmp_path / "own.tlog") as link:
+        first = genuine.pack(attitude(20))
+        genuine.send(heartbeat())
+        genuine.send_raw(first)  # packed before the heartbeat: its signature is older now
+        intruder.send(attitude(40))
+        again = genuine.pack(attitude(60))
+        genuine.send_raw(again)
+        genuine.send_raw(again)
+        intruder.send(dialect.MAVLink_radio_status_message(100, 90, 80, 10, 10, 0, 0))
+        heard = read_all(link)
+        assert stamps(heard) == [60.0]
+        assert values(heard, "RADIO_STATUS", "rssi") == [100.0]
+        assert link.statistics.refused == {"unsigned": 1, "replayed": 2}
+    recorded = FrameScanner().feed((tmp_path / "own.tlog").read_bytes())
+    assert stamps(recorded) == [60.0]
+    genuine.close()
+    intruder.close()
+
+
+def test_a_port_in_use_and_a_host_that_does_not_answer_are_refused_with_what_to_do(port: int) -> None:
+    with Link(f"udpin:127.0.0.1:{port}"), pytest.raises(UnusableInputError, match="no other program uses it"):
+        Link(f"udpin:127.0.0.1:{port}").start()
+    closed = free_port(socket.SOCK_STREAM)
+    with pytest.raises(UnusableInputError, match="cannot be opened"):
+        Link(f"tcp:127.0.0.1:{closed}", patience_s=0.0).start()
+    with pytest.raises(UnusableInputError, match="cannot be opened"):
+        Link("/dev/no-such-line,57600", patience_s=0.0).start()
+
+
+def test_two_thousand_messages_a_second_arrive_without_loss_and_in_time(
+    port: int, vehicle: UdpVehicle
+) -> None:
+    seconds, per_tick = 4.0, 10
+    sent_at: dict[float, float] = {}
+
+    def fly() -> None:
+        begin = time.monotonic()
+        for tick in range(int(seconds * 200)):
+            for k in range(per_tick):
+                stamp = tick * per_tick + k
+                sent_at[float(stamp)] = time.monotonic()
+                vehicle.send_raw(vehicle.pack(attitude(stamp)))
+            time.sleep(max(0.0, begin + (tick + 1) / 200 - time.monotonic()))
+
+    heard: dict[float, float] = {}
+    with Link(f"udpin:127.0.0.1:{port}") as link:
+        flight = threading.Thread(target=fly)
+        flight.start()
+        while flight.is_alive() or len(heard) < len(sent_at):
+            columns = link.read(0.5)
+            now_s = time.monotonic()
+            heard.update(dict.fromkeys(stamps(columns), now_s))
+            if not columns and not flight.is_alive():
+                break
+        flight.join()
+    assert heard.keys() == sent_at.keys()
+    latencies = [heard[stamp] - sent_at[stamp] for stamp in heard]
+    assert float(np.median(latencies)) < 0.020
