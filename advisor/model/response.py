@@ -1,0 +1,280 @@
+"""The model solved on the union of all stamps, with exact sensitivities.
+
+*Interpolate the model, not the data.* The input is linear (or held) between its own stamps, so
+between two neighbouring stamps of any channel the solution is known in closed form
+(``transition``); each output is read off exactly where it was measured. Gaps and irregular
+sampling need no special case.
+
+Parameters of one manoeuvre, in this order: the six shared derivatives ``SHARED``, then its own
+``LOCAL``. With the air speed ratio s = V/V_ref of a step, the model is
+
+    α̇ = s·(Z_0 + Z_α·α + Z_δe·δe) + (1 + Z_q)·q + g(t)
+    q̇ = s²·(M_0 + M_α·α + M_δe·δe) + s·M_q·q
+    θ̇ = q
+
+and the outputs are, with the vane x_α and the accelerometer x_a ahead of the centre of gravity,
+
+    α_m = α - (x_α/V)·q                       q_m = q + b_q
+    a_z = V·cos α·(α̇ - q) + V̇·sin α - g·cos θ·cos φ - x_a·q̇ + b_a        θ_m = θ
+
+(a_z: specific force along body z, Klein & Morelli, *Aircraft System Identification*, Ch. 3).
+"""
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.flight.messages import FloatArray
+from advisor.model.transition import WIDTH, divisions, fill
+
+Index = NDArray[np.int64]
+
+OUTPUTS = ("alpha", "q", "a_z", "theta")
+SHARED = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
+LOCAL = ("Z_0", "M_0", "alpha_initial", "q_initial", "theta_initial", "q_bias", "a_z_bias")
+N_SHARED, N_LOCAL = len(SHARED), len(LOCAL)
+N_PARAMETERS = N_SHARED + N_LOCAL
+
+
+class Grid(NamedTuple):
+    """All manoeuvres of a problem on the union of their stamps, one after another.
+
+    E events in all, U different kinds of step between them, N measurements.
+    """
+
+    first: Index
+    """(m + 1,) where each manoeuvre's events begin, and E."""
+    kind: Index
+    """(E,) which step leads to the next event; at a manoeuvre's last event, to the event."""
+    step_s: FloatArray
+    """(U,) length of the step."""
+    ratio: FloatArray
+    """(U,) air speed ratio s on the step."""
+    elevator: FloatArray
+    """(E,) δe at the event."""
+    start: FloatArray
+    """(E,) δe just after the event (differs from ``elevator`` only where a held input jumps)."""
+    slope: FloatArray
+    """(E,) rate of δe on the step, rad/s."""
+    known: FloatArray
+    """(E,) g(t): what is known to drive α̇ besides the model, rad/s, constant over the step."""
+    row: Index
+    """(4, E) which measurement each output of ``OUTPUTS`` has at the event, -1 for none."""
+    vane: FloatArray
+    """(E,) -x_α/V in s."""
+    airspeed: FloatArray
+    """(E,) V in m/s; used by a_z only."""
+    acceleration: FloatArray
+    """(E,) V̇ in m/s²; used by a_z only."""
+    gravity: FloatArray
+    """(E,) g·cos θ·cos φ in m/s²; used by a_z only."""
+    arm: float
+    """x_a in m."""
+
+
+@numba.njit(cache=True)
+def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g: FloatArray) -> bool:
+    """Solve the model and write outputs and sensitivities.
+
+    Parameters
+    ----------
+    shared : (6,), order of ``SHARED``.
+    local : (m, 7), order of ``LOCAL``.
+    y : (N,) receives the outputs.
+    g : (N, 13) receives their derivatives by the parameters of the row's manoeuvre; with
+        shape (0, 13) only the outputs are computed.
+
+    Returns
+    -------
+    False when the parameters make the model overflow; ``y`` and ``g`` are then useless.
+    """
+    wanted = g.shape[0] > 0
+    kinds = len(grid.step_s)
+    table = np.empty((kinds, WIDTH))
+    parts = np.empty(kinds, np.int64)
+    z_alpha, z_q, z_delta = shared[0], shared[1], shared[2]
+    m_alpha, m_q, m_delta = shared[3], shared[4], shared[5]
+    for i in range(kinds):
+        s = grid.ratio[i]
+        a11, a12, a21, a22 = s * z_alpha, 1.0 + z_q, s * s * m_alpha, s * m_q
+        parts[i] = divisions(a11, a12, a21, a22, grid.step_s[i])
+        if parts[i] == 0:
+            return False
+        fill(table[i], a11, a12, a21, a22, grid.step_s[i] / parts[i])
+
+    state = np.empty((3, N_PARAMETERS))
+    for m in range(len(grid.first) - 1):
+        begin, end = grid.first[m], grid.first[m + 1]
+        z_0, m_0 = local[m, 0], local[m, 1]
+        alpha, q, theta = local[m, 2], local[m, 3], local[m, 4]
+        state[:] = 0.0
+        state[0, 8] = state[1, 9] = state[2, 10] = 1.0
+        for e in range(begin, end):
+            _read(grid, e, shared, local[m], alpha, q, theta, state, y, g, wanted)
+            if e + 1 == end:
+                break
+            i = grid.kind[e]
+            s = grid.ratio[i]
+            h = grid.step_s[i] / parts[i]
+            for part in range(parts[i]):
+                delta = grid.start[e] + part * h * grid.slope[e]
+                u1 = s * (z_0 + z_delta * delta) + grid.known[e]
+                u2 = s * s * (m_0 + m_delta * delta)
+                v1, v2 = s * z_delta * grid.slope[e], s * s * m_delta * grid.slope[e]
+                if wanted:
+                    _carry(table[i], s, shared, alpha, q, u1, u2, v1, v2, delta, grid.slope[e], state)
+                t = table[i]
+                theta += t[15] * alpha + t[16] * q + t[28] * u1 + t[29] * u2 + t[41] * v1 + t[42] * v2
+                alpha, q = (
+                    t[0] * alpha + t[1] * q + t[13] * u1 + t[14] * u2 + t[26] * v1 + t[27] * v2,
+                    t[2] * alpha + t[3] * q + t[15] * u1 + t[16] * u2 + t[28] * v1 + t[29] * v2,
+                )
+        if not abs(alpha) + abs(q) < 1e12:
+            return False
+    return True
+
+
+@numba.njit(cache=True)
+def _carry(
+    t: FloatArray,
+    s: float,
+    shared: FloatArray,
+    alpha: float,
+    q: float,
+    u1: float,
+    u2: float,
+    v1: float,
+    v2: float,
+    delta: float,
+    slope: float,
+    state: FloatArray,
+) -> None:
+    """Carry the sensitivities ``state`` (3, 13) of α, q, θ over one step that starts at (α, q)."""
+    a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
+    for j in range(N_PARAMETERS):
+        f, k = state[0, j], state[1, j]
+        state[2, j] += t[15] * f + t[16] * k
+        state[0, j] = t[0] * f + t[1] * k
+        state[1, j] = t[2] * f + t[3] * k
+    # by the trace (p), by the determinant (d), by A itself (w); for α, q and then for θ
+    p1 = t[4] * alpha + t[5] * q + t[17] * u1 + t[18] * u2 + t[30] * v1 + t[31] * v2
+    p2 = t[6] * alpha + t[7] * q + t[19] * u1 + t[20] * u2 + t[32] * v1 + t[33] * v2
+    p3 = t[19] * alpha + t[20] * q + t[32] * u1 + t[33] * u2 + t[45] * v1 + t[46] * v2
+    d1 = t[8] * alpha + t[9] * q + t[21] * u1 + t[22] * u2 + t[34] * v1 + t[35] * v2
+    d2 = t[10] * alpha + t[11] * q + t[23] * u1 + t[24] * u2 + t[36] * v1 + t[37] * v2
+    d3 = t[23] * alpha + t[24] * q + t[36] * u1 + t[37] * u2 + t[49] * v1 + t[50] * v2
+    w1 = t[12] * alpha + t[25] * u1 + t[38] * v1
+    w2 = t[12] * q + t[25] * u2 + t[38] * v2
+    w1_theta = t[25] * alpha + t[38] * u1 + t[51] * v1
+    w2_theta = t[25] * q + t[38] * u2 + t[51] * v2
+    state[0, 0] += s * (p1 + a22 * d1 + w1)
+    state[1, 0] += s * (p2 + a22 * d2)
+    state[2, 0] += s * (p3 + a22 * d3)
+    state[0, 1] += -a21 * d1 + w2
+    state[1, 1] += -a21 * d2
+    state[2, 1] += -a21 * d3
+    state[0, 3] += s * s * (-a12 * d1)
+    state[1, 3] += s * s * (-a12 * d2 + w1)
+    state[2, 3] += s * s * (-a12 * d3 + w1_theta)
+    state[0, 4] += s * (p1 + a11 * d1)
+    state[1, 4] += s * (p2 + a11 * d2 + w2)
+    state[2, 4] += s * (p3 + a11 * d3 + w2_theta)
+    # by Z_δe and M_δe, by Z_0 and M_0
+    state[0, 2] += s * (t[13] * delta + t[26] * slope)
+    state[1, 2] += s * (t[15] * delta + t[28] * slope)
+    state[2, 2] += s * (t[28] * delta + t[41] * slope)
+    state[0, 5] += s * s * (t[14] * delta + t[27] * slope)
+    state[1, 5] += s * s * (t[16] * delta + t[29] * slope)
+    state[2, 5] += s * s * (t[29] * delta + t[42] * slope)
+    state[0, 6] += s * t[13]
+    state[1, 6] += s * t[15]
+    state[2, 6] += s * t[28]
+    state[0, 7] += s * s * t[14]
+    state[1, 7] += s * s * t[16]
+    state[2, 7] += s * s * t[29]
+
+
+@numba.njit(cache=True)
+def _read(
+    grid: Grid,
+    e: int,
+    shared: FloatArray,
+    local: FloatArray,
+    alpha: float,
+    q: float,
+    theta: float,
+    state: FloatArray,
+    y: FloatArray,
+    g: FloatArray,
+    wanted: bool,
+) -> None:
+    """Write the outputs that are measured at event ``e``."""
+    row = grid.row[0, e]
+    if row >= 0:
+        y[row] = alpha + grid.vane[e] * q
+        if wanted:
+            for j in range(N_PARAMETERS):
+                g[row, j] = state[0, j] + grid.vane[e] * state[1, j]
+    row = grid.row[1, e]
+    if row >= 0:
+        y[row] = q + local[5]
+        if wanted:
+            g[row] = state[1]
+            g[row, 11] += 1.0
+    row = grid.row[3, e]
+    if row >= 0:
+        y[row] = theta
+        if wanted:
+            g[row] = state[2]
+    row = grid.row[2, e]
+    if row >= 0:
+        _specific_force(grid, e, row, shared, local, alpha, q, state, y, g, wanted)
+
+
+@numba.njit(cache=True)
+def _specific_force(
+    grid: Grid,
+    e: int,
+    row: int,
+    shared: FloatArray,
+    local: FloatArray,
+    alpha: float,
+    q: float,
+    state: FloatArray,
+    y: FloatArray,
+    g: FloatArray,
+    wanted: bool,
+) -> None:
+    """Write a_z at event ``e`` from α̇ and q̇ of the model."""
+    s = grid.ratio[grid.kind[e]]
+    delta = grid.elevator[e]
+    a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
+    alpha_dot = a11 * alpha + a12 * q + s * (shared[2] * delta + local[0]) + grid.known[e]
+    q_dot = a21 * alpha + a22 * q + s * s * (shared[5] * delta + local[1])
+    cosine, sine = np.cos(alpha), np.sin(alpha)
+    speed, arm = grid.airspeed[e], grid.arm
+    y[row] = (
+        speed * cosine * (alpha_dot - q)
+        + grid.acceleration[e] * sine
+        - grid.gravity[e]
+        - arm * q_dot
+        + local[6]
+    )
+    if not wanted:
+        return
+    lift = speed * cosine
+    by_alpha = lift * a11 - speed * sine * (alpha_dot - q) + grid.acceleration[e] * cosine - arm * a21
+    by_q = lift * (a12 - 1.0) - arm * a22
+    for j in range(N_PARAMETERS):
+        g[row, j] = by_alpha * state[0, j] + by_q * state[1, j]
+    g[row, 0] += lift * s * alpha
+    g[row, 1] += lift * q
+    g[row, 2] += lift * s * delta
+    g[row, 3] -= arm * s * s * alpha
+    g[row, 4] -= arm * s * q
+    g[row, 5] -= arm * s * s * delta
+    g[row, 6] += lift * s
+    g[row, 7] -= arm * s * s
+    g[row, 12] += 1.0

@@ -1,0 +1,91 @@
+"""The short-period model of Eqs. (1)-(3): its matrices, frequency and damping.
+
+    α̇ = Z_0 + Z_α·α + (1 + Z_q)·q + Z_δe·δe          (1)
+    q̇ = M_0 + M_α·α + M_q·q + M_δe·δe                (2)
+
+States are angle of attack α and pitch rate q, the input is the elevator deflection δe
+(positive trailing edge down). Everything is in rad and s.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.flight.messages import FloatArray
+
+SPEED_EXPONENTS: Mapping[str, int] = {
+    "Z_0": 1,
+    "Z_alpha": 1,
+    "Z_q": 0,
+    "Z_delta_e": 1,
+    "M_0": 2,
+    "M_alpha": 2,
+    "M_q": 1,
+    "M_delta_e": 2,
+}
+"""Power of the air speed each parameter grows with at constant density.
+
+Z = -ρVS·C_L/(2m) and M = ρV²Sc·C_m/(2I_yy); a rate derivative carries another c/(2V).
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class ShortPeriod:
+    """The eight parameters of Eq. (3) as matrices of ẋ = A·x + B·δe + c."""
+
+    theta: FloatArray
+    """Shape (8,), order of ``PARAMETERS``."""
+
+    @classmethod
+    def from_mapping(cls, values: Mapping[str, float]) -> "ShortPeriod":
+        """Collect the parameters by name; a missing one is zero."""
+        return cls(np.array([float(values.get(name, 0.0)) for name in PARAMETERS]))
+
+    @property
+    def a(self) -> FloatArray:
+        """Shape (2, 2). State matrix A."""
+        t = self.theta
+        return np.array([[t[1], 1.0 + t[2]], [t[5], t[6]]])
+
+    @property
+    def b(self) -> FloatArray:
+        """Shape (2,). Input matrix B."""
+        return self.theta[[3, 7]]
+
+    @property
+    def c(self) -> FloatArray:
+        """Shape (2,). Constants Z_0 and M_0."""
+        return self.theta[[0, 4]]
+
+    @property
+    def natural_frequency(self) -> float:
+        """Undamped natural frequency √det A in rad/s; NaN when statically unstable (det A < 0)."""
+        stiffness = float(np.linalg.det(self.a))
+        return math.sqrt(stiffness) if stiffness >= 0.0 else math.nan
+
+    @property
+    def damping(self) -> float:
+        """Damping ratio -tr A / (2·√det A); NaN when statically unstable."""
+        frequency = self.natural_frequency
+        return -float(np.trace(self.a)) / (2.0 * frequency) if frequency > 0.0 else math.nan
+
+    @property
+    def eigenvalues(self) -> tuple[complex, complex]:
+        """Both eigenvalues of A in 1/s."""
+        first, second = np.linalg.eigvals(self.a)
+        return complex(first), complex(second)
+
+    def at_speed(self, ratio: float) -> "ShortPeriod":
+        """The model at ``ratio`` times its air speed, by ``SPEED_EXPONENTS`` (Z_0 taken as aerodynamic)."""
+        exponents = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS])
+        return ShortPeriod(self.theta * ratio**exponents)
+
+    def trim(self) -> tuple[FloatArray, float]:
+        """Equilibrium state (2,) with q = 0 and its elevator; the least-norm one when it is not unique."""
+        t = self.theta
+        system = np.array([[t[1], t[3]], [t[5], t[7]]])
+        alpha, elevator = np.linalg.lstsq(system, -self.c, rcond=None)[0]
+        return np.array([alpha, 0.0]), float(elevator)

@@ -1,0 +1,239 @@
+"""Minimising J = det R, Eq. (7), by Gauss-Newton with R re-estimated at every step.
+
+With R = diag(σ_c²) at its own maximum-likelihood value, minimising Σ n_c·log σ_c² is minimising
+det R; its gradient is that of the weighted sum of squares at the present R, hence Gauss-Newton
+with weights 1/σ_c² (Maine & Iliff, *Formulation and implementation of a practical algorithm
+for parameter estimation with process and measurement noise*, 1981). Levenberg's damping enters
+only when a step is rejected.
+
+The normal equations have the shape of an arrow: six derivatives shared by all manoeuvres, the
+rest each manoeuvre's own. The own ones are eliminated manoeuvre by manoeuvre, so the work grows
+linearly with their number.
+"""
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.model.response import N_LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, Index, respond
+
+FLAT = 1e-13
+"""Converged when a step promises less than this change of log J a sample."""
+MOST_ITERATIONS = 60
+LEAST_NOISE = 1e-10
+"""Floor of σ relative to the spread of the channel: data without noise have no other."""
+
+CONVERGED, EXHAUSTED, OVERFLOW, SINGULAR = 0, 1, 2, 3
+
+
+class Optimum(NamedTuple):
+    """Where the search ended."""
+
+    status: int
+    """``CONVERGED``, ``EXHAUSTED`` (no step lowers the cost, or too many), ``OVERFLOW``, ``SINGULAR``."""
+    shared: FloatArray
+    """(6,), order of ``SHARED``."""
+    local: FloatArray
+    """(m, 7), order of ``LOCAL``."""
+    noise: FloatArray
+    """(4,) σ of each output, order of ``OUTPUTS``; 0 when not measured."""
+    log_likelihood_cost: float
+    """Σ n_c·log σ_c²."""
+    iterations: int
+
+
+@numba.njit(cache=True)
+def weigh(z: FloatArray, y: FloatArray, channel: Index, floor: FloatArray) -> tuple[FloatArray, float]:
+    """σ of each output from its residuals, Eq. (8), and the cost Σ n_c·log σ_c²."""
+    power = np.zeros(len(OUTPUTS))
+    count = np.zeros(len(OUTPUTS))
+    for i in range(len(z)):
+        power[channel[i]] += (z[i] - y[i]) ** 2
+        count[channel[i]] += 1.0
+    noise = np.zeros(len(OUTPUTS))
+    cost = 0.0
+    for c in range(len(OUTPUTS)):
+        if count[c] > 0.0:
+            noise[c] = max(np.sqrt(power[c] / count[c]), floor[c])
+            cost += 2.0 * count[c] * np.log(noise[c])
+    return noise, cost
+
+
+@numba.njit(cache=True)
+def normal_equations(
+    grid: Grid,
+    z: FloatArray,
+    y: FloatArray,
+    g: FloatArray,
+    channel: Index,
+    owner: Index,
+    noise: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Information matrix (m, 13, 13) and gradient (m, 13) of each manoeuvre, lower triangles."""
+    m = len(grid.first) - 1
+    information = np.zeros((m, N_PARAMETERS, N_PARAMETERS))
+    gradient = np.zeros((m, N_PARAMETERS))
+    for i in range(len(z)):
+        weight = 1.0 / noise[channel[i]] ** 2
+        residual = z[i] - y[i]
+        h, d = information[owner[i]], gradient[owner[i]]
+        for j in range(N_PARAMETERS):
+            scaled = weight * g[i, j]
+            if scaled != 0.0:
+                d[j] += scaled * residual
+                for k in range(j + 1):
+                    h[j, k] += scaled * g[i, k]
+    return information, gradient
+
+
+@numba.njit(cache=True)
+def _cholesky(a: FloatArray) -> bool:
+    """Lower factor in place; False when ``a`` is not positive definite to working precision."""
+    n = a.shape[0]
+    for j in range(n):
+        pivot = a[j, j]
+        least = 1e-14 * pivot
+        for k in range(j):
+            pivot -= a[j, k] ** 2
+        if not pivot > least:
+            return False
+        a[j, j] = np.sqrt(pivot)
+        for i in range(j + 1, n):
+            total = a[i, j]
+            for k in range(j):
+                total -= a[i, k] * a[j, k]
+            a[i, j] = total / a[j, j]
+    return True
+
+
+@numba.njit(cache=True)
+def _solve_lower(a: FloatArray, b: FloatArray) -> None:
+    """b ← L⁻¹·b for the columns of ``b`` (n, k)."""
+    for i in range(a.shape[0]):
+        for c in range(b.shape[1]):
+            for k in range(i):
+                b[i, c] -= a[i, k] * b[k, c]
+            b[i, c] /= a[i, i]
+
+
+@numba.njit(cache=True)
+def _solve_upper(a: FloatArray, b: FloatArray) -> None:
+    """b ← L⁻ᵀ·b for the columns of ``b`` (n, k)."""
+    for i in range(a.shape[0] - 1, -1, -1):
+        for c in range(b.shape[1]):
+            for k in range(i + 1, a.shape[0]):
+                b[i, c] -= a[k, i] * b[k, c]
+            b[i, c] /= a[i, i]
+
+
+@numba.njit(cache=True)
+def arrow_step(
+    information: FloatArray, gradient: FloatArray, free: Index, damping: float
+) -> tuple[bool, FloatArray, FloatArray, float]:
+    """Solve the damped normal equations.
+
+    Returns
+    -------
+    False when singular; the step of the shared (6,) and of the local parameters (m, 7); and
+    the promised decrease gradientᵀ·step of the weighted sum of squares.
+    """
+    maneuvers = len(information)
+    own = free[N_SHARED:]
+    n = len(own)
+    shared_step, local_step = np.zeros(N_SHARED), np.zeros((maneuvers, N_LOCAL))
+    top = np.zeros((N_SHARED, N_SHARED))
+    right = np.zeros((N_SHARED, 1))
+    factors = np.zeros((maneuvers, n, n))
+    carried = np.zeros((maneuvers, n, N_SHARED + 1))
+    for m in range(maneuvers):
+        for j in range(N_SHARED):
+            right[j, 0] += gradient[m, j]
+            for k in range(j + 1):
+                top[j, k] += information[m, j, k]
+            top[j, j] += damping * information[m, j, j]
+        for j in range(n):
+            for k in range(j + 1):
+                factors[m, j, k] = information[m, own[j], own[k]]
+            factors[m, j, j] *= 1.0 + damping
+            for k in range(N_SHARED):
+                carried[m, j, k] = information[m, own[j], k]
+            carried[m, j, N_SHARED] = gradient[m, own[j]]
+        if not _cholesky(factors[m]):
+            return False, shared_step, local_step, 0.0
+        _solve_lower(factors[m], carried[m])
+        for j in range(N_SHARED):
+            for i in range(n):
+                right[j, 0] -= carried[m, i, j] * carried[m, i, N_SHARED]
+                for k in range(j + 1):
+                    top[j, k] -= carried[m, i, j] * carried[m, i, k]
+    if not _cholesky(top):
+        return False, shared_step, local_step, 0.0
+    _solve_lower(top, right)
+    promise = 0.0
+    for j in range(N_SHARED):
+        promise += right[j, 0] ** 2
+    _solve_upper(top, right)
+    shared_step[:] = right[:, 0]
+    for m in range(maneuvers):
+        rest = np.empty((n, 1))
+        for i in range(n):
+            promise += carried[m, i, N_SHARED] ** 2
+            rest[i, 0] = carried[m, i, N_SHARED]
+            for j in range(N_SHARED):
+                rest[i, 0] -= carried[m, i, j] * shared_step[j]
+        _solve_upper(factors[m], rest)
+        for i in range(n):
+            local_step[m, own[i] - N_SHARED] = rest[i, 0]
+    return True, shared_step, local_step, promise
+
+
+@numba.njit(cache=True)
+def descend(
+    grid: Grid,
+    z: FloatArray,
+    channel: Index,
+    owner: Index,
+    free: Index,
+    floor: FloatArray,
+    shared: FloatArray,
+    local: FloatArray,
+) -> Optimum:
+    """Minimise Σ n_c·log σ_c² from a start. Shapes as in ``Assembly``; ``floor`` (4,) of σ."""
+    shared, local = shared.copy(), local.copy()
+    y, g = np.empty(len(z)), np.empty((len(z), N_PARAMETERS))
+    y_trial, g_trial = np.empty(len(z)), np.empty((len(z), N_PARAMETERS))
+    if not respond(grid, shared, local, y, g):
+        return Optimum(OVERFLOW, shared, local, np.zeros(len(OUTPUTS)), np.inf, 0)
+    noise, cost = weigh(z, y, channel, floor)
+    damping = 0.0
+    status = EXHAUSTED
+    iteration = 0
+    while iteration < MOST_ITERATIONS:
+        iteration += 1
+        information, gradient = normal_equations(grid, z, y, g, channel, owner, noise)
+        accepted = False
+        for _ in range(16):
+            fine, shared_step, local_step, promise = arrow_step(information, gradient, free, damping)
+            if fine:
+                trial, trial_local = shared + shared_step, local + local_step
+                if respond(grid, trial, trial_local, y_trial, g_trial):
+                    trial_noise, trial_cost = weigh(z, y_trial, channel, floor)
+                    if trial_cost <= cost:
+                        accepted = True
+                        break
+                if promise < FLAT * len(z):
+                    return Optimum(CONVERGED, shared, local, noise, cost, iteration)
+            damping = max(1e-4, 8.0 * damping)
+        if not accepted:
+            status = EXHAUSTED if fine else SINGULAR
+            break
+        shared, local, noise, cost = trial, trial_local, trial_noise, trial_cost
+        y, y_trial = y_trial, y
+        g, g_trial = g_trial, g
+        if promise < FLAT * len(z) and damping < 1e-2:
+            status = CONVERGED
+            break
+        damping = 0.0 if damping < 1e-3 else damping / 8.0
+    return Optimum(status, shared, local, noise, cost, iteration)

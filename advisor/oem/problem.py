@@ -1,0 +1,232 @@
+"""What is estimated from: the data of one or more manoeuvres, each channel at its own stamps."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, Grid, Index
+from advisor.oem.surface import Servo
+
+GRAVITY = 9.80665
+STAMP_S = 1e-9
+"""Stamps closer than this are one event."""
+STAMP_DIGITS = 12
+"""Decimals to which the lengths of steps are told apart: equal steps share their matrices."""
+
+
+class Signal(NamedTuple):
+    """A quantity over time, linear between its samples."""
+
+    t: FloatArray
+    y: FloatArray
+
+    def at(self, t: FloatArray) -> FloatArray:
+        """Values at ``t``; the first and last value beyond the ends."""
+        return np.interp(t, self.t, self.y)
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """One manoeuvre as the estimator sees it. SI throughout."""
+
+    elevator: Signal
+    """The command in rad, linear between its stamps; it passes through the servo of the problem."""
+    outputs: Mapping[str, Signal]
+    """Measured outputs, keys out of ``OUTPUTS``; at least alpha and q. NaN samples are no samples."""
+    airspeed: Signal | None = None
+    """V in m/s; None: taken as constant, as Eqs. (1)-(2) do."""
+    path: Signal | None = None
+    """Flight path angle γ in rad, for gravity's part in α̇; None: constant."""
+    gravity_z: Signal | None = None
+    """g·cos θ·cos φ in m/s², needed by a_z; None: 9.81."""
+    held: bool = False
+    """The input is held between its stamps instead of linear."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Records that share the six derivatives, and how they were measured."""
+
+    records: tuple[Record, ...]
+    reference_airspeed_m_s: float | None = None
+    """Speed the derivatives are referred to; None: no scaling with speed."""
+    servo: Servo = field(default_factory=Servo)
+    vane_arm_m: float = 0.0
+    accelerometer_arm_m: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Assembly:
+    """A problem laid out for the kernel."""
+
+    grid: Grid
+    z: FloatArray
+    """(N,) the measurements; manoeuvre by manoeuvre, within one output by output."""
+    t: FloatArray
+    """(N,) their stamps."""
+    rows: tuple[Mapping[str, slice], ...]
+    """For each manoeuvre, output name to its rows."""
+    channel: Index
+    """(N,) index into ``OUTPUTS``."""
+    owner: Index
+    """(N,) the manoeuvre."""
+    free: Index
+    """The parameters of 13 that are estimated, increasing."""
+
+    @property
+    def maneuvers(self) -> int:
+        """Number of manoeuvres."""
+        return len(self.rows)
+
+
+def assemble(problem: Problem) -> Assembly:
+    """Lay the records on the union of their stamps.
+
+    Raises
+    ------
+    ValueError
+        If a record lacks alpha, q or the input, or has fewer than two stamps of one.
+    """
+    pieces = [_Piece.of(record, problem) for record in problem.records]
+    measured = {name for piece in pieces for name in piece.outputs}
+    first = np.concatenate([[0], np.cumsum([len(piece.t) for piece in pieces])])
+    row = np.full((len(OUTPUTS), first[-1]), -1, np.int64)
+    rows: list[dict[str, slice]] = []
+    n = 0
+    for m, piece in enumerate(pieces):
+        rows.append({})
+        for name, signal in piece.outputs.items():
+            rows[m][name] = slice(n, n + len(signal.t))
+            at = first[m] + np.searchsorted(piece.t, signal.t - STAMP_S)
+            row[OUTPUTS.index(name), at] = np.arange(n, n + len(signal.t))
+            n += len(signal.t)
+    steps = np.concatenate([piece.steps for piece in pieces])
+    kinds, kind = np.unique(steps, axis=0, return_inverse=True)
+
+    def joined(name: str) -> FloatArray:
+        return np.concatenate([getattr(piece, name) for piece in pieces])
+
+    speed = joined("airspeed")
+    grid = Grid(
+        first=first.astype(np.int64),
+        kind=kind.ravel().astype(np.int64),
+        step_s=np.ascontiguousarray(kinds[:, 0]),
+        ratio=np.ascontiguousarray(kinds[:, 1]),
+        elevator=joined("elevator"),
+        start=joined("start"),
+        slope=joined("slope"),
+        known=joined("known"),
+        row=row,
+        vane=-problem.vane_arm_m / speed if problem.vane_arm_m else np.zeros(len(speed)),
+        airspeed=speed,
+        acceleration=joined("acceleration"),
+        gravity=joined("gravity"),
+        arm=problem.accelerometer_arm_m,
+    )
+    signals = [(m, name, signal) for m, p in enumerate(pieces) for name, signal in p.outputs.items()]
+    sizes = [len(signal.t) for _, _, signal in signals]
+    return Assembly(
+        grid=grid,
+        z=np.concatenate([signal.y for _, _, signal in signals]),
+        t=np.concatenate([signal.t for _, _, signal in signals]),
+        rows=tuple(rows),
+        channel=np.repeat([OUTPUTS.index(name) for _, name, _ in signals], sizes),
+        owner=np.repeat([m for m, _, _ in signals], sizes),
+        free=_free(measured),
+    )
+
+
+def _free(measured: set[str]) -> Index:
+    """Which of the 13 parameters the measured outputs give a meaning to."""
+    local = ["Z_0", "M_0", "alpha_initial", "q_initial"]
+    if "theta" in measured:
+        local += ["theta_initial", "q_bias"]
+    if "a_z" in measured:
+        local += ["a_z_bias"]
+    return np.array([*range(N_SHARED), *(N_SHARED + LOCAL.index(name) for name in local)])
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """One record on the union of its stamps."""
+
+    t: FloatArray
+    outputs: Mapping[str, Signal]
+    steps: FloatArray
+    """(E, 2) length of the step and air speed ratio."""
+    elevator: FloatArray
+    start: FloatArray
+    slope: FloatArray
+    known: FloatArray
+    airspeed: FloatArray
+    acceleration: FloatArray
+    gravity: FloatArray
+
+    @classmethod
+    def of(cls, record: Record, problem: Problem) -> "_Piece":
+        outputs = {name: _finite(record.outputs[name]) for name in OUTPUTS if name in record.outputs}
+        for name in ("alpha", "q"):
+            if name not in outputs or len(outputs[name].t) < 2:
+                raise ValueError(f"a record needs at least two samples of {name}")
+        if len(record.elevator.t) < 2:
+            raise ValueError("a record needs at least two samples of the elevator")
+        stamps = [signal.t for signal in outputs.values()]
+        begin, end = min(t[0] for t in stamps), max(t[-1] for t in stamps)
+        breaks, pace = problem.servo.grid(record.elevator.t)
+        inside = breaks[(breaks > begin) & (breaks < end)]
+        t = _merged(np.concatenate([*stamps, inside]), pace)
+        step = np.diff(t)
+        middle = t[:-1] + step / 2.0
+        at_event, start, arrival = problem.servo.move(record.elevator.t, record.elevator.y, t, record.held)
+        slope = (arrival - start[:-1]) / step
+        ratio, airspeed, acceleration = np.ones(len(step)), np.ones(len(t)), np.zeros(len(t))
+        if record.airspeed is not None:
+            airspeed = record.airspeed.at(t)
+            acceleration = np.gradient(airspeed, t)
+            if problem.reference_airspeed_m_s is not None:
+                ratio = record.airspeed.at(middle) / problem.reference_airspeed_m_s
+        known = np.zeros(len(step))
+        if record.airspeed is not None and problem.reference_airspeed_m_s is not None:
+            known = GRAVITY / record.airspeed.at(middle) - ratio * GRAVITY / problem.reference_airspeed_m_s
+        if record.airspeed is not None and record.path is not None:
+            known += GRAVITY / record.airspeed.at(middle) * (np.cos(record.path.at(middle)) - 1.0)
+        gravity = np.full(len(t), GRAVITY) if record.gravity_z is None else record.gravity_z.at(t)
+        return cls(
+            t=t,
+            outputs=outputs,
+            steps=_padded(np.column_stack([np.round(step, STAMP_DIGITS), ratio])),
+            elevator=at_event,
+            start=start,
+            slope=_padded(slope),
+            known=_padded(known),
+            airspeed=airspeed,
+            acceleration=acceleration,
+            gravity=gravity,
+        )
+
+
+def _finite(signal: Signal) -> Signal:
+    keep = np.isfinite(signal.y) & np.isfinite(signal.t)
+    return Signal(np.ascontiguousarray(signal.t[keep], float), np.ascontiguousarray(signal.y[keep], float))
+
+
+def _merged(stamps: FloatArray, pace: float) -> FloatArray:
+    """Distinct stamps in order, with more between where they lie further apart than ``pace``."""
+    t = np.sort(stamps)
+    t = t[np.concatenate([[True], np.diff(t) > STAMP_S])]
+    if not np.isfinite(pace):
+        return t
+    parts = np.maximum(1, np.ceil(np.diff(t) / pace - 1e-6)).astype(int)
+    cells = np.repeat(np.arange(len(parts)), parts)
+    within = np.arange(len(cells)) - np.repeat(np.cumsum(parts) - parts, parts)
+    merged: FloatArray = np.append(t[cells] + within * (np.diff(t) / parts)[cells], t[-1])
+    return merged
+
+
+def _padded(rows: FloatArray) -> FloatArray:
+    """Repeat the last row, so that steps are as many as events."""
+    padded: FloatArray = np.concatenate([rows, rows[-1:]])
+    return padded

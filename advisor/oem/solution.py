@@ -1,0 +1,121 @@
+"""Solving a problem: start, descent, errors, what is identifiable."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
+from advisor.oem.covariance import REPORTED, Influence, coloured, cramer_rao, influence
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.gauss_newton import CONVERGED, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend, weigh
+from advisor.oem.problem import Assembly, Problem, assemble
+from advisor.oem.simplex import descend_by_simplex
+from advisor.oem.start import start
+
+Method = Literal["gauss-newton", "nelder-mead"]
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """The optimum of one problem, with everything computed from it."""
+
+    problem: Problem
+    assembly: Assembly
+    optimum: Optimum
+    fitted: FloatArray
+    """(N,) model outputs, rows as in ``assembly``."""
+    sensitivities: FloatArray
+    """(N, 13)."""
+    influence: Influence
+    theta: FloatArray
+    """(8,) order of ``PARAMETERS``; Z_0 and M_0 are means over the manoeuvres."""
+    covariance_cr: FloatArray
+    """(8, 8) Cramér-Rao bound."""
+    covariance: FloatArray
+    """(8, 8) corrected for coloured residuals."""
+
+    @property
+    def residual(self) -> FloatArray:
+        """(N,) ν̂ = z - ŷ, Eq. (9)."""
+        return self.assembly.z - self.fitted
+
+    @property
+    def cost(self) -> float:
+        """J = σ_α²·σ_q², Eq. (7)."""
+        return float(np.prod(self.optimum.noise[:2] ** 2))
+
+
+def solve(
+    problem: Problem,
+    *,
+    method: Method = "gauss-newton",
+    begin: tuple[FloatArray, FloatArray] | None = None,
+) -> Solution | NoEstimate:
+    """Estimate the parameters of a problem.
+
+    Parameters
+    ----------
+    begin : shared (6,) and local (m, 7) parameters to start from, e.g. of an earlier, shorter
+        solution; by default the regression of ``start``.
+    """
+    assembly = assemble(problem)
+    floor = noise_floor(assembly)
+    shared, local = start(problem) if begin is None else begin
+    search = descend if method == "gauss-newton" else descend_by_simplex
+    optimum = search(
+        assembly.grid, assembly.z, assembly.channel, assembly.owner, assembly.free, floor, shared, local
+    )
+    if optimum.status == OVERFLOW:
+        return NoEstimate(
+            "diverged", "The model runs away from its first guess: the record is too long or too noisy."
+        )
+    if optimum.status == SINGULAR:
+        return NoEstimate(
+            "singular", "The input does not excite the motion enough to tell the parameters apart."
+        )
+    if optimum.status != CONVERGED and optimum.iterations <= 1:
+        return NoEstimate(
+            "not_converged", "The search for the best fit found no way down from its first guess."
+        )
+    return evaluate(problem, assembly, optimum)
+
+
+def evaluate(problem: Problem, assembly: Assembly, optimum: Optimum) -> Solution | NoEstimate:
+    """Errors of an optimum."""
+    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
+    respond(assembly.grid, optimum.shared, optimum.local, y, g)
+    effect = influence(assembly, g, optimum.noise)
+    if effect is None:
+        return NoEstimate(
+            "singular", "The input does not excite the motion enough to tell the parameters apart."
+        )
+    return Solution(
+        problem=problem,
+        assembly=assembly,
+        optimum=optimum,
+        fitted=y,
+        sensitivities=g,
+        influence=effect,
+        theta=reported(optimum.shared, optimum.local),
+        covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise),
+        covariance=coloured(assembly, effect.rows, assembly.z - y),
+    )
+
+
+def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
+    """The eight parameters, order of ``PARAMETERS``, from the solver's."""
+    mean = local.mean(axis=0)
+    return np.array([shared[i] if is_shared else mean[i] for is_shared, i in REPORTED])
+
+
+def noise_floor(assembly: Assembly) -> FloatArray:
+    """(4,) smallest σ believed of each output, for data without noise."""
+    floor = np.zeros(len(OUTPUTS))
+    for c in np.unique(assembly.channel):
+        floor[c] = max(LEAST_NOISE * float(np.std(assembly.z[assembly.channel == c])), 1e-300)
+    return floor
+
+
+__all__ = ["Method", "Solution", "evaluate", "noise_floor", "reported", "solve", "weigh"]

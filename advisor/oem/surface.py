@@ -1,0 +1,73 @@
+"""From elevator command to surface: a servo's delay and first-order lag, exact for what the command is.
+
+    τ·δ̇ = u(t - T) - δ
+
+A command that is linear between its stamps drives the lag to
+δ(t + h) = u₁ - τ·u̇ + (δ(t) - u₀ + τ·u̇)·exp(-h/τ), so the surface is known without error at
+every stamp of the grid; between two stamps it is taken as linear, and the grid is refined to a
+tenth of the lag so that this costs less than 0.2 % of a step's height.
+"""
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+PARTS_PER_LAG = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Servo:
+    """What lies between the command and the surface; the default is nothing."""
+
+    lag_s: float = 0.0
+    delay_s: float = 0.0
+
+    def grid(self, command_t: FloatArray) -> tuple[FloatArray, float]:
+        """Where the surface's motion has corners, and the longest step that still follows it."""
+        return command_t + self.delay_s, self.lag_s / PARTS_PER_LAG if self.lag_s > 0.0 else np.inf
+
+    def move(
+        self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool = False
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Surface position at the grid ``t`` (E,), which must hold the command's corners.
+
+        Returns
+        -------
+        at the stamps (E,), just after the stamps (E,), and just before the next stamp (E - 1,);
+        these differ only where a held command jumps.
+        """
+        stamps = command_t + self.delay_s
+        if held:
+            before = command[np.clip(np.searchsorted(stamps, t - 1e-9) - 1, 0, len(command) - 1)]
+            after = command[np.clip(np.searchsorted(stamps, t + 1e-9) - 1, 0, len(command) - 1)]
+        else:
+            before = after = np.interp(t, stamps, command)
+        if self.lag_s <= 0.0:
+            return after, after, before[1:]
+        # The servo is at rest at the first command known; run it from there.
+        early = stamps[stamps < t[0] - 1e-9]
+        run = np.concatenate([early, t])
+        if held:
+            start = np.concatenate([command[: len(early)], after])
+            arrival = np.concatenate([command[: len(early)], before])[1:]
+        else:
+            start = np.concatenate([command[: len(early)], after])
+            arrival = start[1:]
+        surface = _lagged(np.diff(run), start[:-1], arrival, self.lag_s, start[0])[len(early) :]
+        return surface, surface, surface[1:]
+
+
+@numba.njit(cache=True)
+def _lagged(
+    step: FloatArray, start: FloatArray, arrival: FloatArray, lag: float, initial: float
+) -> FloatArray:
+    """First-order lag of a command that goes linearly from ``start`` to ``arrival`` in each ``step``."""
+    surface = np.empty(len(step) + 1)
+    surface[0] = initial
+    for i in range(len(step)):
+        trailing = lag * (arrival[i] - start[i]) / step[i]
+        surface[i + 1] = arrival[i] - trailing + (surface[i] - start[i] + trailing) * np.exp(-step[i] / lag)
+    return surface
