@@ -5,10 +5,14 @@ from typing import NamedTuple
 
 from fastcrc.crc16 import mcrf4xx
 
+from advisor.mavlink.checksum import TABLE
+
 MAGIC_V1 = 0xFE
 MAGIC_V2 = 0xFD
 SIGNED = 0x01
 SIGNATURE_LENGTH = 13
+
+_SEED_REMAINDERS = frozenset(TABLE.tolist())
 
 
 class Frame(NamedTuple):
@@ -33,8 +37,9 @@ class FrameCutter:
 
     A frame of a known message must pass its checksum (CRC-16/MCRF4XX over everything
     after the magic byte and the definition's CRC_EXTRA, as the MAVLink serialisation
-    guide defines it). A frame of an unknown message cannot be checked; it is taken only
-    where one is due: right after a good one, and followed by another or by nothing.
+    guide defines it). A frame of an unknown message can only be checked for a checksum
+    that some CRC_EXTRA would give, one in 256; so it is taken only where one is due: right
+    after a good one, and followed by another or by nothing.
     """
 
     def __init__(self, crc_extra: Mapping[int, int]) -> None:
@@ -88,12 +93,14 @@ class FrameCutter:
         else:
             sequence, system, component, message_id = buffer[i + 2 : i + 6]
         end = i + total - (SIGNATURE_LENGTH if signed else 0)
+        checksum = buffer[end - 2] | buffer[end - 1] << 8
         seed = self._seeds.get(message_id)
         if seed is None:
             follower = buffer[i + total : i + total + 1]
-            if not self._in_step or (follower and follower[0] not in (MAGIC_V1, MAGIC_V2)):
+            due = self._in_step and (not follower or follower[0] in (MAGIC_V1, MAGIC_V2))
+            if not due or checksum ^ mcrf4xx(buffer[i + 1 : end - 2]) >> 8 not in _SEED_REMAINDERS:
                 return None
-        elif mcrf4xx(buffer[i + 1 : end - 2] + seed) != buffer[end - 2] | buffer[end - 1] << 8:
+        elif mcrf4xx(buffer[i + 1 : end - 2] + seed) != checksum:
             self.bad_crc += self._in_step
             return None
         return Frame(buffer[i : i + total], message_id, sequence, system, component, signed)

@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from queue import Empty, Full, Queue
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
@@ -86,9 +86,7 @@ class Link:
         self._record_to = record_to
         self._patience_s = patience_s
         self._talkers = [*talkers, *([Heartbeat()] if self.address.speaks_first else [])]
-        self._heard_by_talkers = frozenset[int]().union(*(talker.listens_to for talker in self._talkers))
         self._packer = Packer(source_system, source_component, key)
-        self._decoder = dialect.MAVLink(None)
         signatures = SignatureCheck(key, signing_time(time.time())) if key is not None else None
         self._intake = Intake(_CRC_EXTRA, target_system, signatures)
         self._scanner = FrameScanner()
@@ -248,13 +246,11 @@ class Link:
 
     def _talk(self, frames: list[Frame], now_s: float) -> list[bytes]:
         vehicle = self._intake.vehicle
-        if vehicle and self._heard_by_talkers:
-            for frame in frames:
-                if frame.message_id in self._heard_by_talkers and frame.system == vehicle[0]:
-                    message: Any = self._decoder.decode(bytearray(frame.raw))
-                    for talker in self._talkers:
-                        if frame.message_id in talker.listens_to:
-                            talker.hear(message, now_s)
+        from_vehicle = [frame for frame in frames if vehicle and frame.system == vehicle[0]]
+        for talker in self._talkers:
+            for frame in from_vehicle:
+                talker.hear(frame, now_s)
+            self._say(talker.report(), now_s)
         sent = []
         for talker in self._talkers:
             for message in talker.speak(vehicle, now_s):

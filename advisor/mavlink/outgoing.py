@@ -4,22 +4,23 @@ from typing import Any, Protocol
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
+from advisor.mavlink.framing import Frame
+
 OWN_SYSTEM = 254  # ground stations use 255; two on one id cause trouble
 OWN_COMPONENT = dialect.MAV_COMP_ID_MISSIONPLANNER
 
 
 class Talker(Protocol):
-    """Something that speaks with the vehicle over a link, as a state machine without a clock."""
+    """Something that speaks with the vehicle over a link: a state machine without a clock."""
 
-    @property
-    def listens_to(self) -> frozenset[int]:
-        """Ids of the messages it wants to hear from the vehicle."""
-
-    def hear(self, message: Any, now_s: float) -> None:
-        """Take a decoded message of the vehicle."""
+    def hear(self, frame: Frame, now_s: float) -> None:
+        """Take a frame of the vehicle."""
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """Messages to send now; None: no vehicle was heard yet."""
+        """Messages to send now; no vehicle: none was heard yet."""
+
+    def report(self) -> list[str]:
+        """What the crew should know, once."""
 
 
 class Packer:
@@ -51,12 +52,10 @@ class Packer:
 class Heartbeat:
     """A ground station's heartbeat once a second, so that routers and radios learn our address."""
 
-    listens_to: frozenset[int] = frozenset()
-
     def __init__(self) -> None:
         self._next_s = float("-inf")
 
-    def hear(self, message: Any, now_s: float) -> None:
+    def hear(self, frame: Frame, now_s: float) -> None:
         """Nothing to hear."""
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
@@ -69,3 +68,7 @@ class Heartbeat:
                 dialect.MAV_TYPE_GCS, dialect.MAV_AUTOPILOT_INVALID, 0, 0, dialect.MAV_STATE_ACTIVE, 3
             )
         ]
+
+    def report(self) -> list[str]:
+        """Nothing to report."""
+        return []

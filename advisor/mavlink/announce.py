@@ -1,0 +1,91 @@
+"""Telling the crew on their own ground station: verdicts as STATUSTEXT."""
+
+import unicodedata
+from collections import deque
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from advisor.mavlink.framing import Frame
+
+CHUNK_BYTES = 50
+MOST_CHUNKS = 4
+
+_PLAIN = str.maketrans({"°": " deg", "–": "-", "—": "-", "−": "-", "×": "x", "±": "+-", "≤": "<=", "≥": ">="})
+
+
+def status_text(text: str, number: int) -> list[Any]:
+    """One sentence as STATUSTEXT messages.
+
+    MAVLink, STATUSTEXT: a text longer than 50 bytes is sent in chunks that share an id
+    other than 0; the chunk that is not full ends it. Texts are cut to ``MOST_CHUNKS``
+    chunks and written in ASCII, which every ground station shows.
+
+    Parameters
+    ----------
+    text
+        What to say.
+    number
+        Running number of the announcement, makes the id of a chunked text.
+    """
+    plain = unicodedata.normalize("NFKD", " ".join(text.split()).translate(_PLAIN))
+    data = plain.encode("ascii", "ignore")
+    if len(data) >= CHUNK_BYTES * MOST_CHUNKS:
+        data = data[: CHUNK_BYTES * MOST_CHUNKS - 4] + b"..."
+    chunks = [data[i : i + CHUNK_BYTES] for i in range(0, len(data), CHUNK_BYTES)] or [b""]
+    if len(chunks) > 1 and len(chunks[-1]) == CHUNK_BYTES:
+        chunks.append(b"")
+    chunk_id = 0 if len(chunks) == 1 else number % 0xFFFF + 1
+    return [
+        dialect.MAVLink_statustext_message(dialect.MAV_SEVERITY_NOTICE, chunk, chunk_id, sequence)
+        for sequence, chunk in enumerate(chunks)
+    ]
+
+
+class Announcer:
+    """Sends one text for each manoeuvre, never a second one for the same.
+
+    ``judged`` may be called from any thread; the link asks for the messages from its own.
+    A ground station shows texts of the system it watches: where it hides those of other
+    system ids, run the advisor with the vehicle's as ``source_system``.
+    """
+
+    def __init__(self) -> None:
+        self._announced: set[int] = set()
+        self._waiting: deque[str] = deque()
+        self._number = 0
+        self._stop_told = False
+
+    def judged(self, maneuver: int, sentence: str, stop: str | None = None) -> None:
+        """A manoeuvre has its verdict.
+
+        Parameters
+        ----------
+        maneuver
+            Its number; whatever is said about it later is not sent.
+        sentence
+            The verdict.
+        stop
+            The sentence of the flight-test verdict when it says stop; sent the first time only.
+        """
+        if maneuver in self._announced:
+            return
+        self._announced.add(maneuver)
+        if stop is not None and not self._stop_told:
+            self._stop_told = True
+            sentence = f"{stop} ({sentence})"
+        self._waiting.append(sentence)
+
+    def hear(self, frame: Frame, now_s: float) -> None:
+        """Nothing to hear."""
+
+    def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
+        """The next text that waits, once there is a vehicle whose link it can take."""
+        if vehicle is None or not self._waiting:
+            return []
+        self._number += 1
+        return status_text(self._waiting.popleft(), self._number)
+
+    def report(self) -> list[str]:
+        """Nothing to report."""
+        return []
