@@ -1,0 +1,134 @@
+"""What an aircraft is made of: mass, geometry and aerodynamic coefficients."""
+
+from dataclasses import astuple, dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+GRAVITY_M_S2 = 9.80665
+"""Standard gravity."""
+
+AIR_DENSITY_KG_M3 = 1.225
+"""Density of the standard atmosphere at sea level; heights flown here are low."""
+
+
+@dataclass(frozen=True)
+class Airframe:
+    """A rigid aircraft in longitudinal flight with a bank angle.
+
+    Coefficients are non-dimensional, referred to wing area and mean chord, rates made dimensionless
+    by chord/(2V). Terms beyond the first order are measured from ``alpha_ref`` and
+    ``delta_e_ref``, the trimmed values, and are zero for the plain aircraft.
+    """
+
+    mass: float
+    """kg"""
+    iyy: float
+    """kg m²"""
+    wing_area: float
+    """m²"""
+    chord: float
+    """m"""
+    span: float
+    """m"""
+    cl_0: float
+    cl_alpha: float
+    cl_q: float
+    cl_delta_e: float
+    cd_0: float
+    cd_induced: float
+    """Factor of CL² in the drag polar."""
+    cm_0: float
+    cm_alpha: float
+    cm_q: float
+    cm_delta_e: float
+    thrust_max: float
+    """N, at full throttle and standstill."""
+    thrust_zero_speed: float
+    """m/s, at which the propeller gives nothing any more."""
+    roll_rate_max: float
+    """rad/s at full aileron."""
+    roll_lag: float
+    """s, time constant of the roll mode."""
+    alpha_ref: float = 0.0
+    delta_e_ref: float = 0.0
+    cl_alpha2: float = 0.0
+    cl_alpha3: float = 0.0
+    stall_alpha: float = 0.0
+    """rad, where half the flow has separated (Kirchhoff); 0: the flow always stays attached."""
+    stall_sharpness: float = 0.0
+    """1/rad"""
+    unsteady_share: float = 0.0
+    """Share of lift that builds up late (Wagner's function with one lag)."""
+    unsteady_lag: float = 1.0
+    """s"""
+    cm_alpha2: float = 0.0
+    cm_alpha3: float = 0.0
+    cm_alpha_dot: float = 0.0
+    cm_delta_e2: float = 0.0
+    cm_delta_e3: float = 0.0
+    thrust_arm: float = 0.0
+    """m, of the thrust line below the centre of gravity: thrust raises the nose."""
+    cg_aft: float = 0.0
+    """m, shift of the centre of gravity backwards from where the coefficients hold."""
+    ground_lift: float = 0.0
+    """Relative gain of lift at the ground, decaying as e^(−h/span)."""
+    ground_moment: float = 0.0
+    """Added Cm at the ground, decaying likewise."""
+    speed_held: float = 0.0
+    """1: airspeed is held by an ideal engine, 0: it moves as forces have it."""
+
+
+AIRFRAME_RECORD = np.dtype([(field.name, np.float64) for field in fields(Airframe)])
+"""Memory layout of :class:`Airframe` for compiled code."""
+
+UAV = Airframe(
+    mass=10.0,
+    iyy=1.10,
+    wing_area=0.70,
+    chord=0.28,
+    span=2.5,
+    cl_0=0.22,
+    cl_alpha=4.9,
+    cl_q=7.0,
+    cl_delta_e=0.42,
+    cd_0=0.032,
+    cd_induced=0.045,
+    cm_0=0.030,
+    cm_alpha=-0.75,
+    cm_q=-11.0,
+    cm_delta_e=-1.15,
+    thrust_max=60.0,
+    thrust_zero_speed=45.0,
+    roll_rate_max=3.0,
+    roll_lag=0.12,
+)
+"""A small unmanned aircraft of 10 kg with a pusher propeller, flown at 25 m/s."""
+
+LIGHT_AIRCRAFT = Airframe(
+    mass=1200.0,
+    iyy=2200.0,
+    wing_area=16.2,
+    chord=1.5,
+    span=11.0,
+    cl_0=0.28,
+    cl_alpha=4.9,
+    cl_q=5.5,
+    cl_delta_e=0.42,
+    cd_0=0.032,
+    cd_induced=0.054,
+    cm_0=0.045,
+    cm_alpha=-0.75,
+    cm_q=-14.0,
+    cm_delta_e=-1.20,
+    thrust_max=3600.0,
+    thrust_zero_speed=110.0,
+    roll_rate_max=1.2,
+    roll_lag=0.25,
+)
+"""A four-seat aircraft of 1,200 kg, flown at 55 m/s: a short period about half as fast."""
+
+
+def as_record(airframe: Airframe) -> NDArray[np.void]:
+    """Return the airframe as a structured array of shape (1,), the form compiled code reads."""
+    return np.array([astuple(airframe)], dtype=AIRFRAME_RECORD)

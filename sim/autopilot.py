@@ -1,0 +1,125 @@
+"""Who moves the controls: attitude hold between manoeuvres, the test input during them."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from sim.linear import ShortPeriod
+from sim.maneuvers import Input, elevator_input
+from sim.motion import Controls, Motion
+from sim.scenario import Maneuver, Scenario
+
+MANUAL, CRUISE = 0, 7
+"""ArduPlane's mode numbers, as HEARTBEAT.custom_mode gives them."""
+
+SETTLING_S = 2.0
+"""The mode changes to MANUAL so long before the first step."""
+
+
+class Demand(NamedTuple):
+    """What is asked of the aircraft for the next tick of the loop."""
+
+    elevator: float
+    """rad, before it becomes a pulse width."""
+    throttle: float
+    aileron: float
+    rudder: float
+    mode: int
+    turbulence: float
+    """Standard deviation of turbulence that the scenario wants now, m/s, beside the background's."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A manoeuvre with its place in time (seconds since the log began)."""
+
+    maneuver: Maneuver
+    input: Input
+    manual_from_s: float
+    start_s: float
+    end_s: float
+
+
+def plan(scenario: Scenario, amplitude_deg: float, unit_s: float) -> tuple[Planned, ...]:
+    """Lay the scenario's manoeuvres out in time; amplitude and unit are the aircraft's usual ones."""
+    planned = []
+    now = scenario.lead_in_s
+    for maneuver in scenario.maneuvers:
+        amplitude = maneuver.amplitude_deg or scenario.amplitude_deg or amplitude_deg
+        stick = elevator_input(
+            maneuver.input, math.radians(amplitude), maneuver.unit_s or scenario.unit_s or unit_s
+        )
+        start = now + SETTLING_S
+        end = start + stick.duration_s + (scenario.free_s if maneuver.free_s is None else maneuver.free_s)
+        planned.append(Planned(maneuver, stick, now, start, end))
+        now = end + (scenario.gap_s if maneuver.gap_s is None else maneuver.gap_s)
+    return tuple(planned)
+
+
+class Autopilot:
+    """Attitude, height, speed and bank loops, and a pilot who flies the plan."""
+
+    def __init__(
+        self, planned: tuple[Planned, ...], trim: Controls, start: Motion, model: ShortPeriod
+    ) -> None:
+        self._planned = planned
+        self._trim = trim
+        self._start = start
+        # Gains relative to the aircraft's own stiffness and control power hold any aircraft steady.
+        power = abs(model.M_delta_e)
+        self._stiffness = 0.4 * model.frequency() ** 2 / power
+        self._damping = 0.4 * model.frequency() / power
+        self._settled_elevator = trim.elevator
+        self._settled_throttle = trim.throttle
+        self._integral = 0.0
+
+    def current(self, time_s: float) -> Planned | None:
+        """The manoeuvre being flown at ``time_s``, from the change to MANUAL to that back."""
+        for planned in self._planned:
+            if planned.manual_from_s <= time_s < planned.end_s:
+                return planned
+        return None
+
+    def _next(self, time_s: float) -> Maneuver | None:
+        """The manoeuvre whose speed, height and bank are to be reached."""
+        for planned in self._planned:
+            if time_s < planned.end_s:
+                return planned.maneuver
+        return None
+
+    def demand(self, time_s: float, motion: Motion, period_s: float) -> Demand:
+        """Return what the controls shall be at ``time_s``, decided with ``motion`` as it is a tick before."""
+        planned = self.current(time_s)
+        upcoming = self._next(time_s)
+        lead = planned is not None or any(
+            0.0 < p.manual_from_s - time_s < 4.0 and p.maneuver.bank_deg for p in self._planned
+        )
+        bank = math.radians(upcoming.bank_deg) if upcoming and lead else 0.0
+        aileron = min(max(1.2 * (bank - motion.phi) - 0.25 * motion.p, -0.6), 0.6)
+        if planned is None:
+            return self._hold(motion, upcoming, aileron, period_s)
+        maneuver, since = planned.maneuver, time_s - planned.start_s
+        # Aileron and rudder doublets last as long as one unit and begin with the elevator.
+        swing = elevator_input("doublet", 1.0, planned.input.duration_s / 7.0).pull(since)
+        throttle = self._settled_throttle + (maneuver.throttle_change if since >= -1e-9 else 0.0)
+        return Demand(
+            self._settled_elevator - planned.input.pull(since),
+            min(max(throttle, 0.0), 1.0),
+            min(max(aileron + maneuver.aileron * swing, -1.0), 1.0),
+            maneuver.rudder * swing,
+            MANUAL,
+            maneuver.turbulence_m_s,
+        )
+
+    def _hold(self, motion: Motion, upcoming: Maneuver | None, aileron: float, period_s: float) -> Demand:
+        airspeed = (upcoming.airspeed_m_s if upcoming else None) or self._start.airspeed
+        height = self._start.height if upcoming is None or upcoming.height_m is None else upcoming.height_m
+        climb = min(max(0.1 * (height - motion.height) / motion.airspeed, -0.05), 0.05)
+        off = motion.theta - self._start.theta - climb
+        self._integral = min(max(self._integral + 0.1 * off * period_s, -0.2), 0.2)
+        elevator = self._trim.elevator + self._stiffness * (off + self._integral) + self._damping * motion.q
+        throttle = min(max(self._trim.throttle + 0.08 * (airspeed - motion.airspeed), 0.0), 1.0)
+        share = period_s / 1.0
+        self._settled_elevator += share * (elevator - self._settled_elevator)
+        self._settled_throttle += share * (throttle - self._settled_throttle)
+        return Demand(elevator, throttle, aileron, 0.0, CRUISE, 0.0)

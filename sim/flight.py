@@ -1,0 +1,255 @@
+"""The flight: pilot, servo, air, aircraft and instruments stepped together."""
+
+import math
+from collections import deque
+from collections.abc import Iterator
+from copy import copy
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sim import hangar
+from sim.atmosphere import DrydenTurbulence
+from sim.autopilot import Autopilot, Demand, Planned, plan
+from sim.fittings import Fittings
+from sim.motion import Controls, Motion
+from sim.scenario import Maneuver, Noise, Scenario
+from sim.sensors import NOISY, ChannelNoise, DerivedAlpha, Reading, ideal
+from sim.servo import Calibration, FirstOrderServo, SecondOrderServo, Servo, TransportDelay
+
+CLOSING_S = 5.0
+"""Attitude hold after the last manoeuvre."""
+
+SERVO_HZ, SERVO_DAMPING = 20.0, 0.8
+"""A servo that is only rate-limited is otherwise this fast."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One tick of the loop: what telemetry tells of."""
+
+    time_s: float
+    """Since the log began."""
+    reading: Reading
+    motion: Motion
+    """The truth; telemetry never shows it."""
+    pulse_us: int
+    """Elevator command."""
+    throttle: float
+    aileron: float
+    rudder: float
+    mode: int
+    north_m: float
+    east_m: float
+    flying: Planned | None
+    """The manoeuvre being flown."""
+
+
+class Flight:
+    """A scenario being flown.
+
+    Parameters
+    ----------
+    scenario
+        What to fly.
+    fittings
+        Effects to fit; None: only what the scenario's own sections say.
+    engine
+        The aircraft; None: the scenario's from the hangar.
+
+    Notes
+    -----
+    The elevator command becomes a whole pulse width before it flies. With ``input: linear`` the command
+    of the next tick is decided at this one and the surface moves to it in a straight line, so that
+    SERVO_OUTPUT_RAW read with straight lines between its stamps is exactly what flew; with ``held``
+    the command decided at a tick stands until the next, and moves within one integration step.
+    """
+
+    def __init__(
+        self, scenario: Scenario, fittings: Fittings | None = None, engine: hangar.Aircraft | None = None
+    ) -> None:
+        self.scenario = scenario
+        self.engine = engine or hangar.build(scenario)
+        usual = hangar.habits(scenario)
+        self.planned = plan(scenario, usual.amplitude_deg, usual.unit_s)
+        self.duration_s = (self.planned[-1].end_s if self.planned else scenario.lead_in_s) + CLOSING_S
+        self.calibration = Calibration()
+        self._fittings = _with_basics(scenario, fittings or Fittings())
+        self._servo = Servo(tuple(self._fittings.mechanisms))
+        self._pilot = Autopilot(self.planned, self.engine.trim, self.engine.motion(), self.engine.truth)
+        self._noise = ChannelNoise(noise_sigma(scenario), scenario.noise.colour, scenario.seed)
+        self._passing = DrydenTurbulence(0.0, 60.0, np.random.default_rng([scenario.seed, 7]))
+        self._steps = round(1.0 / (scenario.loop_hz * scenario.step_s))
+        self._early_s = max([0.0, *(-skew for skew in self._fittings.skews.values())])
+        self._deepest_s = max([0.0, *self._fittings.skews.values()])
+
+    def samples(self) -> Iterator[Sample]:
+        """Fly, and yield a sample at every tick of the loop."""
+        dt, period = self.scenario.step_s, self._steps * self.scenario.step_s
+        held = self.scenario.input == "held"
+        motion = self.engine.motion()
+        trim_us = self.calibration.pulse(self.engine.trim.elevator)
+        self._servo.reset(self.calibration.deflection(trim_us))
+        demand = Demand(
+            self.engine.trim.elevator, self.engine.trim.throttle, 0.0, 0.0, self._pilot_mode(0.0), 0.0
+        )
+        pulse, north, east = trim_us, 0.0, 0.0
+        past: deque[tuple[float, Reading]] = deque()
+        waiting: deque[Sample] = deque()
+        reading = self._read(motion, 0.0)
+        for tick in range(math.ceil(self.duration_s / period)):
+            now = tick * period
+            following = self._pilot.demand(now if held else now + period, motion, period)
+            if held:
+                pulse, demand = self.calibration.pulse(following.elevator), following
+            for effect in self._fittings.plant:
+                effect.apply(now, motion, self.engine)
+            waiting.append(
+                Sample(
+                    now, copy(reading), motion, pulse, demand.throttle, demand.aileron, demand.rudder,
+                    self._pilot_mode(now), north, east, self._pilot.current(now),
+                )
+            )  # fmt: skip
+            if self._fittings.skews:
+                past.append((now, copy(reading)))
+            next_pulse = self.calibration.pulse(following.elevator)
+            begin, end = self.calibration.deflection(pulse), self.calibration.deflection(next_pulse)
+            for step in range(1, self._steps + 1):
+                command = end if held else begin + (end - begin) * step / self._steps
+                motion = self._step(command, following, now + step * dt, motion, dt)
+                reading = self._read(motion, dt)
+                if self._fittings.skews and step < self._steps:
+                    past.append((now + step * dt, copy(reading)))
+            pulse, demand = next_pulse, following
+            ground = motion.airspeed * math.cos(motion.theta - motion.alpha) * period
+            north += ground + self.scenario.air.wind_north_m_s * period
+            east += self.scenario.air.wind_east_m_s * period
+            while waiting and waiting[0].time_s + self._early_s <= now + period - dt:
+                sample = waiting.popleft()
+                self._skew(sample, past)
+                self._noise.add(sample.reading)
+                yield sample
+
+    def _pilot_mode(self, time_s: float) -> int:
+        return 0 if self._pilot.current(time_s) else 7
+
+    def _step(self, command: float, demand: Demand, time_s: float, motion: Motion, dt: float) -> Motion:
+        surface = self._servo.step(command, dt)
+        up = head = extra_cl = extra_cm = 0.0
+        for air in self._fittings.air:
+            gust_up, gust_head = air.step(time_s, motion, dt)
+            up += gust_up
+            head += gust_head
+        if demand.turbulence > 0.0:
+            self._passing.sigma = demand.turbulence
+            gust_up, gust_head = self._passing.step(motion.airspeed, dt)
+            up += gust_up
+            head += gust_head
+        for force in self._fittings.forces:
+            cl, cm = force.step(time_s, motion, dt)
+            extra_cl += cl
+            extra_cm += cm
+        controls = Controls(surface, demand.throttle, demand.aileron, up, head, extra_cl, extra_cm)
+        return self.engine.step(controls, dt)
+
+    def _read(self, motion: Motion, dt: float) -> Reading:
+        reading = ideal(motion, self._fittings.accelerometer_arm_m)
+        for effect in self._fittings.sensors:
+            effect.apply(motion, reading, dt)
+        return reading
+
+    def _skew(self, sample: Sample, past: deque[tuple[float, Reading]]) -> None:
+        """Replace each skewed channel by what it was ``skew`` seconds before the sample."""
+        if not self._fittings.skews:
+            return
+        while len(past) > 1 and past[1][0] <= sample.time_s - self._deepest_s - 0.05:
+            past.popleft()
+        dt = self.scenario.step_s
+        for channel, skew in self._fittings.skews.items():
+            at = (sample.time_s - skew - past[0][0]) / dt
+            index = min(max(int(at), 0), len(past) - 2)
+            share = min(max(at - index, 0.0), 1.0)
+            before, after = getattr(past[index][1], channel), getattr(past[index + 1][1], channel)
+            setattr(sample.reading, channel, before + (after - before) * share)
+
+
+class _Background:
+    """The scenario's turbulence as an air mass."""
+
+    def __init__(self, turbulence: DrydenTurbulence) -> None:
+        self._turbulence = turbulence
+
+    def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
+        return self._turbulence.step(motion.airspeed, dt)
+
+
+def _with_basics(scenario: Scenario, fittings: Fittings) -> Fittings:
+    """Put the scenario's own servo, air and alpha sensor before the effects."""
+    basics = Fittings(accelerometer_arm_m=scenario.instruments.accelerometer_arm_m)
+    servo, air = scenario.servo, scenario.air
+    if servo.delay_s > 0.0:
+        basics.mechanisms.append(TransportDelay(servo.delay_s))
+    if servo.lag_s > 0.0:
+        basics.mechanisms.append(FirstOrderServo(servo.lag_s))
+    if servo.rate_limit_deg_s > 0.0:
+        limit = math.radians(servo.rate_limit_deg_s)
+        basics.mechanisms.append(SecondOrderServo(SERVO_HZ, SERVO_DAMPING, limit))
+    if air.turbulence_m_s > 0.0:
+        generator = np.random.default_rng([scenario.seed, 5])
+        basics.air.append(_Background(DrydenTurbulence(air.turbulence_m_s, air.length_m, generator)))
+    if scenario.alpha.source == "derived":
+        basics.sensors.append(DerivedAlpha(scenario.alpha))
+    return Fittings(
+        fittings.mechanisms + basics.mechanisms,
+        basics.air + fittings.air,
+        fittings.forces,
+        fittings.plant,
+        basics.sensors + fittings.sensors,
+        fittings.skews,
+        basics.accelerometer_arm_m + fittings.accelerometer_arm_m,
+    )
+
+
+def noise_sigma(scenario: Scenario) -> dict[str, float]:
+    """Standard deviation of each channel's noise, SI units.
+
+    Percentages refer to the channel's deviation from trim while the scenario's first manoeuvre is
+    flown without noise, effects and turbulence: its largest value or its standard deviation.
+    """
+    noise = scenario.noise
+    sigma = {
+        "alpha": math.radians(noise.alpha_deg),
+        "q": math.radians(noise.pitch_rate_deg_s),
+        "theta": math.radians(noise.pitch_deg),
+        "a_x": noise.accelerometer_m_s2,
+        "a_z": noise.accelerometer_m_s2,
+        "airspeed": noise.airspeed_m_s,
+        "climb": noise.climb_m_s,
+    }
+    if noise.percent > 0.0 and scenario.maneuvers:
+        first = scenario.maneuvers[0]
+        plain = Maneuver(first.input, first.amplitude_deg, first.unit_s, first.free_s)
+        quiet = Scenario(
+            aircraft=scenario.aircraft,
+            engine=scenario.engine,
+            airspeed_m_s=scenario.airspeed_m_s,
+            height_m=scenario.height_m,
+            amplitude_deg=scenario.amplitude_deg,
+            unit_s=scenario.unit_s,
+            free_s=scenario.free_s,
+            speed=scenario.speed,
+            lead_in_s=1.0,
+            maneuvers=(plain,),
+            noise=Noise(),
+        )
+        signal = [s for s in Flight(quiet).samples() if s.flying and s.time_s >= s.flying.start_s]
+        for name in NOISY:
+            values = np.array([getattr(sample.reading, name) for sample in signal])
+            size = np.abs(values - values[0]).max() if noise.of == "peak" else values.std()
+            sigma[name] += noise.percent / 100.0 * float(size)
+    return {name: value for name, value in sigma.items() if value > 0.0}
+
+
+def with_seed(scenario: Scenario, seed: int | None) -> Scenario:
+    """Return the scenario under another seed, or as it is."""
+    return scenario if seed is None else replace(scenario, seed=seed)

@@ -1,0 +1,55 @@
+"""The aircraft that can be flown by name, each with the test inputs that suit it."""
+
+from dataclasses import dataclass, replace
+
+from sim.airframe import LIGHT_AIRCRAFT, UAV, Airframe
+from sim.linear import RESEARCH_JET
+from sim.linear_aircraft import LinearAircraft
+from sim.loading import ScenarioError
+from sim.nonlinear_aircraft import NonlinearAircraft
+from sim.scenario import Scenario
+
+Aircraft = LinearAircraft | NonlinearAircraft
+
+
+@dataclass(frozen=True)
+class Habits:
+    """How an aircraft is usually flown in a flight test."""
+
+    airspeed_m_s: float
+    amplitude_deg: float
+    unit_s: float
+
+
+AIRFRAMES: dict[str, tuple[Airframe, Habits]] = {
+    "uav": (UAV, Habits(25.0, 2.0, 0.3)),
+    "light": (LIGHT_AIRCRAFT, Habits(55.0, 2.0, 0.5)),
+}
+"""Nonlinear aircraft by name."""
+
+LINEAR_HABITS = Habits(100.0, 2.0, 0.8)
+NAMES = (*AIRFRAMES, "linear")
+
+
+def unit_for(frequency_rad_s: float) -> float:
+    """Time unit of a 3-2-1-1 whose spectrum is centred on a short period, in s, rounded to 0.1 s."""
+    return max(0.1, round(2.4 / max(frequency_rad_s, 0.5), 1))
+
+
+def habits(scenario: Scenario) -> Habits:
+    """Return the usual inputs of the scenario's aircraft."""
+    if scenario.aircraft in AIRFRAMES:
+        return AIRFRAMES[scenario.aircraft][1]
+    return LINEAR_HABITS
+
+
+def build(scenario: Scenario, **changes: float) -> Aircraft:
+    """Return the scenario's aircraft, trimmed; ``changes`` replace fields of a nonlinear airframe."""
+    airspeed = scenario.airspeed_m_s or habits(scenario).airspeed_m_s
+    if scenario.aircraft not in NAMES:
+        raise ScenarioError([f"aircraft: '{scenario.aircraft}' is none of {', '.join(NAMES)} and no file"])
+    if scenario.aircraft == "linear":
+        return LinearAircraft(RESEARCH_JET, airspeed, scenario.height_m)
+    airframe = AIRFRAMES[scenario.aircraft][0]
+    held = 1.0 if scenario.speed == "held" else 0.0
+    return NonlinearAircraft(replace(airframe, speed_held=held, **changes), airspeed, scenario.height_m)

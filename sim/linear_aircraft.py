@@ -1,0 +1,204 @@
+"""The paper's linear model as an aircraft: eight parameters, optionally with effects beside them.
+
+Motion with V constant: γ = θ − α, and specific forces follow from kinematics alone,
+
+    a_z = V cos α (α̇ − q) + V̇ sin α − g cos θ,   a_x = −V sin α (α̇ − q) + V̇ cos α + g sin θ.
+"""
+
+import math
+from dataclasses import astuple, dataclass, fields
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from sim.airframe import GRAVITY_M_S2
+from sim.linear import ShortPeriod
+from sim.motion import Controls, Motion
+
+ROLL_RATE_MAX = 2.0
+ROLL_LAG_S = 0.15
+
+
+@dataclass(frozen=True)
+class LinearTerms:
+    """Terms beside the eight parameters; all zero for the paper's model. Rad, s and m."""
+
+    Z_alpha2: float = 0.0
+    Z_alpha3: float = 0.0
+    M_alpha2: float = 0.0
+    M_alpha3: float = 0.0
+    M_delta2: float = 0.0
+    M_delta3: float = 0.0
+    M_alpha_dot: float = 0.0
+    M_throttle: float = 0.0
+    """rad/s² per unit of throttle away from trim."""
+    unsteady_share: float = 0.0
+    unsteady_lag: float = 1.0
+    Z_h: float = 0.0
+    """1/s at the ground, decaying as e^(−h / ground_scale)."""
+    M_h: float = 0.0
+    ground_scale: float = 1.0
+    speed_scaled: float = 0.0
+    """1: derivatives move with airspeed and gravity turns with the flight path; 0: constant."""
+    gravity: float = 0.0
+    """1: gravity turns with the flight path, (g/V)(cos γ − 1) in α̇."""
+
+
+MODEL_RECORD = np.dtype(
+    [(f.name, np.float64) for f in fields(ShortPeriod)]
+    + [(f.name, np.float64) for f in fields(LinearTerms)]
+    + [
+        ("alpha_ref", np.float64),
+        ("delta_ref", np.float64),
+        ("throttle_ref", np.float64),
+        ("speed_ref", np.float64),
+    ]
+)
+
+
+@njit(cache=True)
+def rates(x: NDArray[np.float64], u: NDArray[np.float64], model, dx: NDArray[np.float64]) -> None:  # type: ignore[no-untyped-def]
+    """Fill ``dx`` from x = [α, q, θ, h, φ, p, α_late] and u = [δe, throttle, aileron, w, V, ΔZ, ΔM]."""
+    m = model[0]
+    alpha, q, theta, height, phi, p, late = x[0], x[1], x[2], x[3], x[4], x[5], x[6]
+    elevator, speed = u[0], u[4]
+    air = alpha + u[3] / speed
+    lifting = air - m.unsteady_share * (air - late)
+    off, off_elevator = air - m.alpha_ref, elevator - m.delta_ref
+    gamma = theta - alpha
+    ratio = 1.0
+    z_0, gravity = m.Z_0, 0.0
+    if m.speed_scaled > 0.0:
+        ratio = speed / m.speed_ref
+        z_0 = GRAVITY_M_S2 / speed + (m.Z_0 - GRAVITY_M_S2 / m.speed_ref) * ratio
+    if m.gravity > 0.0:
+        gravity = GRAVITY_M_S2 / speed * (math.cos(gamma) * math.cos(phi) - 1.0)
+    ground = 0.0
+    if m.Z_h != 0.0 or m.M_h != 0.0:
+        ground = math.exp(-max(height, 0.0) / m.ground_scale)
+    alpha_dot = (
+        z_0
+        + gravity
+        + ratio
+        * (
+            m.Z_alpha * lifting
+            + m.Z_delta_e * elevator
+            + m.Z_alpha2 * off**2
+            + m.Z_alpha3 * off**3
+            + m.Z_h * ground
+        )
+        + (1.0 + m.Z_q) * q
+        + u[5]
+    )
+    q_dot = (
+        ratio * (m.M_q * q + m.M_alpha_dot * alpha_dot)
+        + ratio**2
+        * (
+            m.M_0
+            + m.M_alpha * air
+            + m.M_delta_e * elevator
+            + m.M_alpha2 * off**2
+            + m.M_alpha3 * off**3
+            + m.M_delta2 * off_elevator**2
+            + m.M_delta3 * off_elevator**3
+            + m.M_h * ground
+        )
+        + m.M_throttle * (u[1] - m.throttle_ref)
+        + u[6]
+    )
+    dx[0] = alpha_dot
+    dx[1] = q_dot
+    dx[2] = q
+    dx[3] = speed * math.sin(gamma)
+    dx[4] = p
+    dx[5] = (u[2] * ROLL_RATE_MAX - p) / ROLL_LAG_S
+    dx[6] = (air - late) / m.unsteady_lag
+
+
+@njit(cache=True)
+def step(  # type: ignore[no-untyped-def]
+    x: NDArray[np.float64],
+    u_from: NDArray[np.float64],
+    u_to: NDArray[np.float64],
+    model,
+    dt: float,
+    dx: NDArray[np.float64],
+) -> None:
+    """Advance ``x`` by ``dt`` (classical Runge–Kutta, inputs linear); ``dx`` is then the rates there."""
+    u_mid = 0.5 * (u_from + u_to)
+    k1, k2, k3, k4 = np.empty_like(x), np.empty_like(x), np.empty_like(x), np.empty_like(x)
+    rates(x, u_from, model, k1)
+    rates(x + 0.5 * dt * k1, u_mid, model, k2)
+    rates(x + 0.5 * dt * k2, u_mid, model, k3)
+    rates(x + dt * k3, u_to, model, k4)
+    x += dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+    rates(x, u_to, model, dx)
+
+
+class LinearAircraft:
+    """An engine (see :class:`sim.motion.Engine`) flying Eqs. (1)–(2)."""
+
+    def __init__(
+        self,
+        model: ShortPeriod,
+        airspeed_m_s: float,
+        height_m: float,
+        terms: LinearTerms | None = None,
+        throttle: float = 0.5,
+    ) -> None:
+        terms = terms or LinearTerms()
+        alpha, elevator = model.trim()
+        self.truth = model
+        self.record: NDArray[np.void] = np.array(
+            [(*astuple(model), *astuple(terms), alpha, elevator, throttle, airspeed_m_s)], dtype=MODEL_RECORD
+        )
+        """The model being flown; effects may change its fields in flight."""
+        self.trim = Controls(elevator, throttle, 0.0)
+        self.airspeed = airspeed_m_s
+        """m/s; constant unless an effect or a replayed record moves it."""
+        self.airspeed_dot = 0.0
+        self._state = np.array([alpha, 0.0, alpha, height_m, 0.0, 0.0, alpha])
+        self._inputs = np.array([elevator, throttle, 0.0, 0.0, airspeed_m_s, 0.0, 0.0])
+        self._before = self._inputs.copy()
+        self._rates = np.empty_like(self._state)
+        rates(self._state, self._inputs, self.record, self._rates)
+
+    def motion(self) -> Motion:
+        """Return the motion now."""
+        alpha, q, theta, height, phi, p, _ = self._state.tolist()
+        alpha_dot, q_dot, _, climb, _, _, _ = self._rates.tolist()
+        elevator, throttle, _, gust_up, speed, _, _ = self._inputs.tolist()
+        turning = speed * (alpha_dot - q)
+        along = self.airspeed_dot
+        sin_a, cos_a = math.sin(alpha), math.cos(alpha)
+        return Motion(
+            speed,
+            alpha,
+            q,
+            theta,
+            height,
+            phi,
+            p,
+            climb,
+            along,
+            alpha_dot,
+            q_dot,
+            -turning * sin_a + along * cos_a + GRAVITY_M_S2 * math.sin(theta),
+            turning * cos_a + along * sin_a - GRAVITY_M_S2 * math.cos(theta) * math.cos(phi),
+            elevator,
+            throttle,
+            gust_up,
+            0.0,
+        )
+
+    def step(self, controls: Controls, dt: float) -> Motion:
+        """Fly for ``dt`` seconds and return the motion then.
+
+        ``extra_cl`` and ``extra_cm`` are taken as they are: added α̇ in rad/s and q̇ in rad/s².
+        """
+        self._before, self._inputs = self._inputs, self._before
+        elevator, throttle, aileron, gust_up, _, extra_z, extra_m = controls
+        self._inputs[:] = (elevator, throttle, aileron, gust_up, self.airspeed, extra_z, extra_m)
+        step(self._state, self._before, self._inputs, self.record, dt, self._rates)
+        return self.motion()

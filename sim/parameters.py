@@ -1,0 +1,63 @@
+"""The parameters the bundled vehicle knows, with ArduPilot's names."""
+
+from collections.abc import Mapping
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from sim.servo import Calibration
+
+ELEVATOR_OUTPUT = 2
+
+STREAM_GROUPS: Mapping[str, tuple[str, ...]] = {
+    "RAW_SENS": ("RAW_IMU",),
+    "EXT_STAT": (),
+    "RC_CHAN": ("SERVO_OUTPUT_RAW",),
+    "RAW_CTRL": (),
+    "POSITION": ("GLOBAL_POSITION_INT",),
+    "EXTRA1": ("ATTITUDE", "AOA_SSA"),
+    "EXTRA2": ("VFR_HUD",),
+    "EXTRA3": ("SYSTEM_TIME",),
+    "PARAMS": (),
+}
+"""SRn_* parameter suffix to the messages ArduPlane sends at its rate (of those known here)."""
+
+STREAM_OF_ID = {
+    1: "RAW_SENS",
+    2: "EXT_STAT",
+    3: "RC_CHAN",
+    4: "RAW_CTRL",
+    6: "POSITION",
+    10: "EXTRA1",
+    11: "EXTRA2",
+    12: "EXTRA3",
+}
+"""MAV_DATA_STREAM numbers of REQUEST_DATA_STREAM."""
+
+FUNCTIONS = {1: 4, 2: 19, 3: 70, 4: 21}
+"""Servo output to SERVOn_FUNCTION: aileron, elevator, throttle, rudder."""
+
+
+def parameter_table(rates: Mapping[str, float], system: int, calibration: Calibration) -> dict[str, float]:
+    """Return every parameter by name."""
+    table: dict[str, float] = {}
+    for output, function in FUNCTIONS.items():
+        low, trim, high = calibration.low_us, calibration.trim_us, calibration.high_us
+        if function == 70:
+            trim = low
+        table[f"SERVO{output}_FUNCTION"] = function
+        table[f"SERVO{output}_MIN"] = low
+        table[f"SERVO{output}_TRIM"] = trim
+        table[f"SERVO{output}_MAX"] = high
+        table[f"SERVO{output}_REVERSED"] = 0
+    for group, names in STREAM_GROUPS.items():
+        table[f"SR0_{group}"] = round(max((rates.get(name, 0.0) for name in names), default=0.0))
+    table["SYSID_THISMAV"] = system
+    table["SYSID_MYGCS"] = 255
+    return table
+
+
+def parameter_type(name: str) -> int:
+    """MAV_PARAM_TYPE that ArduPilot gives the parameter."""
+    if name.endswith("_REVERSED"):
+        return int(mavlink.MAV_PARAM_TYPE_INT8)
+    return int(mavlink.MAV_PARAM_TYPE_INT16)

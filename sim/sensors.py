@@ -1,0 +1,107 @@
+"""Instruments: what of the motion is measured, with which noise."""
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from sim.airframe import GRAVITY_M_S2
+from sim.motion import Motion
+from sim.scenario import AlphaSensor
+
+
+@dataclass(slots=True)
+class Reading:
+    """What the instruments show at one instant, SI units; effects and noise change it in place."""
+
+    alpha: float
+    q: float
+    theta: float
+    phi: float
+    p: float
+    r: float
+    a_x: float
+    a_y: float
+    a_z: float
+    airspeed: float
+    height: float
+    climb: float
+
+
+NOISY = ("alpha", "q", "theta", "a_x", "a_z", "airspeed", "climb")
+"""Channels that carry noise."""
+
+
+class SensorEffect(Protocol):
+    """Something about an instrument that is not ideal, stepped with the simulation."""
+
+    def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
+        """Change ``reading`` in place after ``dt`` seconds of motion."""
+        ...
+
+
+def ideal(motion: Motion, accelerometer_arm_m: float = 0.0) -> Reading:
+    """Readings of perfect instruments; the accelerometer feels a_z − x·q̇ and a_x − x·q² at x ahead."""
+    turn = GRAVITY_M_S2 / motion.airspeed * math.sin(motion.phi) * math.cos(motion.theta)
+    return Reading(
+        motion.air_alpha,
+        motion.q,
+        motion.theta,
+        motion.phi,
+        motion.p,
+        turn,
+        motion.a_x - accelerometer_arm_m * motion.q**2,
+        0.0,
+        motion.a_z - accelerometer_arm_m * motion.q_dot,
+        motion.pitot_airspeed,
+        motion.height,
+        motion.climb,
+    )
+
+
+class DerivedAlpha:
+    """ArduPilot's angle of attack: from inertial speed, late, offset, renewed at its own rate."""
+
+    def __init__(self, sensor: AlphaSensor) -> None:
+        self._sensor = sensor
+        self._lagged: float | None = None
+        self._shown = 0.0
+        self._next_s = 0.0
+        self._time_s = 0.0
+
+    def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
+        """Replace the vane's reading; the motion's own α knows nothing of gusts."""
+        if self._lagged is None:
+            self._lagged = motion.alpha
+        decay = math.exp(-dt / self._sensor.lag_s) if self._sensor.lag_s > 0 else 0.0
+        self._lagged = motion.alpha + (self._lagged - motion.alpha) * decay
+        self._time_s += dt
+        if self._time_s >= self._next_s - 1e-9:
+            self._shown = self._lagged + math.radians(self._sensor.bias_deg)
+            self._next_s += 1.0 / self._sensor.renewed_hz
+        reading.alpha = self._shown
+
+
+class ChannelNoise:
+    """Gaussian noise on each channel, white or AR(1), each channel with its own generator."""
+
+    def __init__(self, sigma: dict[str, float], colour: float, seed: int) -> None:
+        self._sigma = sigma
+        self._colour = colour
+        self._generators = {
+            name: np.random.default_rng([seed, number]) for number, name in enumerate(NOISY, start=101)
+        }
+        self._stock: dict[str, list[float]] = {name: [] for name in NOISY}
+        self._last = dict.fromkeys(NOISY, 0.0)
+        self._fresh = math.sqrt(1.0 - colour**2)
+
+    def add(self, reading: Reading) -> None:
+        """Add one draw to every channel."""
+        for name, sigma in self._sigma.items():
+            stock = self._stock[name]
+            if not stock:
+                stock = self._stock[name] = self._generators[name].standard_normal(1024).tolist()
+            drawn = self._colour * self._last[name] + self._fresh * stock.pop()
+            self._last[name] = drawn
+            setattr(reading, name, getattr(reading, name) + sigma * drawn)

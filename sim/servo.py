@@ -1,0 +1,128 @@
+"""The elevator's way from command to surface: pulse width, servo dynamics, stops."""
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+
+class Mechanism(Protocol):
+    """One stage between command and surface, stepped with the simulation."""
+
+    def reset(self, value: float) -> None:
+        """Stand still at ``value`` (rad)."""
+        ...
+
+    def step(self, value: float, dt: float) -> float:
+        """Return the output in rad after ``dt`` seconds in which the input moved linearly to ``value``."""
+        ...
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Pulse width against deflection, linear: what SERVOn_MIN/TRIM/MAX and ±25 deg say."""
+
+    low_us: int = 1100
+    trim_us: int = 1500
+    high_us: int = 1900
+    throw_rad: float = math.radians(25.0)
+
+    def pulse(self, deflection: float) -> int:
+        """Nearest whole pulse width in µs for a deflection in rad, within the stops."""
+        share = deflection / self.throw_rad
+        half = self.high_us - self.trim_us if share > 0 else self.trim_us - self.low_us
+        return min(max(round(self.trim_us + share * half), self.low_us), self.high_us)
+
+    def deflection(self, pulse_us: int) -> float:
+        """Deflection in rad that a pulse width commands."""
+        half = self.high_us - self.trim_us if pulse_us > self.trim_us else self.trim_us - self.low_us
+        return (pulse_us - self.trim_us) / half * self.throw_rad
+
+
+class FirstOrderServo:
+    """τ δ̇ = u − δ, solved exactly for an input that is linear over the step."""
+
+    def __init__(self, lag_s: float) -> None:
+        self.lag_s = lag_s
+        self.reset(0.0)
+
+    def reset(self, value: float) -> None:
+        """Stand still at ``value``."""
+        self._input = self._output = value
+
+    def step(self, value: float, dt: float) -> float:
+        """Return the deflection after ``dt``."""
+        slope = (value - self._input) / dt
+        # Response to a ramp: the steady state trails the input by τ times its slope.
+        trailing = value - self.lag_s * slope
+        error = self._output - (self._input - self.lag_s * slope)
+        self._output = trailing + error * math.exp(-dt / self.lag_s)
+        self._input = value
+        return self._output
+
+
+class SecondOrderServo:
+    """δ̈ + 2ζω δ̇ + ω² δ = ω² u with a rate limit, in half steps of semi-implicit Euler."""
+
+    def __init__(self, frequency_hz: float, damping: float, rate_limit_rad_s: float = math.inf) -> None:
+        self.omega = 2 * math.pi * frequency_hz
+        self.damping = damping
+        self.rate_limit = rate_limit_rad_s
+        self.reset(0.0)
+
+    def reset(self, value: float) -> None:
+        """Stand still at ``value``."""
+        self._position, self._rate = value, 0.0
+
+    def step(self, value: float, dt: float) -> float:
+        """Return the deflection after ``dt``."""
+        pieces = 4
+        for _ in range(pieces):
+            pull = self.omega**2 * (value - self._position) - 2 * self.damping * self.omega * self._rate
+            rate = self._rate + pull * dt / pieces
+            self._rate = min(max(rate, -self.rate_limit), self.rate_limit)
+            self._position += self._rate * dt / pieces
+        return self._position
+
+
+class TransportDelay:
+    """δ(t) = u(t − T): a queue of past inputs, read between its entries."""
+
+    def __init__(self, delay_s: float) -> None:
+        self.delay_s = delay_s
+        self.reset(0.0)
+
+    def reset(self, value: float) -> None:
+        """Hold ``value`` as the whole past."""
+        self._past = [value]
+        self._resting = value
+
+    def step(self, value: float, dt: float) -> float:
+        """Return the input of ``delay_s`` ago."""
+        self._past.append(value)
+        back = self.delay_s / dt
+        whole = int(back)
+        if len(self._past) <= whole + 1:
+            return self._resting
+        share = back - whole
+        late = self._past[-1 - whole] * (1 - share) + self._past[-2 - whole] * share
+        if len(self._past) > 4 * whole + 1000:
+            del self._past[: -2 * whole - 10]
+        return late
+
+
+class Servo:
+    """Stages in series, from command to surface."""
+
+    def __init__(self, stages: tuple[Mechanism, ...]) -> None:
+        self.stages = stages
+
+    def reset(self, value: float) -> None:
+        """Stand still at ``value`` throughout."""
+        for stage in self.stages:
+            stage.reset(value)
+
+    def step(self, value: float, dt: float) -> float:
+        """Return the surface's deflection after ``dt``."""
+        for stage in self.stages:
+            value = stage.step(value, dt)
+        return value

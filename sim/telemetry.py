@@ -1,0 +1,51 @@
+"""A flight's telemetry: messages in order, with what the radio does to them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.flight import Flight
+from sim.mavlink import Message, Voice
+
+
+@dataclass(frozen=True)
+class Burst:
+    """The messages of one tick of the loop."""
+
+    time_s: float
+    """Simulated time, seconds since the log began."""
+    arrival_s: float
+    """When the far end of the link has them."""
+    messages: list[Message]
+
+
+class Telemetry:
+    """Flies a scenario and says what its vehicle would say."""
+
+    def __init__(self, flight: Flight) -> None:
+        self.flight = flight
+        scenario = flight.scenario
+        self.voice = Voice(dict(scenario.rates), scenario.clock, flight.calibration)
+        self._generator = np.random.default_rng([scenario.seed, 9])
+
+    def bursts(self) -> Iterator[Burst]:
+        """Yield what leaves the vehicle tick by tick."""
+        scenario = self.flight.scenario
+        self.voice.say("ArduPlane V4.5.6 (bundled aircraft)")
+        # A ground station on the same link has asked for the parameters.
+        self.voice.send_parameters()
+        arrival = 0.0
+        for sample in self.flight.samples():
+            error = scenario.clock.jitter_s
+            stamp_error = float(self._generator.uniform(-error, error)) if error > 0 else 0.0
+            messages = list(self.voice.speak(sample, stamp_error))
+            flying = sample.flying
+            if flying and 0.0 <= sample.time_s - flying.start_s < flying.maneuver.outage_s:
+                continue
+            if scenario.link.drop > 0.0:
+                kept = self._generator.random(len(messages)) >= scenario.link.drop
+                messages = [message for message, keep in zip(messages, kept, strict=True) if keep]
+            late = float(self._generator.exponential(0.3)) if scenario.link.jitter_s > 0.0 else 0.0
+            arrival = max(arrival, sample.time_s + scenario.link.jitter_s * min(late, 1.0))
+            yield Burst(sample.time_s, arrival, messages)
