@@ -32,7 +32,7 @@ from advisor.mavlink.transports import ConnectionCutError, Transport, open_trans
 from advisor.mavlink.watch import LinkWatch
 from advisor.problems import UnusableInputError
 
-BATCH_S = 0.006
+BATCH_S = 0.009
 """Frames gather this long before they are decoded and handed over together."""
 PAUSE_S = 0.002
 """Rest between two looks at a busy socket, so that several packets share one look."""
