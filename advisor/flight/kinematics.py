@@ -179,7 +179,7 @@ def _judge(
     if explained < 0.7:
         share = 100 * max(explained, 0.0)
         return "inconsistent", (
-            f"alpha does not follow the motion: the accelerometers explain {share:.0f} % of it (gusts do this)."
+            f"alpha does not follow the motion: it explains {share:.0f} % of alpha (gusts do this)."
         )
     if abs(lag) > max(SMALLEST_LAG_S, 3.0 * lag_std):
         word: Finding = "late" if lag > 0 else "early"

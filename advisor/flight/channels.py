@@ -1,0 +1,174 @@
+"""From messages to physical quantities: units, signs and sources, each sample at its own stamp."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.flight.clocks import place
+from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.surfaces import Surface, driven
+
+STANDARD_GRAVITY = 9.80665
+_MILLI_G = STANDARD_GRAVITY / 1000.0
+
+# The counters that stamp messages (field, length of a tick in s); MAVLink common.xml, ardupilotmega.xml.
+_BOOT_MS = ("time_boot_ms", 1e-3)
+_USEC = ("time_usec", 1e-6)
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One quantity in one message."""
+
+    channel: str
+    message: str
+    field: str
+    value: Callable[[NDArray[Any]], FloatArray]
+    """From the field's raw values to SI."""
+    provenance: str = "measured"
+
+    @property
+    def source(self) -> str:
+        """``MESSAGE.field``."""
+        return f"{self.message}.{self.field}"
+
+
+def _scaled(factor: float) -> Callable[[NDArray[Any]], FloatArray]:
+    return lambda raw: np.asarray(raw, dtype=np.float64) * factor
+
+
+READINGS = (
+    Reading("q", "ATTITUDE", "pitchspeed", _scaled(1.0)),
+    Reading("p", "ATTITUDE", "rollspeed", _scaled(1.0)),
+    Reading("r", "ATTITUDE", "yawspeed", _scaled(1.0)),
+    Reading("theta", "ATTITUDE", "pitch", _scaled(1.0)),
+    Reading("bank", "ATTITUDE", "roll", _scaled(1.0)),
+    Reading("alpha", "AOA_SSA", "AOA", np.radians, "derived"),
+    Reading("airspeed", "VFR_HUD", "airspeed", _scaled(1.0)),
+    Reading("climb_rate", "VFR_HUD", "climb", _scaled(1.0)),
+    Reading("throttle", "VFR_HUD", "throttle", _scaled(0.01)),
+    Reading("a_x", "RAW_IMU", "xacc", _scaled(_MILLI_G)),
+    Reading("a_z", "RAW_IMU", "zacc", _scaled(_MILLI_G)),
+    Reading("a_x", "SCALED_IMU", "xacc", _scaled(_MILLI_G)),
+    Reading("a_z", "SCALED_IMU", "zacc", _scaled(_MILLI_G)),
+    Reading("a_x", "HIGHRES_IMU", "xacc", _scaled(1.0)),
+    Reading("a_z", "HIGHRES_IMU", "zacc", _scaled(1.0)),
+    Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
+)
+"""Best source of a channel first, where several messages carry it."""
+
+_STAMPS = {
+    "ATTITUDE": _BOOT_MS,
+    "AOA_SSA": _USEC,
+    "RAW_IMU": _USEC,
+    "SCALED_IMU": _BOOT_MS,
+    "HIGHRES_IMU": _USEC,
+    "GLOBAL_POSITION_INT": _BOOT_MS,
+    "SERVO_OUTPUT_RAW": _USEC,
+    "ACTUATOR_OUTPUT_STATUS": _USEC,
+    "NAMED_VALUE_FLOAT": _BOOT_MS,
+}
+"""VFR_HUD has no stamp: it takes that of the last ATTITUDE."""
+
+DERIVED_ALPHA = "theta - asin(VFR_HUD.climb / airspeed)"
+SLOWEST_FLIGHT_M_S = 4.0
+"""Below this air speed nothing flies, and no angle of attack can be derived."""
+
+
+@dataclass(frozen=True, slots=True)
+class Decoded:
+    """Samples of one channel from one source, in order of arrival."""
+
+    channel: str
+    source: str
+    provenance: str
+    t: FloatArray
+    y: FloatArray
+    order: NDArray[np.int64]
+
+
+def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
+    """Vehicle time of each message, shape (n,), s since boot; NaN where it has none to believe.
+
+    Parameters
+    ----------
+    columns
+        Messages of one type.
+    master_s
+        Shape (n,), master clock when each arrived.
+    """
+    if columns.name not in _STAMPS:
+        return master_s
+    field, tick_s = _STAMPS[columns.name]
+    return place(columns.fields[field], tick_s, master_s)
+
+
+def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
+    """Every quantity of ``READINGS`` that these messages carry."""
+    for reading in READINGS:
+        if reading.message == columns.name:
+            y = reading.value(columns.fields[reading.field])
+            yield _decoded(reading.channel, reading.source, reading.provenance, t, y, columns)
+
+
+def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
+    """Angle of attack from NAMED_VALUE_FLOAT messages of this name, in the sender's unit."""
+    mine = np.array(
+        [raw.rstrip(b"\0") == name.encode() for raw in columns.fields["name"].tolist()], dtype=bool
+    )
+    y = np.where(mine, np.asarray(columns.fields["value"], dtype=np.float64), np.nan)
+    return _decoded("alpha", f"NAMED_VALUE_FLOAT.{name}", "vane", t, y, columns)
+
+
+def derived_alpha(hud: Columns, t: FloatArray, theta: FloatArray, airspeed: float | None) -> Decoded:
+    """Angle of attack in still air, θ − γ with sin γ = climb rate / air speed.
+
+    Parameters
+    ----------
+    hud
+        VFR_HUD messages.
+    t, theta
+        Shape (n,), their vehicle time and the pitch angle (rad) at that time.
+    airspeed
+        Used where the message has none, m/s.
+    """
+    v = np.asarray(hud.fields["airspeed"], dtype=np.float64)
+    if airspeed is not None:
+        v = np.where(v > SLOWEST_FLIGHT_M_S, v, airspeed)
+    flying = v > SLOWEST_FLIGHT_M_S
+    sine = np.divide(hud.fields["climb"], v, out=np.zeros_like(v), where=flying)
+    alpha = np.where(flying, theta - np.arcsin(np.clip(sine, -1.0, 1.0)), np.nan)
+    return _decoded("alpha", DERIVED_ALPHA, "derived", t, alpha, hud)
+
+
+def surface_angle(
+    channel: str, columns: Columns, t: FloatArray, surface: Surface, autopilot: str
+) -> Decoded | None:
+    """Commanded deflection from servo outputs; None when this message has none of the surface's.
+
+    Pulses outside the calibration give the deflection at its end, as the last pair has it.
+    """
+    if columns.name == "ACTUATOR_OUTPUT_STATUS":
+        pwm = np.asarray(columns.fields["actuator"], dtype=np.float64)[:, [n - 1 for n in surface.outputs]]
+        field = "actuator" + "+".join(f"[{n - 1}]" for n in surface.outputs)
+    else:
+        names = [f"servo{(n - 1) % 16 + 1}_raw" for n in surface.outputs]
+        if any(name not in columns.fields for name in names):
+            return None
+        pwm = np.stack([np.asarray(columns.fields[name], dtype=np.float64) for name in names], axis=1)
+        field = "+".join(names)
+    alive = driven(pwm, autopilot)
+    if columns.name == "SERVO_OUTPUT_RAW":
+        alive &= columns.fields["port"] == surface.port
+    y = np.where(alive, surface.deflection(pwm), np.nan)
+    return _decoded(channel, f"{columns.name}.{field}", "commanded", t, y, columns)
+
+
+def _decoded(
+    channel: str, source: str, provenance: str, t: FloatArray, y: FloatArray, columns: Columns
+) -> Decoded:
+    good = np.isfinite(t) & np.isfinite(y)
+    return Decoded(channel, source, provenance, t[good], y[good], columns.order[good])

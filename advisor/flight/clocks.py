@@ -1,0 +1,121 @@
+"""The vehicle's clock: seconds since boot, unwrapped, from counters that wrap and restart.
+
+``ATTITUDE.time_boot_ms`` is the master. Every other stamp is placed on it: a 32-bit
+counter of microseconds (SERVO_OUTPUT_RAW, and AOA_SSA as ArduPilot fills it) is the true
+time less a whole number of its 71.6 minutes, and the master says how many. Nothing is
+remembered per message, so neither a silence, a duplicate nor a late packet can mislead it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray, IntArray
+
+_WRAP_MS = 2**32
+_LATE_MS = 2000
+"""A master stamp older than the newest by less than this is a late packet."""
+_SILENCE_MS = 10_000
+"""A master stamp newer than the last by more than this waits for confirmation."""
+_CONFIRM = 3
+"""Stamps in a row that make a jump believed: backwards it is a reboot, forwards a silence."""
+_NEAR_S = 5.0
+"""How far a stamp may lie from the master when its message arrives."""
+
+
+@dataclass(frozen=True, slots=True)
+class MasterStamps:
+    """What the master clock makes of a row of ``time_boot_ms``."""
+
+    t: FloatArray
+    """Shape (n,), seconds since boot; NaN for a stamp that is not believed (yet)."""
+    boot: IntArray
+    """Shape (n,), number of the boot, rising."""
+
+
+class BootClock:
+    """Unwraps ``time_boot_ms`` and notices reboots."""
+
+    def __init__(self) -> None:
+        self.boot = 0
+        """Number of the boot, 0 for the first."""
+        self._newest_ms: int | None = None
+        self._doubt: list[int] = []
+
+    @property
+    def newest_s(self) -> float:
+        """Newest believed stamp, s since boot; NaN before the first."""
+        return float("nan") if self._newest_ms is None else self._newest_ms / 1000.0
+
+    def advance(self, time_boot_ms: IntArray) -> MasterStamps:
+        """Take stamps in order of arrival.
+
+        Parameters
+        ----------
+        time_boot_ms
+            Shape (n,), as received.
+        """
+        t = np.full(len(time_boot_ms), np.nan)
+        boot = np.empty(len(time_boot_ms), dtype=np.int64)
+        for i, raw in enumerate(time_boot_ms.tolist()):
+            believed_ms = self._believe(raw)
+            if believed_ms is not None:
+                t[i] = believed_ms / 1000.0
+            boot[i] = self.boot
+        return MasterStamps(t, boot)
+
+    def _believe(self, raw: int) -> int | None:
+        """Unwrapped milliseconds of this stamp, None while it is in doubt."""
+        if self._newest_ms is None:
+            self._newest_ms = raw
+            return raw
+        ahead = _signed(raw - self._newest_ms)
+        if -_LATE_MS <= ahead <= _SILENCE_MS:
+            self._doubt.clear()
+            return self._unwrap(ahead)
+        if self._doubt and not 0 <= _signed(raw - self._doubt[-1]) <= _SILENCE_MS:
+            self._doubt.clear()
+        self._doubt.append(raw)
+        if len(self._doubt) < _CONFIRM:
+            return None
+        self._doubt.clear()
+        if ahead > 0:
+            return self._unwrap(ahead)
+        self.boot += 1
+        self._newest_ms = raw
+        return raw
+
+    def _unwrap(self, ahead_ms: int) -> int:
+        assert self._newest_ms is not None
+        stamp = self._newest_ms + ahead_ms
+        self._newest_ms = max(self._newest_ms, stamp)
+        return stamp
+
+
+def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
+    """Put stamps of any counter of 32 bits or more on the master clock.
+
+    Parameters
+    ----------
+    ticks
+        Shape (n,), stamps as received: since boot, possibly wrapped at 2**32 ticks.
+    tick_s
+        Length of a tick, s.
+    master_s
+        Shape (n,), master clock when each message arrived, s since boot.
+
+    Returns
+    -------
+    FloatArray
+        Shape (n,), s since boot; NaN where no number of wraps brings the stamp near the master
+        (another clock, or a message of an earlier boot).
+    """
+    wrap_s = 2.0**32 * tick_s
+    raw_s = ticks.astype(np.float64) * tick_s
+    t = raw_s + wrap_s * np.round((master_s - raw_s) / wrap_s)
+    return np.where(np.abs(t - master_s) <= _NEAR_S, t, np.nan)
+
+
+def _signed(difference_ms: int) -> int:
+    """Difference of two 32-bit stamps, the shorter way round."""
+    return (difference_ms + _WRAP_MS // 2) % _WRAP_MS - _WRAP_MS // 2

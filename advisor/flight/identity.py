@@ -1,0 +1,140 @@
+"""What the vehicle says of itself: who it is, its firmware, its mode, what its outputs drive."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from advisor.aircraft import Elevator
+from advisor.flight.events import FlightEvent, Notice, VehicleFound
+from advisor.flight.messages import Columns
+from advisor.flight.record import Channel
+from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_elevator, find_surface
+from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
+from advisor.problems import Problem
+
+_BUNDLED = b"Bundled aircraft"
+"""How the simulator of this project introduces itself in a STATUSTEXT."""
+
+
+class Identity:
+    """Collects the messages that say who and what the vehicle is.
+
+    Parameters
+    ----------
+    elevator
+        As the aircraft file has it.
+    target_system
+        System id to follow; None: the first vehicle heard.
+    """
+
+    def __init__(self, elevator: Elevator, target_system: int | None) -> None:
+        self._elevator = elevator
+        self._finder = VehicleFinder(target_system)
+        self._firmware: dict[int, str] = {}
+        self._parameters: dict[tuple[int, int], dict[str, float]] = {}
+        self.mode = ""
+        """Flight mode of the newest heartbeat."""
+        self.simulated = False
+        """The bundled aircraft has introduced itself: its vane is simulated."""
+        self.elevator: Surface | Problem = find_elevator(elevator, {})
+        """The elevator's outputs and scale, or why there is none."""
+        self.surfaces: dict[str, Surface] = {}
+        """Elevator, aileron and rudder, as far as they are known."""
+
+    @property
+    def vehicle(self) -> Vehicle | None:
+        """Who is followed; None before its first heartbeat."""
+        vehicle = self._finder.vehicle
+        if vehicle is not None and vehicle.system in self._firmware:
+            return vehicle.with_firmware(self._firmware[vehicle.system])
+        return vehicle
+
+    @property
+    def other_systems(self) -> frozenset[int]:
+        """System ids of further vehicles heard."""
+        return frozenset(self._finder.others)
+
+    def with_provenance(self, channel: Channel) -> Channel:
+        """The channel, its provenance said as far as the vehicle's identity tells.
+
+        AOA_SSA is derived from inertial speed and estimated wind on ArduPilot; elsewhere nobody knows.
+        """
+        if channel.source != "AOA_SSA.AOA" or self.vehicle is None:
+            return channel
+        if self.simulated:
+            return replace(channel, provenance="simulated")
+        known = self.vehicle.autopilot == "ardupilot"
+        return replace(channel, provenance="derived" if known else "unknown")
+
+    def learn(self, piece: Sequence[Columns]) -> list[FlightEvent]:
+        """Take messages among which at most the first changes anything."""
+        events: list[FlightEvent] = []
+        for columns in piece:
+            if columns.name == "HEARTBEAT":
+                events += self._heartbeat(columns)
+            elif columns.name == "PARAM_VALUE":
+                self._parameter(columns)
+            elif columns.name == "AUTOPILOT_VERSION":
+                self._version(columns)
+            elif columns.name == "STATUSTEXT":
+                self._text(columns)
+        return events
+
+    def _heartbeat(self, columns: Columns) -> list[FlightEvent]:
+        events: list[FlightEvent] = []
+        known = len(self._finder.others)
+        if self._finder.hear(columns):
+            assert self._finder.vehicle is not None
+            events.append(VehicleFound(self._finder.vehicle))
+            self._settle_surfaces()
+        if len(self._finder.others) > known:
+            others = ", ".join(str(n) for n in sorted(self._finder.others))
+            events.append(
+                Notice(
+                    "several_vehicles",
+                    f"Other vehicles are heard too (system {others}): --target-system picks one.",
+                )
+            )
+        vehicle = self._finder.vehicle
+        if vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
+            self.mode = mode_name(vehicle, int(columns.fields["custom_mode"][0]))
+        return events
+
+    def _parameter(self, columns: Columns) -> None:
+        known = self._parameters.setdefault((columns.system, columns.component), {})
+        changed = False
+        for raw, value in zip(
+            columns.fields["param_id"].tolist(), columns.fields["param_value"], strict=True
+        ):
+            name = raw.rstrip(b"\0").decode("ascii", "replace")
+            if name.startswith("SERVO") and known.get(name) != float(value):
+                known[name] = float(value)
+                changed = True
+        vehicle = self._finder.vehicle
+        if changed and vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
+            self._settle_surfaces()
+
+    def _settle_surfaces(self) -> None:
+        vehicle = self._finder.vehicle
+        assert vehicle is not None
+        parameters = self._parameters.get((vehicle.system, vehicle.component), {})
+        self.elevator = find_elevator(self._elevator, parameters)
+        found = {
+            "elevator": self.elevator,
+            "aileron": find_surface(AILERON, parameters),
+            "rudder": find_surface(RUDDER, parameters),
+        }
+        self.surfaces = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
+
+    def _version(self, columns: Columns) -> None:
+        packed = int(columns.fields["flight_sw_version"][0])
+        if packed:
+            version = f"{packed >> 24 & 0xFF}.{packed >> 16 & 0xFF}.{packed >> 8 & 0xFF}"
+            self._firmware[columns.system] = version
+
+    def _text(self, columns: Columns) -> None:
+        text = bytes(columns.fields["text"][0])
+        if text.startswith(_BUNDLED):
+            self.simulated = True
+        words = text.split()
+        if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
+            self._firmware.setdefault(columns.system, words[1][1:].decode("ascii", "replace"))

@@ -1,0 +1,243 @@
+"""Telling inputs apart: lobes on either side of trim, how long each lasts, how square it is.
+
+Works on a stretch of elevator that has just come to rest. Everything is relative to the
+stretch itself: trim is the level at which it rests now, the amplitude is its largest
+deviation from that, the quiet level is what the elevator does at trim before the first step.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from advisor.flight.maneuver import InputKind
+from advisor.flight.messages import FloatArray
+
+RESTING_S = 0.5
+"""How long the elevator must have rested before its past is looked at."""
+SMALLEST_RAD = float(np.radians(0.15))
+"""Smaller inputs than this are no test inputs."""
+
+_BAND = 0.3
+"""Within this share of the amplitude the elevator counts as at trim."""
+_SQUARE = 0.58
+"""Share of an input's time spent on its levels; half a sine reaches 0.45, steps slewed by a hand 0.62."""
+_SQUARE_3211 = 0.4
+"""The same for a pattern whose timing already gives it away."""
+_SHARP = 0.18
+"""Longest time from a fifth to four fifths of a step, as a share of the shortest level; a sine takes 0.23."""
+_QUIET_S = 0.9
+"""Other inputs are told from corrections by the quiet before them: this long."""
+_LEAST_LEVEL = 0.4
+"""A lobe smaller than this share of the largest is no step of a known input."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """An input that was recognised."""
+
+    kind: InputKind
+    start_s: float
+    """The elevator leaves trim."""
+    last_step_s: float
+    """The elevator sets out on its way back to trim for the last time."""
+    over_s: float
+    """The elevator is back at trim."""
+    trim: float
+    """Level before and after, rad."""
+    amplitude: float
+    """Largest deviation from trim, rad."""
+    quiet: float
+    """Standard deviation at trim, before the input, rad."""
+    steps: tuple[tuple[float, float], ...]
+    """(onset s, level in rad from trim), the return to trim last."""
+
+    @property
+    def longest_s(self) -> float:
+        """Duration of the longest step."""
+        return max(b[0] - a[0] for a, b in pairwise(self.steps))
+
+    @property
+    def band(self) -> float:
+        """Deviation from trim that would be a new input, rad."""
+        share = _BAND if self.is_3211 else 0.7 * _BAND
+        return max(share * self.amplitude, 4.0 * self.quiet)
+
+    @property
+    def is_3211(self) -> bool:
+        """The pattern that by its timing alone cannot be mistaken for a correction."""
+        return self.kind in ("3-2-1-1", "reverse 3-2-1-1")
+
+
+def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
+    """The input after which the elevator has now come to rest, if there is one.
+
+    Parameters
+    ----------
+    t, u
+        Shape (n,): stamps (s) and elevator (rad), up to now.
+
+    Returns
+    -------
+    Shape or None
+        None also when the elevator moves now, rests at another level than before the
+        movement (a trim change), or moved in no recognisable way.
+    """
+    resting = t >= t[-1] - RESTING_S
+    if np.count_nonzero(resting) < 3:
+        resting[-3:] = True
+    trim = float(np.median(u[resting]))
+    d = _without_spikes(u) - trim
+    found = _extent(t, d, float(np.ptp(d[resting])))
+    if found is None:
+        return None
+    before, first, last = found
+    amplitude = float(np.max(np.abs(d[first : last + 1])))
+    quiet = float(np.std(d[before:first]))
+    if amplitude < max(SMALLEST_RAD, 5.0 * quiet) or float(np.ptp(d[resting])) > 0.4 * amplitude:
+        return None
+    if abs(float(np.mean(d[before:first]))) > 0.5 * _BAND * amplitude:
+        return None
+    shape = _classify(t, d, first, last, trim, amplitude, quiet)
+    if shape is None or shape.is_3211:
+        return shape
+    steady = t[first] - t[before] >= _QUIET_S and amplitude >= 8.0 * quiet
+    return shape if steady and _is_sharp(t, d, shape) else None
+
+
+def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, int] | None:
+    """Indices: start of the quiet before, first and last sample away from trim.
+
+    Goes back in time from the rest: the band around trim widens with the largest deviation
+    met so far, and the input ends where the elevator stays in the band for as long as it
+    would between two inputs.
+    """
+    largest = np.maximum.accumulate(np.abs(d)[::-1])[::-1]
+    band = np.maximum(_BAND * largest, max(0.5 * SMALLEST_RAD, rest_range))
+    away = np.flatnonzero(np.abs(d) > band)
+    if len(away) == 0:
+        return None
+    last = int(away[-1])
+    gaps = np.flatnonzero(t[away[1:]] - t[away[:-1] + 1] >= RESTING_S)
+    if len(gaps):
+        first = int(away[gaps[-1] + 1])
+        before = int(away[gaps[-1]]) + 1
+    else:
+        first = int(away[0])
+        before = 0
+    before = max(before, int(np.searchsorted(t, t[first] - 1.0)))
+    if first - before < 2 or t[first] - t[before] < 0.8 * RESTING_S:
+        return None
+    return before, first, last
+
+
+def _classify(
+    t: FloatArray, d: FloatArray, first: int, last: int, trim: float, amplitude: float, quiet: float
+) -> Shape | None:
+    lobes = _lobes(d, first, last, amplitude)
+    levels = np.array([float(np.median(d[a : b + 1])) for a, b in lobes])
+    onsets = _onsets(t, d, lobes, levels)
+    durations = np.diff(onsets)
+    kind = _kind(
+        levels,
+        durations,
+        _squareness(t, d, levels, onsets, quiet),
+        float(np.max(np.diff(t[first - 1 : last + 2]))),
+    )
+    if kind is None:
+        return None
+    leaving = np.flatnonzero(np.abs(d[: first + 1]) <= 0.1 * amplitude + 2.0 * quiet)
+    start_s = float(t[leaving[-1]]) if len(leaving) else float(t[first])
+    start_s = max(start_s, float(onsets[0]) - 0.3 * float(durations[0]))
+    steps = (*zip(onsets[:-1].tolist(), levels.tolist(), strict=True), (float(onsets[-1]), 0.0))
+    over_s = float(t[min(last + 1, len(t) - 1)])
+    return Shape(kind, start_s, float(onsets[-1]), over_s, trim, amplitude, quiet, steps)
+
+
+def _lobes(d: FloatArray, first: int, last: int, amplitude: float) -> list[tuple[int, int]]:
+    """Stretches on one side of trim, as index pairs; short dips inside one are overlooked."""
+    side = np.sign(d[first : last + 1]) * (np.abs(d[first : last + 1]) > _BAND * amplitude)
+    out = np.flatnonzero(side) + first
+    turns = np.flatnonzero(np.diff(np.sign(d[out])) != 0)
+    starts = [int(out[0]), *(int(out[k + 1]) for k in turns)]
+    ends = [*(int(out[k]) for k in turns), int(out[-1])]
+    return list(zip(starts, ends, strict=True))
+
+
+def _onsets(t: FloatArray, d: FloatArray, lobes: list[tuple[int, int]], levels: FloatArray) -> FloatArray:
+    """Times of the steps, each where the elevator passes the middle between two levels."""
+    around = np.concatenate(([0.0], levels, [0.0]))
+    times = []
+    for k, (old, new) in enumerate(pairwise(around)):
+        if k < len(lobes):
+            i = lobes[k][0]
+            back = lobes[k - 1][1] if k else max(0, i - 1)
+        else:
+            back = lobes[-1][1]
+            i = min(back + 1, len(d) - 1)
+        middle = 0.5 * (old + new)
+        stretch = np.arange(back, i + 1)
+        passed = stretch[(d[stretch] - middle) * np.sign(new - old) >= 0.0]
+        j = int(passed[0]) if len(passed) else i
+        times.append(0.5 * (t[j] + t[max(j - 1, 0)]))
+    return np.array(times)
+
+
+def _squareness(t: FloatArray, d: FloatArray, levels: FloatArray, onsets: FloatArray, quiet: float) -> float:
+    """Share of the samples between the first and the last step that lie on their lobe's level."""
+    edges = np.searchsorted(t, onsets)
+    on = 0
+    for level, i, j in zip(levels, edges, edges[1:], strict=False):
+        on += int(np.count_nonzero(np.abs(d[i:j] - level) <= 0.12 * abs(level) + 2.0 * quiet))
+    return on / max(1, int(edges[-1] - edges[0]))
+
+
+def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape) -> bool:
+    """Whether the elevator steps from level to level rather than swings (multisines swing)."""
+    if shape.kind == "multisine":
+        return True
+    durations = np.diff([onset for onset, _ in shape.steps])
+    longest = _SHARP * float(np.min(durations)) + 1.5 * float(np.median(np.diff(t)))
+    old = 0.0
+    for onset, new in shape.steps:
+        near = np.abs(t - onset) <= float(np.min(durations))
+        done = (d[near] - old) / (new - old)
+        left, arrived = t[near][done <= 0.2], t[near][done >= 0.8]
+        left, arrived = left[left <= onset], arrived[arrived >= onset]
+        if len(left) == 0 or len(arrived) == 0 or arrived[0] - left[-1] > longest:
+            return False
+        old = new
+    return True
+
+
+def _kind(levels: FloatArray, durations: FloatArray, square: float, step_s: float) -> InputKind | None:
+    """Which input these lobes are, None for movements that are no test input."""
+    sizes = np.abs(levels) / np.max(np.abs(levels))
+    if len(levels) == 4 and square >= _SQUARE_3211 and np.all(sizes >= _LEAST_LEVEL):
+        unit = float(np.sum(durations)) / 7.0
+        if np.all(np.abs(durations - unit * np.array([3, 2, 1, 1])) <= 0.45 * unit + step_s):
+            return "3-2-1-1" if levels[0] < 0.0 else "reverse 3-2-1-1"
+    if square < _SQUARE:
+        return "multisine" if _is_multisine(levels, durations) else None
+    if len(levels) == 1:
+        return "pulse" if 0.08 <= durations[0] <= 4.0 else None
+    if len(levels) == 2 and np.all(sizes >= _LEAST_LEVEL) and 0.5 <= durations[0] / durations[1] <= 2.0:
+        return "doublet"
+    return "other"
+
+
+def _is_multisine(levels: FloatArray, durations: FloatArray) -> bool:
+    """Many reversals, quick ones, and no dying away."""
+    if len(levels) < 6 or np.median(durations) > 1.5:
+        return False
+    half = len(levels) // 2
+    early, late = np.max(np.abs(levels[:half])), np.max(np.abs(levels[half:]))
+    return bool(late > 0.5 * early and early > 0.3 * late)
+
+
+def _without_spikes(u: FloatArray) -> FloatArray:
+    """Median of three: one sample alone is no movement."""
+    if len(u) < 3:
+        return u
+    inner: FloatArray = np.median(np.stack([u[:-2], u[1:-1], u[2:]]), axis=0)
+    return np.concatenate(([u[0]], inner, [u[-1]]))

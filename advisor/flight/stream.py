@@ -1,0 +1,318 @@
+"""The stream of one vehicle: columns of messages in, channels and manoeuvres out.
+
+Whatever is decided is decided by the order of arrival and the vehicle's clock, never by how
+messages were batched: a live link, message by message, and a log, whole, end in the same
+events. Memory is bounded by two minutes of channels.
+"""
+
+import heapq
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.channels import (
+    SLOWEST_FLIGHT_M_S,
+    Decoded,
+    derived_alpha,
+    named_value,
+    quantities,
+    stamps,
+    surface_angle,
+)
+from advisor.flight.clocks import BootClock
+from advisor.flight.events import (
+    FlightEvent,
+    ManeuverFlown,
+    ManeuverStarted,
+    ModeChanged,
+    Notice,
+    Rebooted,
+)
+from advisor.flight.identity import Identity
+from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.messages import Columns, FloatArray, IntArray
+from advisor.flight.pieces import between, pieces
+from advisor.flight.record import UNITS, Channel
+from advisor.flight.segmentation import LEAD_IN_S, Segmenter
+from advisor.flight.suitability import problems
+from advisor.flight.surfaces import Surface
+from advisor.flight.track import ChannelStatus, Tracks
+from advisor.flight.vehicle import Vehicle
+from advisor.problems import Problem
+
+KEEP_S = 120.0
+"""How far back channels reach: longer than any manoeuvre with its lead-in."""
+_LATE_S = 0.3
+"""Elevator samples wait this long for packets that a link delivered out of order."""
+_SETTLE_S = 0.7
+"""A manoeuvre is cut this long after its end, when every channel has arrived."""
+_OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
+
+
+@dataclass(frozen=True, slots=True)
+class _Master:
+    """The master clock of one boot, with the pitch angle that came with it."""
+
+    boot: int
+    order: IntArray
+    t: FloatArray
+    theta: FloatArray
+
+
+class FlightStream:
+    """Follows one vehicle.
+
+    Parameters
+    ----------
+    aircraft
+        The aircraft file: elevator output and calibration, source of the angle of attack.
+    target_system
+        System id to follow; None: the first vehicle heard.
+    """
+
+    def __init__(self, aircraft: Aircraft, target_system: int | None = None) -> None:
+        self._aircraft = aircraft
+        self._who = Identity(aircraft.elevator, target_system)
+        self._clock = BootClock()
+        self._tracks = Tracks(aircraft.alpha.source)
+        self._segmenter = Segmenter()
+        self._start_boot()
+        self.boot = 0
+        """Number of the power-on, 0 for the first in the stream."""
+        self.maneuvers = 0
+        """How many manoeuvres have been found."""
+        self.seen: set[str] = set()
+        """Names of the messages the vehicle has sent."""
+        self._best: dict[str, ChannelStatus] = {}
+        self._earlier_s = 0.0
+
+    def _start_boot(self) -> None:
+        self._tracks.clear()
+        self._segmenter = Segmenter()
+        self._waiting: list[tuple[float, int, float | None]] = []
+        self._elevator_s = -np.inf
+        self._ended: list[Span] = []
+        self._announced_s: float | None = None
+        self._modes = [(-np.inf, self._who.mode)]
+        self._first_s = np.nan
+        self._master_s = np.nan
+        self._theta = np.nan
+
+    @property
+    def vehicle(self) -> Vehicle | None:
+        """Who is followed; None before its first heartbeat."""
+        return self._who.vehicle
+
+    @property
+    def other_systems(self) -> frozenset[int]:
+        """System ids of further vehicles heard."""
+        return self._who.other_systems
+
+    @property
+    def mode(self) -> str:
+        """Flight mode of the newest heartbeat."""
+        return self._who.mode
+
+    @property
+    def elevator(self) -> Surface | Problem:
+        """The elevator's outputs and scale, or why there is none."""
+        return self._who.elevator
+
+    @property
+    def now_s(self) -> float:
+        """Vehicle time of the newest sample, s since boot; NaN before the first."""
+        return self._clock.newest_s
+
+    @property
+    def duration_s(self) -> float:
+        """Vehicle time heard so far, over all boots, s."""
+        return self._earlier_s + (self._master_s - self._first_s if np.isfinite(self._master_s) else 0.0)
+
+    @property
+    def channels(self) -> Mapping[str, ChannelStatus]:
+        """How every channel arrives, from the source that would be used now."""
+        return {**self._best, **self._tracks.statuses()}
+
+    def problems(self) -> list[Problem]:
+        """Why this stream cannot be used, as far as it has been heard; empty when it can."""
+        self._note_rates()
+        return problems(self.vehicle, self.other_systems, self.elevator, self._best, self.maneuvers)
+
+    def recent(self, name: str, seconds: float) -> Channel | None:
+        """The newest stretch of a channel; None when nothing of it has arrived."""
+        return self._tracks.recent(name, seconds)
+
+    def so_far(self) -> Maneuver | None:
+        """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        onset, now = self._segmenter.onset_s, self._elevator_s
+        if onset is None or not now > onset:
+            return None
+        span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
+        return self._cut(span, self.maneuvers + 1, None)
+
+    def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
+        """Take messages that have arrived; what became known by them, in order."""
+        events: list[FlightEvent] = []
+        for piece in pieces(columns):
+            events += self._feed_piece(piece)
+        return events
+
+    def finish(self) -> list[FlightEvent]:
+        """No more messages will come: whatever is open is closed."""
+        events: list[FlightEvent] = []
+        while self._waiting:
+            self._release(heapq.heappop(self._waiting))
+        last = self._segmenter.finish()
+        for span in [*self._ended, *([last] if last else [])]:
+            events += self._flown(span, None)
+        self._ended.clear()
+        self._note_rates()
+        return events
+
+    def _note_rates(self) -> None:
+        """Remember how each channel arrived when it arrived fastest."""
+        for name, status in self._tracks.statuses().items():
+            best = self._best.get(name)
+            if best is None or not status.rate_hz <= best.rate_hz:
+                self._best[name] = status
+
+    def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
+        """Columns within which neither vehicle nor parameters nor mode change."""
+        mode = self._who.mode
+        events = self._who.learn(piece)
+        vehicle = self._who.vehicle
+        if vehicle is None:
+            return events
+        if self._who.mode != mode:
+            events.append(ModeChanged(self._who.mode, self._master_s))
+            if np.isfinite(self._master_s):
+                order = min(int(c.order[0]) for c in piece)
+                heapq.heappush(self._waiting, (self._master_s, order, None))
+                self._modes.append((self._master_s, self._who.mode))
+            else:
+                self._modes = [(-np.inf, self._who.mode)]
+        mine = [c for c in piece if c.system == vehicle.system]
+        self.seen.update(c.name for c in mine)
+        for part, master in self._by_boot(mine, vehicle):
+            if master.boot != self.boot:
+                events += self.finish()
+                self._earlier_s = self.duration_s
+                self.boot = master.boot
+                self._start_boot()
+                events.append(Rebooted(self.boot))
+            events += self._feed_part(part, master, vehicle)
+        return events
+
+    def _by_boot(self, mine: Sequence[Columns], vehicle: Vehicle) -> Iterator[tuple[list[Columns], _Master]]:
+        """The piece with the master clock of each boot in it (nearly always one)."""
+        attitude = next((c for c in mine if c.name == "ATTITUDE" and c.component == vehicle.component), None)
+        if attitude is None:
+            yield list(mine), _Master(self.boot, np.empty(0, dtype=np.int64), np.empty(0), np.empty(0))
+            return
+        ticks = self._clock.advance(np.asarray(attitude.fields["time_boot_ms"], dtype=np.int64))
+        pitch = np.asarray(attitude.fields["pitch"], dtype=np.float64)
+        boots, first = np.unique(ticks.boot, return_index=True)
+        edges = [int(n) for n in attitude.order[first]]
+        if boots[0] == self.boot:
+            edges[0] = 0
+        else:
+            boots, edges = np.concatenate(([self.boot], boots)), [0, *edges]
+        edges.append(int(max(c.order[-1] for c in mine)) + 1)
+        for boot, (a, b) in zip(boots.tolist(), pairwise(edges), strict=True):
+            believed = (ticks.boot == boot) & np.isfinite(ticks.t)
+            master = _Master(boot, attitude.order[believed], ticks.t[believed], pitch[believed])
+            yield between(mine, a, b), master
+
+    def _feed_part(self, part: Sequence[Columns], master: _Master, vehicle: Vehicle) -> list[FlightEvent]:
+        """Columns of one boot: channels first, then the elevator sample by sample."""
+        self._tracks.forget(max(self._elevator_s, self._master_s) - KEEP_S)
+        orders = np.concatenate(([-1], master.order))
+        clock = np.concatenate(([self._master_s], master.t))
+        pitch = _last_finite(np.concatenate(([self._theta], master.theta)))
+        elevator: list[Decoded] = []
+        for columns in part:
+            if columns.component != vehicle.component and columns.name != "NAMED_VALUE_FLOAT":
+                continue
+            now = np.searchsorted(orders, columns.order, side="right") - 1
+            t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
+            for new in self._decode(columns, t, pitch[now], vehicle):
+                self._tracks.append(new)
+                if new.channel == "elevator":
+                    elevator.append(new)
+        if np.isnan(self._first_s) and len(master.t):
+            self._first_s = float(master.t[0])
+        self._master_s, self._theta = float(clock[-1]), float(pitch[-1])
+        return self._feed_elevator(elevator)
+
+    def _decode(
+        self, columns: Columns, t: FloatArray, theta: FloatArray, vehicle: Vehicle
+    ) -> Iterator[Decoded]:
+        yield from quantities(columns, t)
+        if columns.name == "VFR_HUD":
+            yield derived_alpha(columns, t, theta, self._aircraft.airspeed_m_s)
+        elif columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
+            yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))
+        elif columns.name in _OUTPUTS:
+            for name, surface in self._who.surfaces.items():
+                if (new := surface_angle(name, columns, t, surface, vehicle.autopilot)) is not None:
+                    yield new
+
+    def _feed_elevator(self, decoded: Sequence[Decoded]) -> list[FlightEvent]:
+        """Give the segmenter its samples in the order of their stamps, and cut what has ended."""
+        events: list[FlightEvent] = []
+        arrived = sorted(
+            (order, t, y)
+            for new in decoded
+            for order, t, y in zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
+        )
+        for order, t, y in arrived:
+            heapq.heappush(self._waiting, (t, order, y))
+            self._elevator_s = max(self._elevator_s, t)
+            while self._waiting[0][0] <= self._elevator_s - _LATE_S:
+                self._release(heapq.heappop(self._waiting))
+                if not self._waiting:
+                    break
+            started = self._segmenter.recognised
+            if started is not None and started.start_s != self._announced_s:
+                self._announced_s = started.start_s
+                events.append(ManeuverStarted(started.start_s, started.kind))
+            while self._ended and self._elevator_s >= self._ended[0].end_s + _SETTLE_S:
+                events += self._flown(self._ended.pop(0), order)
+        return events
+
+    def _release(self, item: tuple[float, int, float | None]) -> None:
+        t, _, elevator = item
+        ended = self._segmenter.mode_changed(t) if elevator is None else self._segmenter.push(t, elevator)
+        if ended is not None:
+            self._ended.append(ended)
+
+    def _flown(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
+        maneuver = self._cut(span, self.maneuvers + 1, up_to_order)
+        airspeed = maneuver.channels.get("airspeed")
+        if airspeed is not None and 0.0 < float(np.median(airspeed.y)) < SLOWEST_FLIGHT_M_S:
+            return [
+                Notice(
+                    "on_ground", f"Elevator input at {span.start_s:.1f} s ignored: the aircraft does not fly."
+                )
+            ]
+        self.maneuvers += 1
+        self._note_rates()
+        return [ManeuverFlown(maneuver)]
+
+    def _cut(self, span: Span, number: int, up_to_order: int | None) -> Maneuver:
+        channels = {}
+        for name in UNITS:
+            channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
+            if channel is not None:
+                channels[name] = self._who.with_provenance(channel)
+        mode = next(mode for since, mode in reversed(self._modes) if since <= span.start_s)
+        return Maneuver(number, self.boot, span, channels, mode)
+
+
+def _last_finite(values: FloatArray) -> FloatArray:
+    """Each value, or where it is NaN the last one before it that is not."""
+    index = np.where(np.isfinite(values), np.arange(len(values)), 0)
+    return values[np.maximum.accumulate(index)]

@@ -1,0 +1,137 @@
+"""Why a stream cannot serve to identify a short period: what is missing or too slow, and how to mend it.
+
+How fast is fast enough depends on the aircraft. Before there is an estimate only a floor can
+be demanded: a 3-2-1-1 is matched to the short period, its shortest step is about a third of
+the natural period, and below four samples to that step neither the step nor the answer to it
+can be placed. The floor is eight samples a second: it lets a slow jet pass at 10 Hz and
+refuses what an autopilot sends when nobody asks (2 to 4 Hz). Once there is an estimate, each
+manoeuvre is judged against its own natural frequency (`advisor.decision.quality`).
+"""
+
+from collections.abc import Collection, Mapping
+
+from advisor.flight.surfaces import Surface
+from advisor.flight.track import ChannelStatus
+from advisor.flight.vehicle import Vehicle
+from advisor.problems import Problem
+
+SLOWEST_HZ = 8.0
+"""Least rate of elevator, pitch rate and angle of attack, whatever the aircraft."""
+_ASK_HZ = 50
+
+# Stream groups of ArduPilot, which hold a message's rate: SRn_<group>, since 4.7 MAVn_<group>.
+_GROUPS = {
+    "ATTITUDE": "EXTRA1",
+    "AOA_SSA": "EXTRA1",
+    "VFR_HUD": "EXTRA2",
+    "SERVO_OUTPUT_RAW": "RC_CHAN",
+    "RAW_IMU": "RAW_SENS",
+}
+
+
+def problems(
+    vehicle: Vehicle | None,
+    other_systems: Collection[int],
+    elevator: Surface | Problem,
+    channels: Mapping[str, ChannelStatus],
+    maneuvers: int,
+) -> list[Problem]:
+    """Everything that keeps a stream from being used, the most fundamental first.
+
+    Parameters
+    ----------
+    vehicle, other_systems
+        Who is followed, and the system ids of further vehicles heard.
+    elevator
+        The elevator's outputs, or why there are none.
+    channels
+        How every channel arrived, at its best.
+    maneuvers
+        How many manoeuvres were found.
+    """
+    if vehicle is None:
+        return [_no_vehicle(other_systems)]
+    found = [*_missing(elevator, channels), *_too_slow(channels)]
+    if not found and maneuvers == 0:
+        found.append(
+            Problem(
+                "no_maneuver",
+                "No test manoeuvre was found: the elevator never left its quiet level in steps and returned.",
+                "Fly a 3-2-1-1 on the elevator in MANUAL, the stick still for some seconds before and after.",
+            )
+        )
+    return found
+
+
+def _no_vehicle(other_systems: Collection[int]) -> Problem:
+    if other_systems:
+        others = ", ".join(str(n) for n in sorted(other_systems))
+        return Problem(
+            "no_vehicle",
+            f"The target system sent no heartbeat; heard were the vehicles {others}.",
+            f"Choose one of them, e.g. --target-system {min(other_systems)}.",
+        )
+    return Problem(
+        "no_vehicle",
+        "No vehicle was heard: there is no HEARTBEAT of an autopilot.",
+        "Check that the log or link is that of an aircraft, not of a ground station alone.",
+    )
+
+
+def _missing(elevator: Surface | Problem, channels: Mapping[str, ChannelStatus]) -> list[Problem]:
+    found = []
+    if isinstance(elevator, Problem):
+        found.append(elevator)
+    elif "elevator" not in channels:
+        outputs = " and ".join(str(n) for n in elevator.outputs)
+        found.append(
+            Problem(
+                "no_elevator",
+                f"Servo output {outputs}, the elevator, never carried a pulse (SERVO_OUTPUT_RAW).",
+                "Ask for SERVO_OUTPUT_RAW (--request-rates), or set elevator.output in the aircraft file.",
+            )
+        )
+    if "q" not in channels:
+        found.append(
+            Problem(
+                "no_pitch_rate",
+                "There is no pitch rate: no ATTITUDE arrived.",
+                "Ask for ATTITUDE (--request-rates, or " + _parameter("ATTITUDE") + ").",
+            )
+        )
+    if "alpha" not in channels:
+        found.append(
+            Problem(
+                "no_alpha",
+                "There is no angle of attack, and none can be derived.",
+                "Ask for AOA_SSA, or for VFR_HUD with air speed and climb rate (--request-rates); "
+                "a vane may send NAMED_VALUE_FLOAT (alpha.source).",
+            )
+        )
+    return found
+
+
+def _too_slow(channels: Mapping[str, ChannelStatus]) -> list[Problem]:
+    needed = [channels[name] for name in ("elevator", "q", "alpha") if name in channels]
+    slow = {_message(status): status.rate_hz for status in needed if not status.rate_hz >= SLOWEST_HZ}
+    return [
+        Problem(
+            "rate",
+            f"{message} arrives at {rate_hz:.1f} Hz, too slow to identify a short period "
+            f"(at least {SLOWEST_HZ:.0f} Hz, better {_ASK_HZ} Hz).",
+            f"Ask for {_ASK_HZ} Hz: {_parameter(message)}, or run live with --request-rates.",
+        )
+        for message, rate_hz in slow.items()
+    ]
+
+
+def _message(status: ChannelStatus) -> str:
+    """Name of the message that sets the rate of a channel."""
+    return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
+
+
+def _parameter(message: str) -> str:
+    group = _GROUPS.get(message)
+    if group is None:
+        return f"the rate of {message} on the vehicle"
+    return f"set SR0_{group} (MAV1_{group} in newer firmware) to {_ASK_HZ}"

@@ -1,0 +1,84 @@
+"""Who the vehicle is: the heartbeat that belongs to an aircraft, and the flight mode it names."""
+
+from dataclasses import dataclass, replace
+
+from advisor.flight.messages import Columns
+
+# Numbers of MAV_AUTOPILOT and MAV_TYPE, MAVLink common.xml.
+_AUTOPILOT_INVALID = 8
+_AUTOPILOTS = {0: "generic", 3: "ardupilot", 12: "px4", 4: "openpilot", 15: "armazila", 18: "smartap"}
+_PERIPHERALS = frozenset({5, 6, 18, 26, 27, 30, 31, 32, 33, 34, 36, 37, 38, 39, 40, 41, 42})
+"""Antenna tracker, ground station, onboard controller, gimbal, ADS-B, camera, and other parts."""
+
+_PLANE_MODES = {
+    0: "MANUAL", 1: "CIRCLE", 2: "STABILIZE", 3: "TRAINING", 4: "ACRO", 5: "FBWA", 6: "FBWB", 7: "CRUISE",
+    8: "AUTOTUNE", 10: "AUTO", 11: "RTL", 12: "LOITER", 13: "TAKEOFF", 14: "AVOID_ADSB", 15: "GUIDED",
+    16: "INITIALISING", 17: "QSTABILIZE", 18: "QHOVER", 19: "QLOITER", 20: "QLAND", 21: "QRTL",
+    22: "QAUTOTUNE", 23: "QACRO", 24: "THERMAL", 25: "LOITER_ALT_QLAND", 26: "AUTOLAND",
+}  # fmt: skip
+_PX4_MODES = {1: "MANUAL", 2: "ALTCTL", 3: "POSCTL", 4: "AUTO", 5: "ACRO", 6: "OFFBOARD", 7: "STABILIZED"}
+
+
+@dataclass(frozen=True, slots=True)
+class Vehicle:
+    """The autopilot whose messages count."""
+
+    system: int
+    component: int
+    autopilot: str
+    """``ardupilot``, ``px4``, or another name or number of MAV_AUTOPILOT."""
+    type: int
+    """MAV_TYPE of its heartbeat."""
+    firmware: str | None = None
+    """Version as the vehicle states it; None until it does."""
+
+    def __str__(self) -> str:
+        return f"{self.autopilot} {self.system}/{self.component}"
+
+    def with_firmware(self, firmware: str) -> "Vehicle":
+        """The same vehicle, its version known."""
+        return replace(self, firmware=firmware)
+
+
+class VehicleFinder:
+    """Picks the vehicle out of everything that sends heartbeats.
+
+    Parameters
+    ----------
+    target_system
+        System id the user asked for; None: the first vehicle heard.
+    """
+
+    def __init__(self, target_system: int | None = None) -> None:
+        self._target = target_system
+        self.vehicle: Vehicle | None = None
+        self.others: set[int] = set()
+        """System ids of further vehicles on the same stream."""
+
+    def hear(self, heartbeat: Columns) -> bool:
+        """Take the first row of one sender's heartbeats; true when it settles who the vehicle is."""
+        autopilot = int(heartbeat.fields["autopilot"][0])
+        kind = int(heartbeat.fields["type"][0])
+        if autopilot == _AUTOPILOT_INVALID or kind in _PERIPHERALS:
+            return False
+        if self.vehicle is None and self._target in (None, heartbeat.system):
+            name = _AUTOPILOTS.get(autopilot, f"autopilot {autopilot}")
+            self.vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind)
+            self.others.discard(heartbeat.system)
+            return True
+        if self.vehicle is None or heartbeat.system != self.vehicle.system:
+            self.others.add(heartbeat.system)
+        return False
+
+
+def mode_name(vehicle: Vehicle, custom: int) -> str:
+    """Flight mode as the autopilot's users know it.
+
+    ArduPlane numbers its modes in ``custom_mode``; PX4 keeps the main mode in bits 16-23.
+    An unknown number is shown as it is.
+    """
+    if vehicle.autopilot == "ardupilot":
+        return _PLANE_MODES.get(custom, f"mode {custom}")
+    if vehicle.autopilot == "px4":
+        return _PX4_MODES.get((custom >> 16) & 0xFF, f"mode {custom}")
+    return f"mode {custom}"
