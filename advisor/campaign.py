@@ -1,57 +1,168 @@
-"""The flight test as a pure state machine: columns of messages in, events out."""
+"""The flight test as a pure state machine: columns of messages in, events and a state out."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
-from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
+from advisor.aircraft import Aircraft
+from advisor.assessment import assess
+from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.decision.history import Flown
+from advisor.decision.judge import judge_campaign
+from advisor.decision.stopping import flight_test
+from advisor.decision.verdict import FlightTestVerdict
+from advisor.flight.events import FlightEvent, ManeuverFlown, Notice, Rebooted, VehicleFound
 from advisor.flight.maneuver import Maneuver
-from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.flight.messages import Columns
+from advisor.flight.stream import FlightStream
+from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import estimate_jointly
+from advisor.problems import Problem
+from advisor.settling import Settling
 
 
 @dataclass(frozen=True, slots=True)
-class JudgedManeuver:
-    """One manoeuvre, its estimate and the verdict on it."""
+class ManeuverJudged:
+    """A manoeuvre was estimated and judged; the flight test decided anew."""
 
-    maneuver: Maneuver
-    estimate: Estimate | NoEstimate
-    verdict: ManeuverVerdict
-    excluded_because: str | None = None
-    """Set when an engineer took it out by hand."""
-
-
-@dataclass(frozen=True, slots=True)
-class ChannelStatus:
-    """How one channel arrives."""
-
-    source: str
-    provenance: str
-    rate_hz: float
-    largest_gap_s: float
-    last_s: float
-    """Vehicle time of the newest sample."""
-
-
-@dataclass(frozen=True, slots=True)
-class CampaignState:
-    """Everything a face may show, as of the newest sample."""
-
-    vehicle: str | None
-    """``ardupilot 1/1``; None before the first heartbeat."""
-    now_s: float
-    """Vehicle time of the newest sample, seconds since boot."""
-    mode: str
-    channels: Mapping[str, ChannelStatus]
-    maneuvers: tuple[JudgedManeuver, ...]
+    judged: JudgedManeuver
     flight_test: FlightTestVerdict
-    model: Estimate | None
-    """Joint estimate over the accepted manoeuvres."""
-    flying: Maneuver | None = None
-    """The manoeuvre being flown now, cut so far."""
-    settling: Estimate | None = None
-    """Estimate from the manoeuvre being flown, refreshed as it goes."""
-    enough: str | None = None
-    """Set when further free response would add nothing: the pilot may recover."""
-    estimate_from: tuple[int, ...] = ()
-    """Numbers of the manoeuvres that ``model`` is made from."""
-    notices: tuple[str, ...] = ()
-    """Sentences for the event log, oldest first."""
+
+
+CampaignEvent = FlightEvent | ManeuverJudged
+
+
+class Campaign:
+    """Listens, estimates, judges. No input or output, no clock: a log and a live link give the same.
+
+    Parameters
+    ----------
+    aircraft
+        What the crew says of its aircraft.
+    target_system
+        System id of the vehicle; None: the first one heard.
+    settle
+        Estimate while a manoeuvre is still being flown, for live faces.
+        Verdicts do not depend on it.
+    tell
+        Called with every event, for whoever announces verdicts.
+    """
+
+    def __init__(
+        self,
+        aircraft: Aircraft,
+        target_system: int | None = None,
+        settle: bool = False,
+        tell: Callable[[CampaignEvent], object] | None = None,
+    ) -> None:
+        self._aircraft = aircraft
+        self._tell = tell
+        self._stream = FlightStream(aircraft, target_system)
+        self._maneuvers: list[Maneuver] = []
+        self._history: list[Flown] = []
+        self._notes: dict[int, tuple[str, ...]] = {}
+        self._notices: list[str] = []
+        self._judged: tuple[JudgedManeuver, ...] = ()
+        self._flight_test = flight_test((), aircraft.campaign)
+        self._model: Estimate | None = None
+        self._settling = Settling(aircraft) if settle else None
+
+    def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
+        """Take the next messages, in order of arrival; how they are cut into batches does not matter."""
+        return self._take(self._stream.feed(list(columns)))
+
+    def finish(self) -> list[CampaignEvent]:
+        """The stream has ended: a manoeuvre that is complete but for its quiet end still counts."""
+        return self._take(self._stream.finish())
+
+    @property
+    def state(self) -> CampaignState:
+        """Everything a face may show, as of the newest message."""
+        stream = self._stream
+        flying = stream.so_far()
+        settled = self._settling.follow(flying) if self._settling else None
+        return CampaignState(
+            vehicle=stream.vehicle,
+            now_s=stream.now_s,
+            duration_s=stream.duration_s,
+            mode=stream.mode,
+            channels=stream.channels,
+            maneuvers=self._judged,
+            flight_test=self._flight_test,
+            model=self._model,
+            flying=flying,
+            settling=settled.estimate if settled else None,
+            enough=settled.enough if settled else None,
+            estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
+            notices=tuple(self._notices),
+        )
+
+    @property
+    def problems(self) -> list[Problem]:
+        """Why this stream cannot be used, as far as it has been heard; empty when it can."""
+        return self._stream.problems()
+
+    def exclude(self, number: int, because: str) -> None:
+        """Take a manoeuvre out of every decision; all that followed is decided again."""
+        self._decide_by_hand(number, because)
+
+    def include(self, number: int) -> None:
+        """Take an excluded manoeuvre in again."""
+        self._decide_by_hand(number, None)
+
+    def mark(self, text: str) -> None:
+        """Set a mark in the event log at the newest vehicle time."""
+        self._notices.append(f"mark at {self._stream.now_s:.1f} s: {text}")
+
+    def note(self, number: int, text: str) -> None:
+        """Write a note beside a manoeuvre."""
+        self._index(number)
+        self._notes[number] = (*self._notes.get(number, ()), text)
+        self._decide()
+
+    def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
+        told: list[CampaignEvent] = []
+        for event in events:
+            told.append(event)
+            match event:
+                case ManeuverFlown(maneuver):
+                    self._maneuvers.append(maneuver)
+                    self._history.append(assess(maneuver, self._aircraft))
+                    self._decide()
+                    told.append(ManeuverJudged(self._judged[-1], self._flight_test))
+                case Notice(_, text):
+                    self._notices.append(text)
+                case VehicleFound(vehicle):
+                    self._notices.append(f"following {vehicle}")
+                case Rebooted(boot):
+                    self._notices.append(f"the vehicle rebooted: flight {boot + 1} begins")
+        if self._tell is not None:
+            for happened in told:
+                self._tell(happened)
+        return told
+
+    def _decide(self) -> None:
+        plan = self._aircraft.campaign
+        verdicts = judge_campaign(self._history, plan)
+        self._judged = tuple(
+            JudgedManeuver(
+                maneuver,
+                flown.estimate,
+                verdict,
+                flown.excluded_because,
+                self._notes.get(maneuver.number, ()),
+            )
+            for maneuver, flown, verdict in zip(self._maneuvers, self._history, verdicts, strict=True)
+        )
+        self._flight_test = flight_test(self._history, plan)
+        model = estimate_jointly([j.maneuver for j in self._judged if j.verdict.accepted], self._aircraft)
+        self._model = model if isinstance(model, Estimate) else None
+
+    def _decide_by_hand(self, number: int, because: str | None) -> None:
+        i = self._index(number)
+        self._history[i] = replace(self._history[i], excluded_because=because)
+        what = "included again" if because is None else f"excluded: {because}"
+        self._notices.append(f"manoeuvre {number} {what}")
+        self._decide()
+
+    def _index(self, number: int) -> int:
+        return [maneuver.number for maneuver in self._maneuvers].index(number)

@@ -7,6 +7,7 @@ from importlib import import_module
 import click
 
 from advisor import __version__
+from advisor.commands.options import INTERNAL, UNUSABLE, USAGE
 from advisor.problems import ConfigurationError, UnusableInputError
 
 COMMANDS = {
@@ -20,8 +21,6 @@ COMMANDS = {
     "locate": "Where settings and recordings are kept.",
 }
 """Name to the line in ``advisor --help``; kept here so that help imports no command."""
-
-USAGE, UNUSABLE, INTERNAL = 2, 3, 70
 
 
 class LazyCommands(click.Group):

@@ -11,6 +11,8 @@ from advisor.aircraft import Aircraft, Rule
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+USAGE, UNUSABLE, INTERNAL = 2, 3, 70
+"""Exit codes: wrong usage or configuration, input that cannot serve, a fault of the advisor itself."""
 RULES = ("continuous", "separate", "information")
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from advisor.aircraft import PARAMETERS
-from advisor.campaign import CampaignState, JudgedManeuver
+from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.problems import Problem
@@ -15,7 +15,7 @@ NORMAL_95 = 1.959963984540054
 
 
 def analysis_document(
-    state: CampaignState | None, file: str, duration_s: float, problems: Sequence[Problem] = ()
+    state: CampaignState | None, file: str, problems: Sequence[Problem] = ()
 ) -> dict[str, Any]:
     """Build the document of ``advisor analyze --json``.
 
@@ -25,8 +25,6 @@ def analysis_document(
         The campaign at the end of the log; None when the log could not be read at all.
     file
         Name of the log, as given.
-    duration_s
-        Vehicle time that the log spans, s.
     problems
         Why the log cannot be used; with any, ``usable`` is false.
     """
@@ -34,7 +32,7 @@ def analysis_document(
         "schema": SCHEMA,
         "usable": not problems,
         "problems": [{"code": p.code, "text": p.text, "fix": p.fix} for p in problems],
-        "log": _log(state, file, duration_s),
+        "log": _log(state, file),
         "maneuvers": [_maneuver(m) for m in state.maneuvers] if state else [],
         "flight_test": _flight_test(state.flight_test) if state else None,
         "model": _model(state.model) if state else None,
@@ -43,11 +41,11 @@ def analysis_document(
     }
 
 
-def _log(state: CampaignState | None, file: str, duration_s: float) -> dict[str, Any]:
+def _log(state: CampaignState | None, file: str) -> dict[str, Any]:
     vehicle = state.vehicle if state else None
     return {
         "file": file,
-        "duration_s": number(duration_s),
+        "duration_s": number(state.duration_s) if state else None,
         "vehicle": vehicle
         and {
             "system": vehicle.system,
@@ -68,8 +66,8 @@ def _log(state: CampaignState | None, file: str, duration_s: float) -> dict[str,
 
 
 def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
-    span, verdict, estimate = judged.maneuver.span, judged.verdict, judged.estimate
-    estimated = isinstance(estimate, Estimate)
+    span, verdict = judged.maneuver.span, judged.verdict
+    estimate = judged.estimate if isinstance(judged.estimate, Estimate) else None
     return {
         "number": judged.maneuver.number,
         "boot": judged.maneuver.boot,
@@ -87,13 +85,13 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
         ],
         "cautions": list(verdict.cautions),
         "excluded_because": judged.excluded_because,
-        "cost": number(estimate.cost) if estimated else None,
+        "cost": number(estimate.cost) if estimate else None,
         "fit": {
             name: {"rms": number(fit.rms), "tic": number(fit.tic), "r2": number(fit.r2)}
-            for name, fit in (estimate.fits[0].items() if estimated else ())
+            for name, fit in (estimate.fits[0].items() if estimate else ())
         },
-        "estimates": parameters(estimate),
-        "not_identifiable": dict(estimate.not_identifiable) if estimated else {},
+        "estimates": parameters(judged.estimate),
+        "not_identifiable": dict(estimate.not_identifiable) if estimate else {},
         "rules": {name: _rule(result) for name, result in verdict.rules.items()},
     }
 

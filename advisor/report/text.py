@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.campaign import CampaignState, JudgedManeuver
+from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.oem.estimate import Estimate
 

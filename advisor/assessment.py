@@ -1,0 +1,20 @@
+"""One manoeuvre on its own: its estimate, what speaks against it, what belongs on its verdict."""
+
+from advisor.aircraft import Aircraft
+from advisor.decision.history import Flown
+from advisor.flight.kinematics import check_alpha
+from advisor.flight.maneuver import Maneuver
+from advisor.oem.estimator import estimate
+
+
+def assess(maneuver: Maneuver, aircraft: Aircraft) -> Flown:
+    """Estimate a manoeuvre and examine it, before any rule compares it with others."""
+    estimated = estimate(maneuver, aircraft)
+    cautions = []
+    alpha = maneuver.channels.get("alpha")
+    if alpha is not None:
+        cautions.append(f"angle of attack: {alpha.provenance}, from {alpha.source}")
+    check = check_alpha(maneuver, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m)
+    if check.finding not in ("consistent",):
+        cautions.append(check.sentence)
+    return Flown(estimated, (), tuple(cautions))

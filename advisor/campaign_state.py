@@ -1,0 +1,51 @@
+"""What a campaign knows at one moment: everything a face may show, frozen."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.track import ChannelStatus
+from advisor.flight.vehicle import Vehicle
+from advisor.oem.estimate import Estimate, NoEstimate
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedManeuver:
+    """One manoeuvre, its estimate and the verdict on it."""
+
+    maneuver: Maneuver
+    estimate: Estimate | NoEstimate
+    verdict: ManeuverVerdict
+    excluded_because: str | None = None
+    """Set when an engineer took it out by hand."""
+    notes: tuple[str, ...] = ()
+    """What the engineer wrote beside it."""
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignState:
+    """Everything a face may show, as of the newest sample."""
+
+    vehicle: Vehicle | None
+    """None before the first heartbeat."""
+    now_s: float
+    """Vehicle time of the newest sample, seconds since boot."""
+    duration_s: float
+    """Vehicle time heard so far, over all power-ons, s."""
+    mode: str
+    channels: Mapping[str, ChannelStatus]
+    maneuvers: tuple[JudgedManeuver, ...]
+    flight_test: FlightTestVerdict
+    model: Estimate | None
+    """Joint estimate over the accepted manoeuvres."""
+    flying: Maneuver | None = None
+    """The manoeuvre being flown now, cut so far."""
+    settling: Estimate | None = None
+    """Estimate from the manoeuvre being flown, refreshed as it goes."""
+    enough: str | None = None
+    """Set when further free response would add nothing: the pilot may recover."""
+    estimate_from: tuple[int, ...] = ()
+    """Numbers of the manoeuvres that ``model`` is made from."""
+    notices: tuple[str, ...] = ()
+    """Sentences for the event log, oldest first."""

@@ -1,0 +1,67 @@
+"""``advisor analyze``: a log judged without a screen."""
+
+import json
+from pathlib import Path
+
+import click
+
+from advisor.aircraft import Aircraft, Rule
+from advisor.campaign_state import CampaignState
+from advisor.commands.options import (
+    UNUSABLE,
+    aircraft_option,
+    json_option,
+    read_aircraft,
+    rule_option,
+    target_system_option,
+)
+from advisor.problems import Problem, UnusableInputError
+
+
+@click.command
+@click.argument("log", type=click.Path(path_type=Path))
+@aircraft_option
+@rule_option
+@target_system_option
+@json_option
+def command(
+    log: Path, aircraft_file: Path | None, rule: Rule | None, target_system: int | None, as_json: bool
+) -> int:
+    """Every manoeuvre's verdict, the estimates, stop or continue: as text, or as one JSON document.
+
+    \b
+    Example:
+      advisor analyze flight.tlog --aircraft my-aircraft.yaml
+      advisor analyze flight.tlog --json | python -m json.tool
+    """
+    aircraft = read_aircraft(aircraft_file, rule)
+    state, problems = _analyze(log, aircraft, target_system)
+    if as_json:
+        from advisor.report.document import analysis_document
+
+        click.echo(json.dumps(analysis_document(state, str(log), problems), allow_nan=False, indent=1))
+    elif state is not None and not problems:
+        from rich.console import Console
+
+        from advisor.report.text import AnalysisText
+
+        Console(highlight=False, soft_wrap=True).print(AnalysisText(state, log.name, aircraft))
+    for problem in problems:
+        click.echo(f"{log.name}: {problem}", err=True)
+    return UNUSABLE if problems else 0
+
+
+def _analyze(
+    log: Path, aircraft: Aircraft, target_system: int | None
+) -> tuple[CampaignState | None, list[Problem]]:
+    from advisor.campaign import Campaign
+    from advisor.mavlink.logs import open_log
+
+    campaign = Campaign(aircraft, target_system)
+    try:
+        for columns in open_log(log):
+            campaign.feed(columns)
+    except UnusableInputError as error:
+        return None, [error.problem]
+    campaign.finish()
+    return campaign.state, campaign.problems

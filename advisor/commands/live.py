@@ -1,0 +1,102 @@
+"""``advisor live``: advise on a live link."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from advisor.aircraft import Rule
+from advisor.commands.options import aircraft_option, read_aircraft, rule_option, target_system_option
+from advisor.commands.screen import Listener, advise
+from advisor.problems import ConfigurationError
+
+
+@click.command
+@click.option(
+    "--master",
+    required=True,
+    metavar="CONN",
+    help="Connection, as in pymavlink: udpin:0.0.0.0:14550, tcp:host:port, /dev/ttyUSB0,57600.",
+)
+@click.option(
+    "--record", "record_to", type=click.Path(path_type=Path), metavar="FILE", help="Recording's file."
+)
+@click.option("--no-record", is_flag=True, help="Keep no recording of the link.")
+@click.option("--request-rates", is_flag=True, help="Ask the vehicle for 50 Hz streams and its servo set-up.")
+@click.option(
+    "--announce", is_flag=True, help="Send each verdict and STOP to the ground stations (STATUSTEXT)."
+)
+@click.option(
+    "--signing-key",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Sign what is sent, refuse what is not signed with this key.",
+)
+@click.option(
+    "--source-system", type=click.IntRange(1, 255), default=254, show_default=True, help="Own system id."
+)
+@aircraft_option
+@rule_option
+@target_system_option
+def command(
+    master: str,
+    record_to: Path | None,
+    no_record: bool,
+    request_rates: bool,
+    announce: bool,
+    signing_key: Path | None,
+    source_system: int,
+    aircraft_file: Path | None,
+    rule: Rule | None,
+    target_system: int | None,
+) -> None:
+    """Advise while flying. Nothing is sent to the vehicle unless an option here asks for it.
+
+    Without a terminal, or with HEADLESS=1, the verdicts come as text.
+
+    \b
+    Example:
+      advisor live --master udpin:0.0.0.0:14550 --aircraft my-aircraft.yaml
+      advisor live --master /dev/ttyUSB0,57600 --request-rates --announce
+    """
+    if no_record and record_to is not None:
+        raise ConfigurationError("--record and --no-record contradict each other; give one of them.")
+    aircraft = read_aircraft(aircraft_file, rule)
+    from advisor.mavlink.announce import Announcer
+    from advisor.mavlink.inquiry import Inquiry
+    from advisor.mavlink.link import Link
+    from advisor.mavlink.outgoing import Talker
+    from advisor.mavlink.rates import STREAMS, RateRequest
+    from advisor.mavlink.recorder import default_recording
+    from advisor.mavlink.signing import read_key
+    from advisor.tui.live import LinkSource
+
+    talkers: list[Talker] = []
+    if request_rates:
+        talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
+    announcer = Announcer() if announce else None
+    if announcer is not None:
+        talkers.append(announcer)
+    link = Link(
+        master,
+        source_system=source_system,
+        target_system=target_system,
+        record_to=None if no_record else record_to or default_recording(),
+        key=read_key(signing_key) if signing_key else None,
+        talkers=talkers,
+    )
+    tell = _announcing(announcer.judged) if announcer is not None else None
+    with link:
+        advise(LinkSource(link, master), aircraft, target_system, tell)
+
+
+def _announcing(judged: Callable[[int, str, str | None], object]) -> Listener:
+    from advisor.campaign import ManeuverJudged
+
+    def tell(event: object) -> None:
+        if isinstance(event, ManeuverJudged):
+            verdict = event.flight_test
+            stop = f"STOP TESTING: {verdict.sentence}" if verdict.decision == "stop" else None
+            judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop)
+
+    return tell

@@ -1,0 +1,50 @@
+"""``advisor replay``: a log played like a flight."""
+
+from math import inf
+from pathlib import Path
+
+import click
+
+from advisor.aircraft import Rule
+from advisor.commands.options import aircraft_option, read_aircraft, rule_option, target_system_option
+from advisor.commands.screen import advise
+
+
+def _speed(ctx: click.Context, parameter: click.Parameter, text: str) -> float:
+    if text == "max":
+        return inf
+    try:
+        speed = float(text)
+    except ValueError:
+        speed = 0.0
+    if not 0.0 < speed < inf:
+        raise click.BadParameter("give a number above 0, or max")
+    return speed
+
+
+@click.command
+@click.argument("log", type=click.Path(path_type=Path))
+@click.option(
+    "--speed", default="1", show_default=True, callback=_speed, metavar="N|max", help="Multiple of real time."
+)
+@aircraft_option
+@rule_option
+@target_system_option
+def command(
+    log: Path, speed: float, aircraft_file: Path | None, rule: Rule | None, target_system: int | None
+) -> None:
+    """The same screens on a log: pause, step, speed, jump to a manoeuvre.
+
+    Without a terminal, or with HEADLESS=1, the verdicts come as text.
+
+    \b
+    Example:
+      advisor replay logs/arduplane-calm.tlog --speed 10
+    """
+    aircraft = read_aircraft(aircraft_file, rule)
+    from advisor.mavlink.logs import open_log
+    from advisor.tui.replay import LogPlayer
+
+    batches = open_log(log)
+    source = LogPlayer(log.name, lambda: [columns for batch in batches for columns in batch], speed)
+    advise(source, aircraft, target_system)

@@ -1,0 +1,76 @@
+"""The demonstration: the bundled aircraft flies as a process of its own, over a real MAVLink link.
+
+Together with the study, this is the only place where the advisor meets the simulator, and it
+meets it as it meets any aircraft: as packets on a socket.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from advisor.mavlink.link import Link
+from advisor.problems import UnusableInputError
+
+LANDING_S = 2.0
+"""How long the link may be silent after the aircraft's process has ended, before the flight is over."""
+
+
+class Demonstration:
+    """A flight of the bundled aircraft and the link to it.
+
+    Parameters
+    ----------
+    aircraft
+        One of the simulator's aircraft: ``linear`` is the paper's model.
+    speed
+        Multiple of real time, as ``python -m sim fly --speed`` takes it.
+    seed
+        Seed of the instruments' noise.
+    record_to
+        File of the recording; None: no recording.
+    """
+
+    def __init__(self, aircraft: str, speed: float, seed: int, record_to: Path | None = None) -> None:
+        self._options = ["--aircraft", aircraft, "--speed", f"{speed:g}", "--seed", str(seed)]
+        self.link = Link("udpin:127.0.0.1:0", record_to=record_to)
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def __enter__(self) -> Self:
+        self.link.start()
+        command = [sys.executable, "-m", "sim", "fly", "--master", f"udpout:127.0.0.1:{self.link.port}"]
+        self._process = subprocess.Popen(
+            [*command, *self._options],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+        )
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.link.stop()
+        if self._process is not None:
+            self._process.terminate()
+            self._process.communicate()
+
+    def over(self) -> bool:
+        """Whether the aircraft has landed and its last packets have arrived.
+
+        Raises
+        ------
+        UnusableInputError
+            When the aircraft could not fly.
+        """
+        assert self._process is not None
+        code = self._process.poll()
+        if code:
+            said = self._process.stderr.read().decode(errors="replace") if self._process.stderr else ""
+            raise UnusableInputError(
+                "no_flight",
+                f"The bundled aircraft ended with exit code {code}: {said.strip()}",
+                "Try: python -m sim fly --master udpout:127.0.0.1:14550",
+            )
+        return code == 0 and self.link.statistics.silent_s > LANDING_S

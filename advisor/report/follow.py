@@ -1,0 +1,40 @@
+"""A campaign without a screen: each verdict as a line of text, as it comes."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+from advisor.campaign import Campaign, CampaignEvent, ManeuverJudged
+from advisor.campaign_state import CampaignState
+from advisor.flight.events import Notice, VehicleFound
+from advisor.flight.messages import Columns
+from advisor.report.text import maneuver_line, stop_line
+
+
+def follow(
+    batches: Iterator[Sequence[Columns]], campaign: Campaign, say: Callable[[str], object]
+) -> CampaignState:
+    """Feed a campaign to the end of a stream and say every verdict.
+
+    Parameters
+    ----------
+    batches
+        What arrives, in order; empty batches are pauses.
+    say
+        Takes one line of text.
+    """
+    for columns in batches:
+        for event in campaign.feed(columns):
+            _say(event, say)
+    for event in campaign.finish():
+        _say(event, say)
+    return campaign.state
+
+
+def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
+    match event:
+        case VehicleFound(vehicle):
+            say(f"following {vehicle}")
+        case Notice(_, text):
+            say(f"note: {text}")
+        case ManeuverJudged(judged, verdict):
+            say(maneuver_line(judged))
+            say(f"    {stop_line(verdict)}")

@@ -1,0 +1,62 @@
+"""The estimate of the manoeuvre being flown, as it settles, and when more of it adds nothing."""
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.maneuver import Maneuver
+from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import estimate
+
+SPAN_S = 0.5
+"""The standard deviations are compared over this much further response."""
+GAIN = 0.01
+"""Less relative improvement of every standard deviation than this is none worth waiting for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """Where the estimate of the running manoeuvre stands."""
+
+    estimate: Estimate
+    enough: str | None
+
+
+class Settling:
+    """Estimates again whenever the manoeuvre being flown has grown."""
+
+    def __init__(self, aircraft: Aircraft) -> None:
+        self._aircraft = aircraft
+        self._number: int | None = None
+        self._newest_s = -np.inf
+        self._stds: deque[tuple[float, np.ndarray]] = deque()
+        self._settled: Settled | None = None
+
+    def follow(self, flying: Maneuver | None) -> Settled | None:
+        """Where the estimate stands with the data so far; None while there is none."""
+        if flying is None:
+            self._number, self._settled = None, None
+            return None
+        if flying.number != self._number:
+            self._number, self._newest_s, self._settled = flying.number, -np.inf, None
+            self._stds.clear()
+        newest_s = flying.span.end_s
+        if newest_s <= self._newest_s:
+            return self._settled
+        self._newest_s = newest_s
+        estimated = estimate(flying, self._aircraft)
+        if isinstance(estimated, Estimate):
+            self._stds.append((newest_s, estimated.std_cr))
+            self._settled = Settled(estimated, self._enough(newest_s))
+        return self._settled
+
+    def _enough(self, newest_s: float) -> str | None:
+        while len(self._stds) > 1 and self._stds[1][0] <= newest_s - SPAN_S:
+            self._stds.popleft()
+        since_s, before = self._stds[0]
+        if newest_s - since_s < 0.9 * SPAN_S:
+            return None
+        gain = float(np.max(1.0 - self._stds[-1][1] / before))
+        return "enough: recover, more free response adds nothing" if gain < GAIN else None
