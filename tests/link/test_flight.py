@@ -1,0 +1,95 @@
+"""A whole flight of the bundled aircraft through what links do to it."""
+
+import subprocess
+import sys
+from collections.abc import Iterable
+
+import numpy as np
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from tests.link.air import Record, judged, records_of, through_a_poor_radio
+from tests.link.builders import Sender, attitude, heartbeat
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory: pytest.TempPathFactory) -> list[Record]:
+    log = tmp_path_factory.mktemp("flight") / "demo.tlog"
+    command = [sys.executable, "-m", "sim", "record", "--seed", "4", "--out", str(log)]
+    subprocess.run(command, check=True, capture_output=True, timeout=60)
+    return records_of(log)
+
+
+def verdicts(records: list[Record], batch: int = 25, key: bytes | None = None) -> list[tuple[bool, ...]]:
+    """Accepted or not, per rule, and stop or not, for every manoeuvre."""
+    return [
+        (
+            event.judged.verdict.accepted,
+            *(rule.accepted for rule in event.judged.verdict.rules.values()),
+            event.flight_test.decision == "stop",
+        )
+        for event in judged(records, batch, key)
+    ]
+
+
+def numbers(records: Iterable[Record], batch: int) -> list[tuple[float, ...]]:
+    return [
+        (event.judged.maneuver.span.start_s, *np.ravel(getattr(event.judged.estimate, "theta", np.nan)))
+        for event in judged(list(records), batch)
+    ]
+
+
+def amid(records: list[Record], strangers: list[bytes]) -> list[Record]:
+    """The flight with a stranger's frames, one by one, between its own."""
+    mixed = []
+    for i, record in enumerate(records):
+        mixed.append(record)
+        if i % 3 == 0:
+            mixed.append(Record(record.stamp_us, strangers[(i // 3) % len(strangers)]))
+    return mixed
+
+
+def test_how_the_stream_is_cut_into_batches_changes_no_digit(flight: list[Record]) -> None:
+    assert numbers(flight, batch=7) == numbers(flight, batch=len(flight))
+
+
+def test_jitter_of_200_ms_with_overtaking_and_duplicates_changes_no_verdict(flight: list[Record]) -> None:
+    undisturbed = verdicts(flight)
+    assert len(undisturbed) == 7
+    for seed in range(2):
+        disturbed = through_a_poor_radio(flight, seed, loss=0.0, jitter_s=0.2, twice=0.05)
+        assert verdicts(disturbed) == undisturbed
+
+
+def test_strangers_on_the_link_change_no_verdict(flight: list[Record]) -> None:
+    intruder = Sender(system=9)
+    strangers = [
+        intruder.pack(message)
+        for message in (
+            heartbeat(),
+            attitude(5, pitch=1.5),
+            dialect.MAVLink_aoa_ssa_message(90_000_000, 25.0, 0.0),
+            dialect.MAVLink_servo_output_raw_message(90_000_000, 0, *[1100] * 8),
+            dialect.MAVLink_param_value_message(b"SERVO2_FUNCTION", 0.0, 2, 1, 1),
+            dialect.MAVLink_param_value_message(b"SERVO2_REVERSED", 1.0, 2, 1, 1),
+            dialect.MAVLink_vfr_hud_message(90.0, 90.0, 0, 100, 0.0, 0.0),
+            dialect.MAVLink_statustext_message(6, b"ArduPlane V9.9.9", 0, 0),
+        )
+    ]
+    known = next(i for i, record in enumerate(flight) if record.frame[7:10] == b"\0\0\0")
+    disturbed = flight[: known + 1] + amid(flight[known + 1 :], strangers)
+    assert numbers(disturbed, batch=25) == numbers(flight, batch=25)
+
+
+def test_with_a_key_even_who_claims_to_be_the_vehicle_is_not_believed(flight: list[Record]) -> None:
+    key = bytes(range(32))
+    genuine = Sender(system=1, key=key)
+    impostor = Sender(system=1)
+    strangers = [impostor.pack(attitude(5, pitch=1.5)), impostor.pack(heartbeat())]
+    signed = [Record(record.stamp_us, signed_frame(genuine, record.frame)) for record in flight]
+    assert verdicts(amid(signed, strangers), key=key) == verdicts(flight)
+
+
+def signed_frame(sender: Sender, frame: bytes) -> bytes:
+    message = dialect.MAVLink(None).decode(bytearray(frame))
+    return sender.pack(message)
