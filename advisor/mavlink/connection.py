@@ -82,7 +82,8 @@ def parse_connection(text: str) -> Address:
 
 def _network(kind: Kind, rest: str, text: str) -> Address:
     host, colon, port_text = rest.rstrip("/").rpartition(":")
-    if not colon or not port_text.isdigit() or not 0 < int(port_text) < 65536:
+    lowest = 0 if kind in ("udpin", "tcpin") else 1  # listening on 0: the system chooses
+    if not colon or not port_text.isdigit() or not lowest <= int(port_text) < 65536:
         raise ConfigurationError(f"Connection {text!r} has no port between 1 and 65535; write {_EXAMPLES}.")
     if ":" in host and not host.startswith("["):
         raise ConfigurationError(f"Connection {text!r} has too many colons; write {_EXAMPLES}.")

@@ -138,6 +138,11 @@ class Link:
     ) -> None:
         self.stop()
 
+    @property
+    def port(self) -> int | None:
+        """The local network port, which the system chose where the address says 0."""
+        return self._transport.port if self._transport is not None else None
+
     def read(self, timeout_s: float = 0.1) -> list[Columns]:
         """The next micro-batch of messages, or nothing when none came in time."""
         with contextlib.suppress(Empty):

@@ -42,6 +42,11 @@ class Transport(ABC):
     def close(self) -> None:
         """Let go of the socket or line."""
 
+    @property
+    def port(self) -> int | None:
+        """The local network port; None when there is none."""
+        return None
+
 
 class UdpTransport(Transport):
     """UDP, listening (``udpin``) or calling (``udpout``)."""
@@ -89,6 +94,11 @@ class UdpTransport(Transport):
     def close(self) -> None:
         """Let go."""
         self._socket.close()
+
+    @property
+    def port(self) -> int | None:
+        """The local port."""
+        return int(self._socket.getsockname()[1])
 
 
 class TcpTransport(Transport):
@@ -152,6 +162,12 @@ class TcpTransport(Transport):
         for end in (self._stream, self._listener):
             if end is not None:
                 end.close()
+
+    @property
+    def port(self) -> int | None:
+        """The local port."""
+        end = self._listener or self._stream
+        return None if end is None else int(end.getsockname()[1])
 
 
 class SerialTransport(Transport):

@@ -47,6 +47,7 @@ def test_every_spelling_of_pymavlink_and_mavsdk_is_understood(
         "udpin:0.0.0.0:port",
         "udpin:0.0.0.0:70000",
         "udpout::14550",
+        "udpout:host:0",
         "tcp::5760",
         "tcp:a:b:5760",
         "pigeon://coop:1",

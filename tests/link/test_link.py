@@ -73,6 +73,15 @@ def test_what_is_heard_live_is_what_the_recording_replays(
     assert same(live, replayed)
 
 
+def test_the_system_may_choose_the_port() -> None:
+    with Link("udpin:127.0.0.1:0") as link:
+        assert link.port
+        chosen = UdpVehicle(link.port)
+        chosen.send(heartbeat(), attitude(20))
+        wait_until(lambda: 20.0 in stamps(link.read()))
+        chosen.close()
+
+
 def test_a_passive_link_sends_nothing(port: int, vehicle: UdpVehicle) -> None:
     vehicle.socket.settimeout(1.2)
     with Link(f"udpin:127.0.0.1:{port}") as link:
