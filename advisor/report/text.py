@@ -43,14 +43,14 @@ def shown(parameter: str, value: float) -> float:
 def maneuver_line(judged: JudgedManeuver) -> str:
     """One line a verdict: number, time, input, verdict and why."""
     span, verdict = judged.maneuver.span, judged.verdict
-    mark = "✓ ACCEPTED" if verdict.accepted else "✗ REJECTED"
-    return f"{judged.maneuver.number:2d}  {span.start_s:8.2f} s  {span.kind:<15}  {mark}  {verdict.sentence}"
+    mark = "✓" if verdict.accepted else "✗"
+    return f"{judged.maneuver.number:2d}  {span.start_s:8.2f} s  {span.kind:<15}  {mark} {verdict.sentence}"
 
 
 def stop_line(verdict: FlightTestVerdict) -> str:
     """Stop or continue, with the criterion beside its limit."""
-    word = "■ STOP TESTING" if verdict.decision == "stop" else "▶ CONTINUE"
-    return f"{word}  {verdict.sentence}"
+    mark = "■" if verdict.decision == "stop" else "▶"
+    return f"{mark} {verdict.sentence}"
 
 
 class AnalysisText:

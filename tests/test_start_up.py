@@ -1,0 +1,37 @@
+"""Start-up is cheap: help and a first paint do not wait for numerical libraries."""
+
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = ("scipy", "matplotlib", "numba", "textual", "pymavlink", "jsbsim", "sim")
+
+
+def modules_after(statement: str) -> set[str]:
+    code = f"import sys, contextlib\nwith contextlib.suppress(SystemExit):\n    {statement}\n"
+    code += "print('\\n'.join(sys.modules), file=sys.stderr)"
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=30, check=True
+    )
+    return set(result.stderr.split())
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["analyze", "--help"], ["live", "--help"], ["demo", "--help"]]
+)
+def test_help_imports_no_heavy_library(arguments: list[str]) -> None:
+    imported = modules_after(f"sys.argv = ['advisor', *{arguments}]; import advisor.cli; advisor.cli.main()")
+    assert not imported.intersection(HEAVY)
+
+
+def test_every_command_has_help_with_an_example() -> None:
+    from click.testing import CliRunner
+
+    from advisor.cli import COMMANDS, advisor
+
+    for name in COMMANDS:
+        result = CliRunner().invoke(advisor, [name, "--help"])
+        assert result.exit_code == 0, name
+        assert "Example:" in result.output, name
+        assert f"advisor {name}" in result.output, name
