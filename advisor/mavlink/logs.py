@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from advisor.flight.messages import Columns
+from advisor.mavlink import ardupilot_log, dataflash, px4_log
 from advisor.mavlink.tlog import read_tlog
 from advisor.problems import UnusableInputError
 
@@ -11,7 +12,10 @@ from advisor.problems import UnusableInputError
 def open_log(
     path: Path, wanted: Iterable[str] | None = None, key: bytes | None = None
 ) -> Iterator[list[Columns]]:
-    """Stream the messages of a ``.tlog``.
+    """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``.
+
+    The latter two hold the autopilot's own records; they come as the messages its telemetry
+    would have carried, in one batch.
 
     Parameters
     ----------
@@ -27,16 +31,21 @@ def open_log(
         When the file is missing, no file, empty or unreadable; while reading, when it holds
         no messages.
     """
-    _check_readable(path)
+    beginning = _beginning(path)
+    if beginning.startswith(px4_log.MAGIC):
+        return px4_log.read_ulog(path, wanted)
+    if beginning.startswith(dataflash.HEADER):
+        return ardupilot_log.read_dataflash(path, wanted)
     return read_tlog(path, wanted, key)
 
 
-def _check_readable(path: Path) -> None:
+def _beginning(path: Path) -> bytes:
+    """The first bytes of a file that can be read."""
     if path.is_dir():
         raise UnusableInputError("not_a_file", f"{path} is a folder.", "Give the log file inside it.")
     try:
         with path.open("rb") as file:
-            first = file.read(1)
+            beginning = file.read(16)
     except FileNotFoundError:
         raise UnusableInputError(
             "no_such_file", f"There is no file {path}.", "Check the name and the folder."
@@ -45,7 +54,8 @@ def _check_readable(path: Path) -> None:
         raise UnusableInputError(
             "unreadable", f"{path} cannot be read: {error.strerror}.", "Check its permissions."
         ) from None
-    if not first:
+    if not beginning:
         raise UnusableInputError(
             "empty", f"{path.name} is empty.", "Give a log that was recorded to its end."
         )
+    return beginning

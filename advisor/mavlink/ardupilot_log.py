@@ -1,0 +1,229 @@
+"""What an ArduPilot log says, as the messages its telemetry would have carried."""
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from advisor.flight.messages import Columns
+from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
+from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message
+from advisor.problems import UnusableInputError
+
+_RECORDS = [
+    "AOA",
+    "ARSP",
+    "ATT",
+    "BARO",
+    "CTUN",
+    "GPS",
+    "IMU",
+    "MODE",
+    "MSG",
+    "PARM",
+    "POS",
+    "RCOU",
+    "RCO2",
+    "RCO3",
+    "VER",
+    "XKF1",
+]
+_ARDUPILOTMEGA = 3  # MAV_AUTOPILOT
+_BUILD_TO_MAV_TYPE = {1: 10, 2: 2, 3: MAV_TYPE_FIXED_WING, 4: 5, 7: 12, 12: 7, 13: 4}
+"""VER.BU: rover, copter, plane, antenna tracker, submarine, airship, helicopter."""
+_TITLES = {"ArduPlane": MAV_TYPE_FIXED_WING, "ArduCopter": 2, "ArduRover": 10, "ArduSub": 12}
+"""Firmware names in MSG, for logs older than VER."""
+
+
+def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
+    """The messages of a ``.bin``, in one batch.
+
+    Raises
+    ------
+    UnusableInputError
+        When it holds neither attitude, inertial sensors, nor servo outputs.
+    """
+    tables = read_tables(path, _RECORDS)
+    if not tables.keys() & {"ATT", "IMU", "RCOU"}:
+        raise UnusableInputError(
+            "no_messages",
+            f"{path.name} holds no ATT, IMU or RCOU records.",
+            "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
+        )
+    names = None if wanted is None else set(wanted)
+    columns = [c for c in _Translation(tables).columns() if len(c) and (names is None or c.name in names)]
+    if columns:
+        yield columns
+
+
+class _Translation:
+    def __init__(self, tables: dict[str, Table]) -> None:
+        self._tables = tables
+        self._base_s = gps_time_base_s(tables.get("GPS"))
+
+    def columns(self) -> Iterator[Columns]:
+        yield self._heartbeat()
+        translations = {
+            "ATT": self._attitude,
+            "IMU": self._highres_imu,
+            "AOA": self._aoa_ssa,
+            "POS": self._global_position_int,
+            "PARM": self._param_value,
+            "MSG": self._statustext,
+            "VER": self._autopilot_version,
+        }
+        if "ATT" not in self._tables and "IMU" in self._tables:
+            yield self._attitude(None)
+        for name, translate in translations.items():
+            if name in self._tables:
+                yield translate(self._tables[name])
+        yield from self._servo_outputs()
+        air = self._tables.get("ARSP", self._tables.get("CTUN"))
+        if air is not None:
+            yield self._vfr_hud(air.first_instance())
+
+    def _message(self, name: str, table: Table, fields: dict[str, ArrayLike], place: int = 0) -> Columns:
+        """A message made of each record; ``place`` keeps several made of one record in order."""
+        return message(name, table.order + place, self._base_s + seconds(table.time_us), fields)
+
+    def _attitude(self, att: Table | None) -> Columns:
+        """Angles at the stamps of ATT, rates at those of IMU."""
+        rows: list[tuple[Table, NDArray[np.float64]]] = []
+        if att is not None:
+            angles = np.radians([att.fields[axis] for axis in ("Roll", "Pitch", "Yaw")])
+            rows.append((att, np.vstack([angles, np.full_like(angles, np.nan)])))
+        if "IMU" in self._tables:
+            imu = self._tables["IMU"].first_instance()
+            rates = np.array([imu.fields[axis] for axis in ("GyrX", "GyrY", "GyrZ")], dtype=np.float64)
+            rows.append((imu, np.vstack([np.full_like(rates, np.nan), rates])))
+        order = np.concatenate([table.order for table, _ in rows])
+        by_order = np.argsort(order)
+        time_us = np.concatenate([table.time_us for table, _ in rows])[by_order]
+        values = np.hstack([values for _, values in rows])[:, by_order]
+        names = ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed")
+        fields: dict[str, Any] = dict(zip(names, values, strict=True))
+        fields["time_boot_ms"] = _milliseconds(time_us)
+        return message("ATTITUDE", order[by_order], self._base_s + seconds(time_us), fields)
+
+    def _highres_imu(self, imu: Table) -> Columns:
+        imu = imu.first_instance()
+        fields: dict[str, ArrayLike] = {"time_usec": imu.time_us}
+        for axis in "XYZ":
+            fields[f"{axis.lower()}acc"] = imu.fields[f"Acc{axis}"]
+            fields[f"{axis.lower()}gyro"] = imu.fields[f"Gyr{axis}"]
+        return self._message("HIGHRES_IMU", imu, fields, place=1)
+
+    def _aoa_ssa(self, aoa: Table) -> Columns:
+        angles = {"AOA": aoa.fields["AOA"], "SSA": aoa.fields["SSA"]}
+        return self._message("AOA_SSA", aoa, {"time_usec": aoa.time_us, **angles})
+
+    def _servo_outputs(self) -> Iterator[Columns]:
+        """RCOU has outputs 1 to 14, RCO2 15 to 18, RCO3 19 to 32; each bank of 16 is one message."""
+        pulses: dict[int, NDArray[Any]] = {}
+        if "RCOU" not in self._tables:
+            return
+        rcou = self._tables["RCOU"]
+        for name in ("RCOU", "RCO2", "RCO3"):
+            if name in self._tables:
+                table = self._tables[name]
+                for field, values in table.fields.items():
+                    if field[0] == "C" and field[1:].isdigit():
+                        held = values if table is rcou else latest(rcou.order, table.order, values)
+                        pulses[int(field[1:])] = held
+        banks = []
+        for port in range(2):
+            outputs = {
+                f"servo{number - 16 * port}_raw": values
+                for number, values in pulses.items()
+                if 16 * port < number <= 16 * port + 16
+            }
+            if outputs:
+                fields: dict[str, ArrayLike] = {"time_usec": rcou.time_us, "port": port, **outputs}
+                banks.append(self._message("SERVO_OUTPUT_RAW", rcou, fields, place=port))
+        yield from banks
+
+    def _vfr_hud(self, air: Table) -> Columns:
+        fields: dict[str, ArrayLike] = {
+            "airspeed": air.fields["Airspeed" if "Airspeed" in air.fields else "As"],
+            "throttle": self._known(air, "CTUN", ("ThO", "ThrOut")),
+            "alt": self._known(air, "POS", ("RelHomeAlt",)),
+        }
+        climb = -self._known(air, "XKF1", ("VD",))
+        fields["climb"] = np.where(np.isnan(climb), self._known(air, "BARO", ("CRt",)), climb)
+        return self._message("VFR_HUD", air, fields, place=1)
+
+    def _known(self, at: Table, record: str, names: tuple[str, ...]) -> NDArray[np.float64]:
+        """The newest value of a field in another record, NaN where there is none."""
+        table = self._tables.get(record)
+        if table is not None:
+            table = table.first_instance()
+            for name in names:
+                if name in table.fields:
+                    return latest(at.order, table.order, table.fields[name])
+        return np.full(len(at), np.nan)
+
+    def _global_position_int(self, pos: Table) -> Columns:
+        fields: dict[str, ArrayLike] = {
+            "time_boot_ms": _milliseconds(pos.time_us),
+            "lat": np.round(pos.fields["Lat"] * 1e7).astype(np.int64),
+            "lon": np.round(pos.fields["Lng"] * 1e7).astype(np.int64),
+            "alt": np.asarray(pos.fields["Alt"] * 1e3, dtype=np.float64),
+            "relative_alt": np.asarray(pos.fields["RelHomeAlt"] * 1e3, dtype=np.float64),
+        }
+        return self._message("GLOBAL_POSITION_INT", pos, fields)
+
+    def _param_value(self, parm: Table) -> Columns:
+        fields: dict[str, ArrayLike] = {
+            "param_id": parm.fields["Name"],
+            "param_value": parm.fields["Value"],
+            "param_type": MAV_PARAM_TYPE_REAL32,
+            "param_count": len(parm),
+            "param_index": np.arange(len(parm)),
+        }
+        return self._message("PARAM_VALUE", parm, fields)
+
+    def _statustext(self, msg: Table) -> Columns:
+        return self._message("STATUSTEXT", msg, {"severity": 6, "text": msg.fields["Message"]})
+
+    def _autopilot_version(self, ver: Table) -> Columns:
+        parts = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))
+        major, minor, patch, kind = parts
+        return self._message(
+            "AUTOPILOT_VERSION",
+            ver,
+            {"flight_sw_version": major << 24 | minor << 16 | patch << 8 | kind},
+        )
+
+    def _heartbeat(self) -> Columns:
+        """One before everything else, so that the vehicle is known, and one at each change of mode."""
+        order, modes, time_us = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(1, np.int64)
+        if "MODE" in self._tables:
+            mode = self._tables["MODE"]
+            numbers = mode.fields["ModeNum" if "ModeNum" in mode.fields else "Mode"].astype(np.int64)
+            order = np.concatenate([order, mode.order])
+            modes = np.concatenate([numbers[:1], numbers])
+            time_us = np.concatenate([mode.time_us[:1], mode.time_us])
+        fields: dict[str, ArrayLike] = {
+            "type": self._mav_type(),
+            "autopilot": _ARDUPILOTMEGA,
+            "base_mode": 1,  # custom_mode is in use
+            "custom_mode": modes,
+            "mavlink_version": 3,
+        }
+        return message("HEARTBEAT", order, self._base_s + seconds(time_us), fields)
+
+    def _mav_type(self) -> int:
+        ver, msg = self._tables.get("VER"), self._tables.get("MSG")
+        if ver is not None and "BU" in ver.fields:
+            return _BUILD_TO_MAV_TYPE.get(int(ver.fields["BU"][0]), MAV_TYPE_FIXED_WING)
+        for text in msg.fields["Message"].tolist() if msg is not None else ():
+            for title, kind in _TITLES.items():
+                if text.startswith(title.encode()):
+                    return kind
+        return MAV_TYPE_FIXED_WING
+
+
+def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:
+    return (time_us + 500) // 1000

@@ -1,0 +1,179 @@
+"""ArduPilot's own log (``.bin``, "dataflash"): self-describing binary records.
+
+A record is two bytes of header, a type, and the fields that the type's FMT record lists
+(ArduPilot: AP_Logger, "Log message formats"). Records carry no checksum, so one counts only
+when another header, or the end of the file, follows right behind it.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from advisor.flight.messages import FloatArray, IntArray
+
+HEADER = b"\xa3\x95"
+_HEADER_0, _HEADER_1 = HEADER
+_FMT = 0x80
+_FMT_LENGTH = 89
+_FMT_LAYOUT = np.dtype(
+    [("type", "u1"), ("length", "u1"), ("name", "S4"), ("format", "S16"), ("columns", "S64")]
+)
+
+# Format characters: dtype, and what a scaled integer is divided by.
+_FORMATS: dict[str, tuple[Any, float | None]] = {
+    "a": (("<i2", (32,)), None),
+    "b": ("i1", None),
+    "B": ("u1", None),
+    "g": ("<f2", None),
+    "h": ("<i2", None),
+    "H": ("<u2", None),
+    "i": ("<i4", None),
+    "I": ("<u4", None),
+    "f": ("<f4", None),
+    "d": ("<f8", None),
+    "n": ("S4", None),
+    "N": ("S16", None),
+    "Z": ("S64", None),
+    "c": ("<i2", 100.0),
+    "C": ("<u2", 100.0),
+    "e": ("<i4", 100.0),
+    "E": ("<u4", 100.0),
+    "L": ("<i4", 1e7),
+    "M": ("u1", None),
+    "q": ("<i8", None),
+    "Q": ("<u8", None),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """All records of one type, in the order of the file."""
+
+    order: IntArray
+    """Shape (n,). Where each record begins in the file, bytes."""
+    fields: dict[str, NDArray[Any]]
+    """Field name to shape (n,), in the units of the log."""
+
+    def __len__(self) -> int:
+        return len(self.order)
+
+    @property
+    def time_us(self) -> IntArray:
+        """Shape (n,). Microseconds since boot."""
+        return self.fields["TimeUS"].astype(np.int64)
+
+    def first_instance(self) -> "Table":
+        """The records of the first of several like sensors or estimators."""
+        for name in ("I", "C"):
+            if name in self.fields:
+                return self[self.fields[name] == 0]
+        return self
+
+    def __getitem__(self, rows: NDArray[np.bool_]) -> "Table":
+        return Table(self.order[rows], {name: values[rows] for name, values in self.fields.items()})
+
+
+def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
+    """The records of the named types; those that do not occur, or have no TimeUS, are left out."""
+    stream = np.fromfile(path, dtype=np.uint8)
+    starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
+    starts = starts[: _scan(stream, starts)]
+    types = stream[starts + 2]
+    wanted = set(names)
+    tables = {}
+    definition: Any
+    for definition in _records(stream, starts[types == _FMT] + 3, _FMT_LAYOUT):
+        name = definition["name"].decode("ascii", "replace")
+        layout, divisors = _layout(definition)
+        mine = starts[types == definition["type"]]
+        if name not in wanted or layout is None or "TimeUS" not in (layout.names or ()) or not len(mine):
+            continue
+        records = _records(stream, mine + 3, layout)
+        tables[name] = Table(
+            mine,
+            {
+                field: records[field] if divisor is None else records[field] / divisor
+                for field, divisor in zip(layout.names or (), divisors, strict=True)
+            },
+        )
+    return tables
+
+
+def gps_time_base_s(gps: Table | None) -> float:
+    """Seconds since 1970 at boot, from the first fix with a GPS week; 0 when there is none."""
+    if gps is None or not {"GWk", "GMS"} <= gps.fields.keys():
+        return 0.0
+    known = np.flatnonzero(gps.fields["GWk"] > 0)
+    if not len(known):
+        return 0.0
+    i = known[0]
+    gps_epoch, leap_seconds = 315_964_800, 18
+    week, in_week_s = int(gps.fields["GWk"][i]), int(gps.fields["GMS"][i]) / 1000
+    return gps_epoch + 604_800 * week + in_week_s - leap_seconds - float(gps.time_us[i]) / 1e6
+
+
+def _layout(definition: Any) -> tuple["np.dtype[np.void] | None", list[float | None]]:
+    """How records of a type are laid out, and the divisors of their fields; None when unreadable."""
+    characters = definition["format"].decode("ascii", "replace")
+    names = definition["columns"].decode("ascii", "replace").split(",")
+    if (
+        len(names) != len(characters)
+        or len(set(names)) != len(names)
+        or not set(characters) <= _FORMATS.keys()
+    ):
+        return None, []
+    specifications = [_FORMATS[character] for character in characters]
+    columns = [
+        (name, *kind) if isinstance(kind, tuple) else (name, kind)
+        for name, (kind, _) in zip(names, specifications, strict=True)
+    ]
+    layout = np.dtype(columns)
+    if layout.itemsize != definition["length"] - 3:
+        return None, []
+    return layout, [divisor for _, divisor in specifications]
+
+
+def _records(stream: NDArray[np.uint8], bodies: IntArray, layout: "np.dtype[np.void]") -> NDArray[Any]:
+    rows = np.empty((len(bodies), layout.itemsize), dtype=np.uint8)
+    _gather(stream, bodies, rows)
+    return np.asarray(rows.view(layout)[:, 0])
+
+
+@njit(cache=True)
+def _gather(stream: NDArray[np.uint8], bodies: IntArray, rows: NDArray[np.uint8]) -> None:
+    for i in range(len(bodies)):
+        rows[i] = stream[bodies[i] : bodies[i] + rows.shape[1]]
+
+
+@njit(cache=True)
+def _scan(stream: NDArray[np.uint8], starts: IntArray) -> int:
+    """Find the records; fill ``starts``, give their number. FMT records teach the lengths."""
+    n = len(stream)
+    lengths = np.zeros(256, dtype=np.int64)
+    lengths[_FMT] = _FMT_LENGTH
+    count = 0
+    at = 0
+    while at + 3 <= n:
+        if stream[at] == _HEADER_0 and stream[at + 1] == _HEADER_1:
+            length = int(lengths[stream[at + 2]])
+            end = at + length
+            follows = end + 1 < n and stream[end] == _HEADER_0 and stream[end + 1] == _HEADER_1
+            if length > 3 and (end == n or follows):
+                if stream[at + 2] == _FMT:
+                    lengths[stream[at + 3]] = stream[at + 4]
+                starts[count] = at
+                count += 1
+                at = end
+                continue
+        at += 1
+    return count
+
+
+def seconds(time_us: IntArray) -> FloatArray:
+    """Microseconds as seconds."""
+    return time_us.astype(np.float64) * 1e-6

@@ -1,0 +1,70 @@
+"""Messages as the vehicle would have sent them, from logs that hold its own records.
+
+Autopilots log angles, rates, outputs and air data as separate records, each at its own time.
+They become the messages a telemetry link carries, so that everything behind has one path. A
+message gets only what its record holds: what is missing is NaN, where the definition has a
+floating-point field, and zero otherwise. Nothing is interpolated.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from advisor.flight.messages import Columns, FloatArray, IntArray
+from advisor.mavlink.definitions import DEFINITIONS
+
+SYSTEM, COMPONENT = 1, 1
+"""Ids of the autopilot, which its own log does not state."""
+
+MAV_TYPE_FIXED_WING = 1
+MAV_PARAM_TYPE_REAL32 = 9
+
+
+def message(name: str, order: IntArray, arrival_s: FloatArray, fields: Mapping[str, ArrayLike]) -> Columns:
+    """Messages of one type from the values at hand.
+
+    Parameters
+    ----------
+    name : str
+        A key of ``DEFINITIONS``.
+    order, arrival_s : shape (n,)
+    fields : mapping
+        Field name to shape (n,), or a scalar for all, in the units of the definition. Integers
+        are cut to the size of the field, as a vehicle's counters wrap; texts and floating-point
+        values are kept as they are.
+    """
+    n = len(order)
+    layout = DEFINITIONS[name].layout
+    columns: dict[str, NDArray[Any]] = {}
+    for field in layout.names or ():
+        wire = layout[field]
+        if field not in fields:
+            nothing = np.nan if wire.base.kind == "f" else np.zeros((), wire.base)
+            columns[field] = np.full((n, *wire.shape), nothing)
+            continue
+        values = np.asarray(fields[field])
+        if wire.base.kind in "iu" and values.dtype.kind != "f":
+            values = values.astype(wire.base)
+        columns[field] = np.broadcast_to(values, (n, *wire.shape))
+    return Columns(name, SYSTEM, COMPONENT, order, arrival_s, columns)
+
+
+def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
+    """The newest of ``values`` before each place ``at``: what the vehicle then knew.
+
+    Parameters
+    ----------
+    at : shape (n,)
+        Arrival indices asked for.
+    order, values : shape (m,)
+        Arrival indices, rising, and what came then.
+
+    Returns
+    -------
+    shape (n,)
+        NaN before the first value.
+    """
+    known = np.concatenate([[np.nan], np.asarray(values, dtype=np.float64)])
+    return known[np.searchsorted(order, at, side="right")]

@@ -1,0 +1,292 @@
+"""What a PX4 log (``.ulg``) says, as the messages its telemetry would have carried.
+
+Read by pyulog, an extra; topics and fields are those of PX4's message definitions (msg/*.msg).
+"""
+
+import contextlib
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from advisor.flight.messages import Columns, FloatArray, IntArray
+from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message
+from advisor.problems import UnusableInputError
+
+MAGIC = b"ULog\x01\x12\x35"
+
+_TOPICS = [
+    "actuator_controls_0",
+    "actuator_outputs",
+    "airspeed",
+    "airspeed_validated",
+    "debug_key_value",
+    "sensor_combined",
+    "vehicle_angular_velocity",
+    "vehicle_attitude",
+    "vehicle_gps_position",
+    "vehicle_local_position",
+    "vehicle_status",
+    "vehicle_thrust_setpoint",
+]
+_PX4 = 12  # MAV_AUTOPILOT
+_MAV_TYPES = {1: 2, 2: MAV_TYPE_FIXED_WING}
+"""vehicle_status.vehicle_type: rotary wing, fixed wing."""
+_MAIN_MODES = {0: 1, 1: 2, 2: 3, 10: 5, 14: 6, 15: 7}
+"""vehicle_status.nav_state to the main mode of PX4's custom_mode: manual, altitude, position, acro,
+offboard, stabilised; any other is automatic."""
+_AUTO = 4
+
+Topic = Mapping[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class _Messages:
+    name: str
+    time_us: IntArray
+    fields: Mapping[str, ArrayLike]
+
+
+def read_ulog(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
+    """The messages of a ``.ulg``, in one batch, ordered by time.
+
+    Raises
+    ------
+    UnusableInputError
+        When pyulog is not installed, or the file holds neither attitude, sensors, nor outputs.
+    """
+    try:
+        from pyulog import ULog
+    except ImportError:
+        raise UnusableInputError(
+            "no_pyulog",
+            f"{path.name} is a PX4 log, and pyulog, which reads them, is not installed.",
+            "Install it with: pip install 'inflight-advisor[logs]'.",
+        ) from None
+    try:
+        # pyulog prints its warnings; standard output belongs to the result.
+        with path.open("rb") as file, contextlib.redirect_stdout(sys.stderr):
+            log = ULog(file, _TOPICS)
+    except Exception as error:  # whatever pyulog meets in damaged bytes
+        raise _nothing_in(path) from error
+    columns = _columns(log)
+    if not {c.name for c in columns} & {"ATTITUDE", "HIGHRES_IMU", "SERVO_OUTPUT_RAW"}:
+        raise _nothing_in(path)
+    names = None if wanted is None else set(wanted)
+    yield [c for c in columns if names is None or c.name in names]
+
+
+def _nothing_in(path: Path) -> UnusableInputError:
+    return UnusableInputError(
+        "no_messages",
+        f"{path.name} holds no attitude, sensor or actuator topics of PX4.",
+        "Set SDLOG_PROFILE so that they are logged, or give a .tlog.",
+    )
+
+
+def _columns(log: Any) -> list[Columns]:
+    """Every message the topics give, numbered by time."""
+    topics: dict[str, list[Topic]] = {}
+    for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
+        by_time = np.argsort(data.data["timestamp"], kind="stable")
+        topics.setdefault(data.name, []).append({name: v[by_time] for name, v in data.data.items()})
+    first = {name: instances[0] for name, instances in topics.items()}
+    messages = [
+        *_attitude(first),
+        *_highres_imu(first),
+        *_vfr_hud(first),
+        *_heights(first),
+        *_named_values(first),
+        *(_outputs(port, topic) for port, topic in enumerate(topics.get("actuator_outputs", []))),
+        *_texts(log),
+    ]
+    start_us = min((int(m.time_us[0]) for m in messages if len(m.time_us)), default=log.start_timestamp)
+    messages = [_heartbeat(first, start_us), *_version(log, start_us), _parameters(log, start_us), *messages]
+    time_us = np.concatenate([m.time_us for m in messages])
+    order = np.empty(len(time_us), dtype=np.int64)
+    order[np.argsort(time_us, kind="stable")] = np.arange(len(time_us))
+    orders = np.split(order, np.cumsum([len(m.time_us) for m in messages])[:-1])
+    base_s = _unix_time_base_s(first)
+    return [
+        message(m.name, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields)
+        for m, numbers in zip(messages, orders, strict=True)
+        if len(numbers)
+    ]
+
+
+def _time_us(topic: Topic, field: str = "timestamp") -> IntArray:
+    return topic[field].astype(np.int64)
+
+
+def _sampled_us(topic: Topic) -> IntArray:
+    """When the sensor was read, where the topic says; otherwise when it was published."""
+    published = _time_us(topic)
+    if "timestamp_sample" not in topic:
+        return published
+    sampled = _time_us(topic, "timestamp_sample")
+    return np.where(sampled > 0, sampled, published)
+
+
+def _attitude(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+    """Angles at the stamps of the attitude, rates at those of the angular velocity."""
+    blocks: list[tuple[IntArray, NDArray[np.float64]]] = []
+    attitude = topics.get("vehicle_attitude")
+    if attitude is not None:
+        angles = _euler(*(attitude[f"q[{i}]"].astype(np.float64) for i in range(4)))
+        blocks.append((_sampled_us(attitude), np.vstack([angles, np.full_like(angles, np.nan)])))
+    rates_topic = topics.get("vehicle_angular_velocity")
+    if rates_topic is not None:
+        rates = np.array([rates_topic[f"xyz[{i}]"] for i in range(3)], dtype=np.float64)
+        blocks.append((_sampled_us(rates_topic), np.vstack([np.full_like(rates, np.nan), rates])))
+    elif "sensor_combined" in topics:
+        sensors = topics["sensor_combined"]
+        rates = np.array([sensors[f"gyro_rad[{i}]"] for i in range(3)], dtype=np.float64)
+        blocks.append((_time_us(sensors), np.vstack([np.full_like(rates, np.nan), rates])))
+    if not blocks:
+        return
+    time_us = np.concatenate([time_us for time_us, _ in blocks])
+    by_time = np.argsort(time_us, kind="stable")
+    values = np.hstack([values for _, values in blocks])[:, by_time]
+    names = ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed")
+    fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(time_us[by_time])}
+    yield _Messages("ATTITUDE", time_us[by_time], fields | dict(zip(names, values, strict=True)))
+
+
+def _euler(w: FloatArray, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+    """Roll, pitch and yaw of attitude quaternions (body to north-east-down), shape (3, n), rad."""
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0))
+    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return np.array([roll, pitch, yaw])
+
+
+def _highres_imu(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+    if "sensor_combined" in topics:
+        sensors = topics["sensor_combined"]
+        fields: dict[str, ArrayLike] = {"time_usec": _time_us(sensors)}
+        for i, axis in enumerate("xyz"):
+            fields[f"{axis}acc"] = sensors[f"accelerometer_m_s2[{i}]"]
+            fields[f"{axis}gyro"] = sensors[f"gyro_rad[{i}]"]
+        yield _Messages("HIGHRES_IMU", _time_us(sensors), fields)
+
+
+def _vfr_hud(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+    air = topics.get("airspeed_validated", topics.get("airspeed"))
+    if air is None:
+        return
+    speeds = [name for name in ("calibrated_airspeed_m_s", "indicated_airspeed_m_s") if name in air]
+    if not speeds:
+        return
+    at = _time_us(air)
+    fields: dict[str, ArrayLike] = {
+        "airspeed": air[speeds[0]],
+        "climb": -_known(at, topics.get("vehicle_local_position"), "vz"),
+        "alt": -_known(at, topics.get("vehicle_local_position"), "z"),
+    }
+    thrust = _known(at, topics.get("vehicle_thrust_setpoint"), "xyz[0]")
+    lever = _known(at, topics.get("actuator_controls_0"), "control[3]")
+    fields["throttle"] = 100.0 * np.where(np.isnan(thrust), lever, thrust)
+    yield _Messages("VFR_HUD", at, fields)
+
+
+def _known(at_us: IntArray, topic: Topic | None, field: str) -> FloatArray:
+    if topic is None or field not in topic:
+        return np.full(len(at_us), np.nan)
+    return latest(at_us, _time_us(topic), topic[field])
+
+
+def _heights(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+    position = topics.get("vehicle_local_position")
+    if position is not None:
+        at = _sampled_us(position)
+        fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(at)}
+        fields["relative_alt"] = -1e3 * position["z"].astype(np.float64)
+        yield _Messages("GLOBAL_POSITION_INT", at, fields)
+
+
+def _named_values(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+    values = topics.get("debug_key_value")
+    if values is not None:
+        letters = np.stack([values[f"key[{i}]"].astype(np.uint8) for i in range(10)], axis=1)
+        names = [row.tobytes().partition(b"\0")[0] for row in letters]
+        at = _time_us(values)
+        yield _Messages(
+            "NAMED_VALUE_FLOAT",
+            at,
+            {"time_boot_ms": _milliseconds(at), "name": np.array(names, "S10"), "value": values["value"]},
+        )
+
+
+def _outputs(port: int, topic: Topic) -> _Messages:
+    at = _time_us(topic)
+    pulses: dict[str, ArrayLike] = {f"servo{i + 1}_raw": topic[f"output[{i}]"] for i in range(16)}
+    return _Messages("SERVO_OUTPUT_RAW", at, {"time_usec": at, "port": port, **pulses})
+
+
+def _heartbeat(topics: Mapping[str, Topic], start_us: int) -> _Messages:
+    """One before everything else, so that the vehicle is known, then as the mode may change."""
+    status = topics.get("vehicle_status")
+    at, states, kinds = np.array([start_us]), np.zeros(1, np.int64), np.array([MAV_TYPE_FIXED_WING])
+    if status is not None:
+        rows = np.concatenate([[0], np.arange(len(status["timestamp"]))])
+        at = np.concatenate([at, _time_us(status)])
+        states = status["nav_state"].astype(np.int64)[rows]
+        kinds = np.vectorize(lambda kind: _MAV_TYPES.get(kind, MAV_TYPE_FIXED_WING))(
+            status.get("vehicle_type", np.full(len(rows) - 1, 2))[rows]
+        )
+    mains = np.array([_MAIN_MODES.get(state, _AUTO) for state in states.tolist()])
+    fields: dict[str, ArrayLike] = {
+        "type": kinds,
+        "autopilot": _PX4,
+        "base_mode": 1,
+        "custom_mode": mains << 16,
+    }
+    return _Messages("HEARTBEAT", at, fields)
+
+
+def _parameters(log: Any, start_us: int) -> _Messages:
+    rows = [(start_us, name, value) for name, value in log.initial_parameters.items()]
+    rows += [(max(at, start_us), name, value) for at, name, value in log.changed_parameters]
+    fields: dict[str, ArrayLike] = {
+        "param_id": np.array([name.encode() for _, name, _ in rows], "S16"),
+        "param_value": np.array([value for *_, value in rows], np.float64),
+        "param_type": MAV_PARAM_TYPE_REAL32,
+        "param_count": len(log.initial_parameters),
+    }
+    return _Messages("PARAM_VALUE", np.array([at for at, *_ in rows], np.int64), fields)
+
+
+def _texts(log: Any) -> Iterator[_Messages]:
+    texts = log.logged_messages
+    if texts:
+        fields: dict[str, ArrayLike] = {
+            "severity": np.array([text.log_level - ord("0") for text in texts]),
+            "text": np.array([text.message.encode() for text in texts]),
+        }
+        yield _Messages("STATUSTEXT", np.array([text.timestamp for text in texts], np.int64), fields)
+
+
+def _version(log: Any, start_us: int) -> Iterator[_Messages]:
+    release = log.msg_info_dict.get("ver_sw_release")
+    if isinstance(release, int):
+        yield _Messages("AUTOPILOT_VERSION", np.array([start_us]), {"flight_sw_version": release})
+
+
+def _unix_time_base_s(topics: Mapping[str, Topic]) -> float:
+    """Seconds since 1970 at boot, from the first fix that has a date; 0 when there is none."""
+    gps = topics.get("vehicle_gps_position")
+    if gps is None or "time_utc_usec" not in gps:
+        return 0.0
+    known = np.flatnonzero(gps["time_utc_usec"] > 0)
+    if not len(known):
+        return 0.0
+    i = known[0]
+    return (int(gps["time_utc_usec"][i]) - int(gps["timestamp"][i])) * 1e-6
+
+
+def _milliseconds(time_us: IntArray) -> IntArray:
+    return (time_us + 500) // 1000
