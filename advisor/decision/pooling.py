@@ -45,7 +45,7 @@ def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
     Estimates that already stand at one speed, or do not know theirs, are left as they are.
     """
     known = [e.airspeed_m_s for e in estimates if e.airspeed_m_s is not None and e.airspeed_m_s > 0.0]
-    if len(known) < len(estimates):
+    if not known or len(known) < len(estimates):
         return [Belief(e.theta, e.covariance) for e in estimates]
     reference = float(np.mean(known))
     return [_at_speed(e, v, reference) for e, v in zip(estimates, known, strict=True)]

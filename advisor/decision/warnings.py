@@ -5,7 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, CampaignPlan
+from advisor.decision.change import find_change
 from advisor.decision.history import Flown
+from advisor.decision.information import knowledge
 from advisor.decision.judge import accepted_estimates, rule_results
 from advisor.decision.scatter import SCATTER_FACTOR, window
 from advisor.decision.verdict import RuleProgress
@@ -22,10 +24,23 @@ def warnings(
             f"The criterion held after manoeuvre {chosen.stopped_at} and does not hold any more: "
             "later manoeuvres contradict the earlier ones."
         )
-    if plan.rule != "information" and not stop:
+    change = find_change(history)
+    if change is not None:
+        found.append(change.sentence)
+    if plan.rule == "information":
+        found += _left_out(history, plan)
+    elif not stop:
         found += _cannot_fall(accepted_estimates(history, plan.rule), plan)
         found += _locked_out(history, plan)
     return tuple(found)
+
+
+def _left_out(history: Sequence[Flown], plan: CampaignPlan) -> list[str]:
+    usable = [(i, e) for i, flown in enumerate(history, start=1) if (e := flown.usable)]
+    if not usable:
+        return []
+    odd = [str(usable[k][0]) for k in knowledge([e for _, e in usable], plan).left_out]
+    return [f"Manoeuvre {', '.join(odd)} contradicts all the others and is left out."] if odd else []
 
 
 def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
@@ -34,12 +49,17 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
     if theta is None or plan.criterion != "eq12":
         return []
     error = np.sqrt(np.mean([np.diag(e.covariance) for e in accepted[-plan.window :]], axis=0))
-    mean = np.abs(theta.mean(axis=0))
+    value = np.abs(theta.mean(axis=0))
+    blocking = [
+        f"{name} ({v:.2g} +- {std:.2g})"
+        for name, v, std in zip(PARAMETERS, value, error, strict=True)
+        if 100.0 * SCATTER_FACTOR * std > plan.limit_percent * v
+    ]
+    if not blocking:
+        return []
     return [
-        f"One manoeuvre gives {name} as {value:.2g} +- {std:.2g}: its relative scatter keeps the "
-        f"criterion above {plan.limit_percent:.0f} %, however many are flown; the rule information does not."
-        for name, value, std in zip(PARAMETERS, mean, error, strict=True)
-        if 100.0 * SCATTER_FACTOR * std > plan.limit_percent * value
+        f"This criterion will hardly fall below {plan.limit_percent:.0f} %: one manoeuvre's error is too "
+        f"large beside {', '.join(blocking)}. The rule information weighs all manoeuvres together."
     ]
 
 

@@ -13,6 +13,8 @@ THETA = np.array([-0.009, -0.483, 0.104, 0.676, 0.475, -4.93, -2.01, -7.21])
 """The twin-jet research aircraft of the study, rad and s."""
 
 SAMPLES = 500
+NOISE = 1e-4
+"""Of both channels, rad and rad/s."""
 
 
 def estimate(
@@ -27,7 +29,7 @@ def estimate(
     if covariance is None:
         covariance = np.diag((0.01 * std_percent * THETA) ** 2)
     t = np.arange(SAMPLES) / 50.0
-    fits = {name: ChannelFit(name, t, np.zeros(SAMPLES), np.zeros(SAMPLES), 1e-3) for name in ("alpha", "q")}
+    fits = {name: ChannelFit(name, t, np.zeros(SAMPLES), np.zeros(SAMPLES), NOISE) for name in ("alpha", "q")}
     return Estimate(
         theta=np.asarray(theta, dtype=float),
         covariance_cr=covariance,

@@ -1,0 +1,183 @@
+"""Something changed: the aircraft or an instrument is not what it was a few manoeuvres ago.
+
+Noise moves every estimate by as much as its interval says; a poor manoeuvre moves one estimate; a
+change moves all that follow, and all by the same. So the manoeuvres before and after every possible
+moment are pooled and compared: a likelihood-ratio test for one change point, in the six derivatives
+(Z_0 and M_0 move with the trim anyway).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from advisor.aircraft import PARAMETERS
+from advisor.decision.consistency import odd_ones
+from advisor.decision.history import Flown
+from advisor.decision.pooling import (
+    DERIVATIVES,
+    Belief,
+    beliefs_at_one_speed,
+    disagreement,
+    inconsistency,
+    information_of,
+    pool,
+)
+from advisor.flight.messages import FloatArray
+
+FALSE_ALARM = 1e-5
+"""Chance level of one comparison. A campaign makes a few dozen of them, not independent."""
+CONSISTENCY = 1e-3
+"""Chance level below which manoeuvres of one side contradict each other."""
+LEAST_SIGMA = 3.0
+"""A derivative is named as moved from this many standard deviations on."""
+LEAST_SHARE = 0.08
+"""... and from this share of its value on: an aircraft is never twice the same to a few per cent."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """One derivative before and after."""
+
+    parameter: str
+    percent: float
+    sigma: float
+    """The difference over its standard deviation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What changed, and when."""
+
+    after: int
+    """Number of the last manoeuvre before the change, counting from 1 in the order flown."""
+    confirmed: bool
+    """Two or more manoeuvres agree on it; with one alone it may as well be a poor manoeuvre."""
+    moved: tuple[Moved, ...]
+    """The most significant first."""
+    looks_like: str
+    """The simplest cause that explains all derivatives together, in words; empty when none does."""
+    sentence: str
+
+
+def find_change(history: Sequence[Flown]) -> Change | None:
+    """The most telling change between manoeuvres of a campaign, None when noise explains everything.
+
+    At least two manoeuvres must stand before the change: with one alone nobody knows which of the two
+    is the odd one.
+    """
+    flown = [(i, e) for i, m in enumerate(history, start=1) if (e := m.usable)]
+    beliefs = beliefs_at_one_speed([e for _, e in flown])
+    odd = [k for k in odd_ones(beliefs) if k < len(beliefs) - 1]
+    numbers = [i for k, (i, _) in enumerate(flown) if k not in odd]
+    beliefs = [belief for k, belief in enumerate(beliefs) if k not in odd]
+    splits = [_compare(beliefs[:k], beliefs[k:]) for k in range(2, len(beliefs))]
+    if not splits:
+        return None
+    k = int(np.argmax(splits)) + 2
+    before, after = beliefs[:k], beliefs[k:]
+    if splits[k - 2] <= 1.0:
+        return None
+    widening = _widening(before, after)
+    first, second = pool(before), pool(after)
+    moved = _moved(first, second, widening)
+    if not moved or _back_to_normal(before, after):
+        return None
+    looks_like = _simplest_cause(first, second, widening)
+    return _told(numbers[k - 1], numbers[k], len(after) > 1, moved, looks_like)
+
+
+def _compare(before: Sequence[Belief], after: Sequence[Belief]) -> float:
+    """Distance between both sides over its limit; above 1 noise does not explain it."""
+    distance, dof = disagreement(pool(before), pool(after))
+    if dof == 0:
+        return 0.0
+    return distance / _widening(before, after) / float(chi2.isf(FALSE_ALARM, dof))
+
+
+def _widening(before: Sequence[Belief], after: Sequence[Belief]) -> float:
+    """Variance ratio of the scatter within both sides to what their intervals say, at least 1."""
+    sides = [inconsistency(before), inconsistency(after)]
+    total, dof = sum(t for t, _ in sides), sum(d for _, d in sides)
+    return max(1.0, total / dof) if dof > 0 else 1.0
+
+
+def _back_to_normal(before: Sequence[Belief], after: Sequence[Belief]) -> bool:
+    """Whether the newest manoeuvre is again like those before: then the odd ones were merely poor."""
+    if len(after) < 2:
+        return False
+    with_old, dof = disagreement(pool(before), after[-1])
+    with_new, _ = disagreement(pool(after[:-1]), after[-1])
+    return with_old < with_new or inconsistency(after)[0] > with_old + float(chi2.isf(CONSISTENCY, dof))
+
+
+def _moved(before: Belief, after: Belief, widening: float) -> tuple[Moved, ...]:
+    found = []
+    for k in DERIVATIVES:
+        difference = after.theta[k] - before.theta[k]
+        std = np.sqrt(widening * (before.covariance[k, k] + after.covariance[k, k]))
+        size = abs(before.theta[k] + (1.0 if PARAMETERS[k] == "Z_q" else 0.0))
+        if abs(difference) > LEAST_SIGMA * std and abs(difference) > LEAST_SHARE * size:
+            found.append(
+                Moved(PARAMETERS[k], 100.0 * difference / size * np.sign(before.theta[k]), difference / std)
+            )
+    return tuple(sorted(found, key=lambda m: -abs(m.sigma)))
+
+
+# Each cause multiplies the coefficients Z_α, 1 + Z_q, Z_δe, M_α, M_q, M_δe by powers of one factor.
+# The first two are shifts of the aircraft, the next three of the elevator or the air, the last two of
+# an instrument that reads (1 + k) times the truth: substitute the reading in Eqs. (1) and (2).
+_CAUSES = {
+    "a shift of the centre of gravity": (0, 0, 0, 1, 0, 0),
+    "a loss or gain of lift, as from icing": (1, 0, 0, 0, 0, 0),
+    "the elevator's effectiveness or its calibration": (0, 0, 1, 0, 0, 1),
+    "a loss of the elevator's moment": (0, 0, 0, 0, 0, 1),
+    "another air speed than recorded": (1, 0, 1, 2, 1, 2),
+    "the scale of the angle of attack": (0, 1, 1, -1, 0, 0),
+    "the scale of the pitch rate": (0, -1, 0, 1, 0, 1),
+}
+
+
+def _simplest_cause(before: Belief, after: Belief, widening: float) -> str:
+    """The cause that alone explains the differences of all six derivatives, if one does."""
+    misfits = {name: _misfit(before, after, np.array(powers, float)) for name, powers in _CAUSES.items()}
+    best = min(misfits, key=lambda name: misfits[name])
+    return best if misfits[best] < widening * float(chi2.isf(CONSISTENCY, len(DERIVATIVES) - 1)) else ""
+
+
+def _misfit(before: Belief, after: Belief, powers: FloatArray) -> float:
+    """χ² left when ``before`` is multiplied by the best factor to these powers."""
+    d = list(DERIVATIVES)
+    block = np.ix_(d, d)
+    one = np.array([1.0 if PARAMETERS[k] == "Z_q" else 0.0 for k in d])
+    start, target = before.theta[d] + one, after.theta[d] + one
+    exponent = 0.0
+    for _ in range(20):
+        factors = np.exp(exponent * powers)
+        information = information_of(
+            after.covariance[block] + before.covariance[block] * np.outer(factors, factors)
+        )
+        slope, residual = powers * start * factors, target - start * factors
+        curvature = float(slope @ information @ slope)
+        if not curvature > 0.0:
+            return float("inf")
+        exponent = float(np.clip(exponent + slope @ information @ residual / curvature, -1.5, 1.5))
+    residual = target - start * np.exp(exponent * powers)
+    return float(residual @ information @ residual)
+
+
+def _told(last: int, first: int, confirmed: bool, moved: tuple[Moved, ...], looks_like: str) -> Change:
+    what = ", ".join(f"{m.parameter} {m.percent:+.0f} % ({abs(m.sigma):.0f} sigma)" for m in moved)
+    cause = f"; it looks like {looks_like}" if looks_like else ""
+    if confirmed:
+        sentence = (
+            f"Something changed after manoeuvre {last}: {what}{cause}. "
+            f"Estimates from before and after do not belong together."
+        )
+    else:
+        sentence = (
+            f"Manoeuvre {first} does not fit the earlier ones: {what}{cause}. "
+            "It was a poor manoeuvre, or something changed; one more will tell."
+        )
+    return Change(last, confirmed, moved, looks_like, sentence)

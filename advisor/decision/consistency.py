@@ -1,0 +1,64 @@
+"""Do the manoeuvres agree as well as their errors say: which one is the odd one, and how much wider to be."""
+
+from collections.abc import Sequence
+
+from scipy.stats import chi2
+
+from advisor.decision.pooling import Belief, inconsistency, pool
+
+WIDEN_BELOW = 0.05
+"""Chance level below which scatter between manoeuvres widens the intervals."""
+ODD_BELOW = 1e-3
+"""Chance level below which an odd manoeuvre is looked for."""
+ODD_IMPROVEMENT = 3.0
+"""Leaving out an odd manoeuvre must lower χ² per degree of freedom by this factor."""
+FEWEST = 4
+"""With fewer manoeuvres nobody knows which one is odd."""
+
+
+def odd_ones(beliefs: Sequence[Belief]) -> tuple[int, ...]:
+    """Indices of manoeuvres that contradict all the others, which agree among themselves.
+
+    A search may end in a wrong minimum, or a gust may look like a response: such an estimate has a
+    small stated error and would spoil every mean. At most a third of the manoeuvres is odd; more is
+    not oddness but a change, or errors that are stated too small.
+    """
+    inside = list(range(len(beliefs)))
+    odd: list[int] = []
+    while len(inside) >= FEWEST and len(odd) + 1 <= (len(beliefs) - 1) // 3:
+        total, dof = inconsistency([beliefs[i] for i in inside])
+        if dof < 1 or total < float(chi2.isf(ODD_BELOW, dof)):
+            break
+        remaining = {i: inconsistency([beliefs[j] for j in inside if j != i]) for i in inside}
+        candidate = min(remaining, key=lambda i: remaining[i][0])
+        rest, rest_dof = remaining[candidate]
+        if rest_dof < 1 or rest / rest_dof * ODD_IMPROVEMENT > total / dof:
+            break
+        inside.remove(candidate)
+        odd.append(candidate)
+    return tuple(sorted(odd))
+
+
+def excess(beliefs: Sequence[Belief]) -> float:
+    """Variance ratio of the scatter between manoeuvres to their stated errors, 1 unless significant.
+
+    The Birge ratio of metrology: χ² of the derivatives about their pooled value over its degrees of
+    freedom.
+    """
+    if len(beliefs) < 2:
+        return 1.0
+    total, dof = inconsistency(beliefs)
+    return 1.0 if dof < 1 or total < float(chi2.isf(WIDEN_BELOW, dof)) else total / dof
+
+
+def widened(belief: Belief, factor: float) -> Belief:
+    """The same value with ``factor`` times its variance."""
+    return Belief(belief.theta, factor * belief.covariance)
+
+
+def consensus(beliefs: Sequence[Belief]) -> tuple[Belief, float, tuple[int, ...]]:
+    """Pooled belief without the odd manoeuvres, the widening in it, and who was left out."""
+    odd = odd_ones(beliefs)
+    agreeing = [belief for i, belief in enumerate(beliefs) if i not in odd]
+    factor = excess(agreeing)
+    return widened(pool(agreeing), factor), factor, odd

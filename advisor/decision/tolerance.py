@@ -1,0 +1,60 @@
+"""How well a parameter must be known: the crew's percentage, and what stands in for it near zero."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS, CampaignPlan
+from advisor.decision.pooling import information_of
+from advisor.flight.messages import FloatArray
+from advisor.oem.estimate import Estimate
+
+NEAR_ZERO = 3.0
+"""A parameter is near zero when its whole effect on the response is less than this many times the noise."""
+
+
+def tolerances(theta: FloatArray, estimates: Sequence[Estimate], plan: CampaignPlan) -> FloatArray:
+    """The half-width each parameter's 95 % interval must stay below.
+
+    The share ``plan.tolerance_percent`` of the parameter. For one near zero, a share of which is
+    smaller than anything that matters: with δ the change that moves the response by as much as the
+    noise, δ itself at zero, falling to nothing extra at 3·δ. Z_0 and M_0, which hold the trim, may
+    also be wrong by what shifts the trim by as much as the noise of the angle of attack. What
+    ``plan.tolerance`` says of a parameter stands above all this.
+
+    Returns
+    -------
+    FloatArray
+        Shape (8,), each in its parameter's unit.
+    """
+    size = np.abs(theta)
+    tolerance = np.fmax(
+        0.01 * plan.tolerance_percent * size, unnoticeable_change(estimates) - size / NEAR_ZERO
+    )
+    noise = np.median([fits["alpha"].noise for e in estimates for fits in e.fits if "alpha" in fits])
+    for constant, stiffness in (("Z_0", "Z_alpha"), ("M_0", "M_alpha")):
+        k = PARAMETERS.index(constant)
+        tolerance[k] = np.fmax(tolerance[k], size[PARAMETERS.index(stiffness)] * noise)
+    for name, value in plan.tolerance.items():
+        tolerance[PARAMETERS.index(name)] = value
+    return tolerance
+
+
+def unnoticeable_change(estimates: Sequence[Estimate]) -> FloatArray:
+    """The change of each parameter alone that moves the response by as much as the noise, δ.
+
+    A diagonal element of the information matrix is the summed square of the response's change per unit
+    of the parameter, in standard deviations of the noise; over N samples its mean square is one where
+    the parameter moves by √(N / information).
+
+    Returns
+    -------
+    FloatArray
+        Shape (8,), each in its parameter's unit; infinite where the response does not depend on it.
+    """
+    samples = sum(len(fit.t) for e in estimates for fits in e.fits for fit in fits.values())
+    information = sum(
+        (np.diag(information_of(e.covariance_cr)) for e in estimates), np.zeros(len(PARAMETERS))
+    )
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.sqrt(samples / information))
