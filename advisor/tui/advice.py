@@ -1,0 +1,34 @@
+"""The one word for the pilot, from the campaign's verdicts."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from advisor.tui.view import View
+
+Word = Literal["CONTINUE", "REPEAT", "STOP TESTING", "RECOVER", "WAIT", "NO LINK"]
+Tone = Literal["good", "warn", "bad", "quiet"]
+
+
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """Word, sentence, and how loud to say it."""
+
+    word: Word
+    sentence: str
+    tone: Tone
+
+
+def advise(view: View) -> Advice:
+    """What matters most at this moment: a lost link, then the manoeuvre in the air, then the verdicts."""
+    state, verdict = view.state, view.state.flight_test
+    if view.health.condition == "lost":
+        return Advice("NO LINK", view.health.sentence, "bad")
+    if state.enough:
+        return Advice("RECOVER", state.enough, "good")
+    if verdict.decision == "stop":
+        return Advice("STOP TESTING", verdict.sentence, "good")
+    if state.vehicle is None:
+        return Advice("WAIT", view.health.sentence, "quiet")
+    if view.last and not view.last.verdict.accepted:
+        return Advice("REPEAT", verdict.sentence, "warn")
+    return Advice("CONTINUE", verdict.sentence, "quiet")

@@ -1,0 +1,33 @@
+"""What the screens need of a campaign, so that tests may bring their own."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from advisor.campaign_state import CampaignState
+from advisor.flight.messages import Columns
+
+
+class CampaignLike(Protocol):
+    """The part of `advisor.campaign.Campaign` that is used here."""
+
+    @property
+    def state(self) -> CampaignState:
+        """Everything a face may show."""
+
+    def feed(self, columns: Sequence[Columns]) -> Sequence[object]:
+        """Take the next messages."""
+
+    def finish(self) -> Sequence[object]:
+        """The stream has ended: judge what is still open."""
+
+    def exclude(self, number: int, because: str) -> None:
+        """Take a manoeuvre out of every decision."""
+
+    def include(self, number: int) -> None:
+        """Take it in again."""
+
+    def mark(self, text: str) -> None:
+        """Set a mark at the present moment."""
+
+    def note(self, number: int, text: str) -> None:
+        """Add a note to a manoeuvre."""

@@ -1,0 +1,156 @@
+"""The working thread: feeds one campaign from one source and reports what it says.
+
+The estimation runs here, so that keys are answered while it does. No other
+thread touches the campaign; screens ask by the methods below, which only
+queue the request, and hear through ``tell``.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import inf
+from queue import Empty, SimpleQueue
+from threading import Event
+from time import monotonic
+
+from advisor.campaign_state import CampaignState
+from advisor.tui.campaign_like import CampaignLike
+from advisor.tui.goal import Goal
+from advisor.tui.hand import HandDecision
+from advisor.tui.source import LinkHealth, Playable, Playback, Source
+
+REPORT_EVERY_S = 0.1
+_READ_TIMEOUT_S = 0.05
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Report:
+    """One moment of the campaign, the link and the replay."""
+
+    state: CampaignState
+    health: LinkHealth
+    playback: Playback | None
+
+
+class Conductor:
+    """Runs a campaign over a source until told to stop.
+
+    Parameters
+    ----------
+    source : Source
+        Where the data come from.
+    make_campaign : callable
+        Makes an empty campaign; called in the working thread, so that the screen is
+        painted before the numerical libraries are imported. Called again for a rewind.
+    tell : callable
+        Receives a `Report` at most every `REPORT_EVERY_S`; must be safe to call from this thread.
+    """
+
+    def __init__(
+        self, source: Source, make_campaign: Callable[[], CampaignLike], tell: Callable[[Report], object]
+    ) -> None:
+        self._source = source
+        self._make_campaign = make_campaign
+        self._tell = tell
+        self._requests: SimpleQueue[Callable[[CampaignLike], None]] = SimpleQueue()
+        self._by_hand: list[HandDecision] = []
+        self._pending: list[HandDecision] = []
+        self._goal: Goal | None = None
+        self._stopped = Event()
+        self._rewound = False
+        self._told_s = -inf
+
+    def run(self) -> None:
+        """Work until `stop`; the calling thread is the working thread.
+
+        Raises
+        ------
+        UnusableInputError
+            When the input can never serve.
+        """
+        try:
+            while not self._stopped.is_set():
+                self._rewound = False
+                self._play(self._make_campaign())
+        finally:
+            self._source.close()
+
+    def stop(self) -> None:
+        """End `run` at the next opportunity."""
+        self._stopped.set()
+
+    def decide(self, decision: HandDecision) -> None:
+        """Exclude, include, note or mark."""
+        self._requests.put(lambda campaign: self._decide(campaign, decision))
+
+    def jump(self, number: int) -> None:
+        """Play on, or from the beginning, to just before a manoeuvre."""
+        self._requests.put(lambda campaign: self._jump(campaign, number))
+
+    def _play(self, campaign: CampaignLike) -> None:
+        """Feed one campaign until a rewind or the stop."""
+        ended = False
+        while not self._stopped.is_set():
+            self._answer(campaign, _READ_TIMEOUT_S if ended else 0.0)
+            if self._rewound:
+                return
+            if ended:
+                self._arrive()
+                continue
+            batch = self._source.read(_READ_TIMEOUT_S)
+            if batch is None:
+                ended = True
+                campaign.finish()
+            elif batch:
+                campaign.feed(batch)
+            if self._pending:
+                self._repeat_decisions(campaign)
+            if self._goal and self._goal.reached(campaign.state):
+                self._arrive()
+            if ended or monotonic() - self._told_s >= REPORT_EVERY_S:
+                self._report(campaign)
+
+    def _answer(self, campaign: CampaignLike, timeout_s: float) -> None:
+        """Serve what the screens asked for, waiting for a first request."""
+        try:
+            self._requests.get(timeout=timeout_s or None, block=timeout_s > 0.0)(campaign)
+        except Empty:
+            return
+        self._report(campaign)
+
+    def _report(self, campaign: CampaignLike) -> None:
+        playback = self._source.playback() if isinstance(self._source, Playable) else None
+        self._tell(Report(campaign.state, self._source.health(), playback))
+        self._told_s = monotonic()
+
+    def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:
+        stamped = replace(decision, at_s=campaign.state.now_s)
+        stamped.apply(campaign)
+        self._by_hand.append(stamped)
+
+    def _repeat_decisions(self, campaign: CampaignLike) -> None:
+        """After a rewind: the decisions by hand whose moment has come again, in their order."""
+        state = campaign.state
+        for decision in [d for d in self._pending if d.due(state)]:
+            decision.apply(campaign)
+            self._pending.remove(decision)
+
+    def _jump(self, campaign: CampaignLike, number: int) -> None:
+        if not isinstance(self._source, Playable):
+            return
+        known = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
+        before = self._goal.before if self._goal else self._source.playback()
+        self._goal = Goal(number, known.span.start_s if known else None, before)
+        if known:
+            self._source.rewind()
+            self._pending = list(self._by_hand)
+            self._rewound = True
+        self._source.pause(False)
+        self._source.set_speed(inf)
+
+    def _arrive(self) -> None:
+        """The jump is over, at its goal or at the end of the log: play on as before it."""
+        if self._goal is None or not isinstance(self._source, Playable):
+            return
+        self._source.set_speed(self._goal.before.speed)
+        self._source.pause(self._goal.before.paused)
+        self._goal = None

@@ -1,0 +1,42 @@
+"""Block letters for words that must be read at arm's length."""
+
+HEIGHT = 5
+
+_LETTERS = {
+    "A": ("█████", "█   █", "█████", "█   █", "█   █"),
+    "C": ("█████", "█    ", "█    ", "█    ", "█████"),
+    "E": ("█████", "█    ", "████ ", "█    ", "█████"),
+    "G": ("█████", "█    ", "█  ██", "█   █", "█████"),
+    "I": ("███", " █ ", " █ ", " █ ", "███"),
+    "K": ("█   █", "█  █ ", "███  ", "█  █ ", "█   █"),
+    "L": ("█    ", "█    ", "█    ", "█    ", "█████"),
+    "N": ("█   █", "██  █", "█ █ █", "█  ██", "█   █"),
+    "O": ("█████", "█   █", "█   █", "█   █", "█████"),
+    "P": ("█████", "█   █", "█████", "█    ", "█    "),
+    "R": ("█████", "█   █", "█████", "█  █ ", "█   █"),
+    "S": ("█████", "█    ", "█████", "    █", "█████"),
+    "T": ("█████", "  █  ", "  █  ", "  █  ", "  █  "),
+    "U": ("█   █", "█   █", "█   █", "█   █", "█████"),
+    "V": ("█   █", "█   █", "█   █", " █ █ ", "  █  "),
+    "W": ("█   █", "█   █", "█ █ █", "██ ██", "█   █"),
+    " ": ("  ", "  ", "  ", "  ", "  "),
+}
+
+_SCALES = ((4, 3), (4, 2), (3, 2), (2, 2), (2, 1), (1, 1))
+"""Cells across and down for each dot, largest first."""
+
+
+def block_letters(word: str, width: int, height: int) -> str:
+    """Write a word as large as the space allows; in plain letters when it does not fit at all.
+
+    Raises
+    ------
+    KeyError
+        When a letter of the word has not been drawn.
+    """
+    for across, down in _SCALES:
+        for gap in ("  ", " "):
+            rows = [gap.join(_LETTERS[letter][row] for letter in word) for row in range(HEIGHT)]
+            if len(rows[0]) * across <= width and HEIGHT * down <= height:
+                return "\n".join("".join(dot * across for dot in row) for row in rows for _ in range(down))
+    return word

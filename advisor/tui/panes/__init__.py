@@ -1,0 +1,1 @@
+"""Panes: one widget, one question of the crew."""

@@ -1,0 +1,45 @@
+"""What else a pilot must know: what to fly next, where alpha comes from, what has changed."""
+
+from textual.widgets import Static
+
+from advisor.aircraft import PARAMETERS as NAMES
+from advisor.tui.view import View
+from advisor.tui.words import PARAMETERS
+
+
+def alpha_in_words(view: View) -> str:
+    """Source and provenance of the angle of attack in one line."""
+    alpha = view.state.channels.get("alpha")
+    if alpha is None:
+        return "no angle of attack heard yet"
+    return f"{alpha.provenance}, from {alpha.source}, {alpha.rate_hz:.0f} Hz"
+
+
+def flying_in_words(view: View) -> str:
+    """What is in the air now and how its estimate settles."""
+    flying, settling = view.state.flying, view.state.settling
+    if flying is None:
+        return "between manoeuvres"
+    seconds = view.state.now_s - flying.span.start_s
+    words = f"{flying.span.kind}, {seconds:.0f} s"
+    if settling is None:
+        return words
+    m_alpha, std = PARAMETERS["M_alpha"], float(settling.std[NAMES.index("M_alpha")])
+    return f"{words}; {m_alpha.symbol} {m_alpha.with_interval(settling.value('M_alpha'), std)} {m_alpha.unit}"
+
+
+class CrewNotes(Static):
+    """Next input, the manoeuvre in the air, alpha's provenance, warnings."""
+
+    def show(self, view: View) -> None:
+        """Write one line each; warnings last, each with its sign."""
+        verdict = view.state.flight_test
+        next_input = verdict.next.advice if verdict.next else "no advice yet"
+        lines = [
+            f"next        {next_input.removeprefix('next: ')}",
+            f"in the air  {flying_in_words(view)}",
+            f"α           {alpha_in_words(view)}",
+            f"link        {view.health.sentence}",
+            *(f"! {warning}" for warning in verdict.warnings),
+        ]
+        self.update("\n".join(lines))

@@ -1,0 +1,70 @@
+"""The stop criterion after each manoeuvre, under every rule."""
+
+import numpy as np
+from textual.app import ComposeResult
+from textual.widgets import Static
+
+from advisor.decision.verdict import FlightTestVerdict
+from advisor.tui.panes.pane import Pane
+from advisor.tui.plot.chart import Chart, Ink, Level, Series
+from advisor.tui.plot.widget import Plot
+from advisor.tui.view import View
+from advisor.tui.words import percent
+
+RULE_INKS: dict[str, Ink] = {"continuous": "measured", "separate": "residual", "information": "input"}
+
+_Y, _X = "criterion [%]", "manoeuvre"
+
+
+class Criterion(Pane):
+    """One curve a rule against the limit, and what each rule says."""
+
+    TITLE = "6 Criterion"
+    HELP = """\
+# Criterion
+
+The stop criterion after each manoeuvre for the three rules side by side; the test may stop below the
+dashed limit. The rule that decides is marked **►**; what the others would have said is never hidden.
+"""
+
+    def compose(self) -> ComposeResult:
+        """A line for each rule over the curves."""
+        yield Static("No manoeuvre has ended yet.", markup=False)
+        yield Plot(_chart(None))
+
+    def on_mount(self) -> None:
+        """Nothing is shown yet."""
+        super().on_mount()
+        self._shown: FlightTestVerdict | None = None
+
+    def show(self, view: View) -> None:
+        """Draw the histories when the verdict changed."""
+        verdict = view.state.flight_test
+        if verdict is self._shown:
+            return
+        self._shown = verdict
+        self.query_one(Plot).chart = _chart(verdict)
+        self.query_one(Static).update("\n".join(_rule_lines(verdict)) or "No manoeuvre has ended yet.")
+
+
+def _rule_lines(verdict: FlightTestVerdict) -> list[str]:
+    lines = []
+    for rule, progress in verdict.by_rule.items():
+        known = [value for value in progress.history_percent if value is not None]
+        now = percent(known[-1]) if known else "too few manoeuvres"
+        says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
+        lines.append(f"{'►' if rule == verdict.rule else ' '} {rule:<12} {now:>8}  {says}")
+    return lines
+
+
+def _chart(verdict: FlightTestVerdict | None) -> Chart:
+    series = []
+    for rule, progress in verdict.by_rule.items() if verdict else ():
+        history = np.array([np.nan if v is None else v for v in progress.history_percent], dtype=np.float64)
+        if np.isfinite(history).any():
+            numbers = np.arange(1.0, len(history) + 1.0)
+            series.append(Series(rule, numbers, history, RULE_INKS.get(rule, "prior")))
+    if verdict is None or not series:
+        return Chart(_Y, _X, why_empty="too few accepted manoeuvres for any rule yet.")
+    limit = Level("limit", verdict.limit_percent)
+    return Chart(_Y, _X, series=tuple(series), levels=(limit,), whole_x=True)

@@ -1,0 +1,40 @@
+"""What happened, in order."""
+
+from textual.app import ComposeResult
+from textual.containers import VerticalScroll
+from textual.widgets import Static
+
+from advisor.tui.panes.pane import Pane
+from advisor.tui.view import View
+
+_KEPT = 200
+
+
+class EventLog(Pane):
+    """The newest notices, the last one at the bottom."""
+
+    TITLE = "8 Log"
+    HELP = """\
+# Log
+
+Verdicts, marks, notes, changes by hand and what the link reported, newest at the bottom. **m** adds a
+mark at this moment.
+"""
+
+    def compose(self) -> ComposeResult:
+        """Text that scrolls and stays at its end."""
+        with VerticalScroll(can_focus=False):
+            yield Static("Nothing has happened yet.", markup=False)
+
+    def on_mount(self) -> None:
+        """Nothing is shown yet."""
+        super().on_mount()
+        self._shown: tuple[str, ...] = ()
+
+    def show(self, view: View) -> None:
+        """Write the newest notices."""
+        newest = view.state.notices[-_KEPT:]
+        if newest and newest != self._shown:
+            self._shown = newest
+            self.query_one(Static).update("\n".join(newest))
+            self.query_one(VerticalScroll).scroll_end(animate=False)

@@ -1,0 +1,57 @@
+"""The stop criterion against its limit, and how far there is to go."""
+
+from textual.widgets import Static
+
+from advisor.decision.verdict import FlightTestVerdict
+from advisor.tui.panes.last_verdict import symbol_and_word
+from advisor.tui.view import View
+from advisor.tui.words import percent
+
+_LAST_SHOWN = 16
+
+
+def bar(value: float, limit: float, width: int) -> str:
+    """A bar from 0 to twice the limit with the limit marked in its middle; longer ones end in an arrow."""
+    middle = width // 2
+    filled = min(round(value / (2.0 * limit) * width), width)
+    cells = ["█" if k < filled else "·" for k in range(width)]
+    cells[middle] = "┃"
+    if value > 2.0 * limit:
+        cells[-1] = "►"
+    return "".join(cells)
+
+
+class Gauge(Static):
+    """Criterion, manoeuvres so far, and what is still expected."""
+
+    def show(self, view: View) -> None:
+        """Write the two lines."""
+        self.update(f"criterion   {_criterion(view)}\nmanoeuvres  {_flown(view)}")
+
+
+def _criterion(view: View) -> str:
+    verdict = view.state.flight_test
+    value, limit = verdict.criterion_percent, percent(verdict.limit_percent)
+    if value is None:
+        return f"none yet: it needs {view.aircraft.campaign.window} good manoeuvres (limit {limit})"
+    side = "below" if value < verdict.limit_percent else "above"
+    return f"{percent(value):>6}  {bar(value, verdict.limit_percent, 24)}  {side} the limit {limit}"
+
+
+def _flown(view: View) -> str:
+    maneuvers = view.state.maneuvers
+    if not maneuvers:
+        return "none flown yet"
+    accepted = sum(j.verdict.accepted and j.excluded_because is None for j in maneuvers)
+    marks = " ".join(symbol_and_word(j)[0] for j in maneuvers[-_LAST_SHOWN:])
+    return f"{marks}   {accepted} good of {len(maneuvers)}{_remaining(view.state.flight_test)}"
+
+
+def _remaining(verdict: FlightTestVerdict) -> str:
+    if verdict.decision == "stop" or verdict.next is None:
+        return ""
+    remaining = verdict.next.remaining
+    if remaining.median is None:
+        return "; no end in sight"
+    at_most = f", 9 times in 10 at most {remaining.p90}" if remaining.p90 is not None else ""
+    return f"; about {remaining.median} more{at_most}"

@@ -1,0 +1,38 @@
+"""Was that manoeuvre good: symbol, word and sentence."""
+
+from textual.app import ComposeResult
+from textual.containers import Vertical
+from textual.widgets import Static
+
+from advisor.campaign_state import JudgedManeuver
+from advisor.tui.view import View
+
+
+def symbol_and_word(judged: JudgedManeuver) -> tuple[str, str]:
+    """How a verdict is marked everywhere, readable without colour."""
+    if judged.excluded_because is not None:
+        return "∅", "EXCLUDED"
+    return ("✓", "GOOD") if judged.verdict.accepted else ("✗", "REPEAT")
+
+
+class LastVerdict(Vertical):
+    """The newest manoeuvre's verdict."""
+
+    def compose(self) -> ComposeResult:
+        """A line that names it, and its sentence."""
+        yield Static(id="verdict-word", markup=False)
+        yield Static(id="verdict-sentence", markup=False)
+
+    def show(self, view: View) -> None:
+        """Write the newest verdict, or why there is none."""
+        word, sentence = self.query_one("#verdict-word", Static), self.query_one("#verdict-sentence", Static)
+        if not view.state.maneuvers:
+            word.update("no manoeuvre yet")
+            sentence.update("The verdict stands here a few seconds after a manoeuvre ends.")
+            return
+        judged = view.state.maneuvers[-1]
+        symbol, name = symbol_and_word(judged)
+        word.update(f"{symbol} {name}   manoeuvre {judged.maneuver.number}: {judged.maneuver.span.kind}")
+        sentence.update(judged.excluded_because or judged.verdict.sentence)
+        self.set_class(judged.verdict.accepted, "-good")
+        self.set_class(not judged.verdict.accepted, "-warn")

@@ -1,0 +1,80 @@
+"""The manoeuvre being flown: its trace and its estimate as they settle."""
+
+from textual.app import ComposeResult
+from textual.events import Resize
+from textual.widgets import Static
+
+from advisor.aircraft import PARAMETERS as NAMES
+from advisor.flight.maneuver import Maneuver
+from advisor.oem.estimate import Estimate
+from advisor.tui.panes.pane import Pane
+from advisor.tui.plot.chart import Chart, Ink, Series
+from advisor.tui.plot.widget import Plot
+from advisor.tui.view import View
+from advisor.tui.words import PARAMETERS, channel
+
+TRACES: dict[str, Ink] = {"alpha": "measured", "q": "measured", "elevator": "input"}
+_ROWS_FOR_ONE = 7
+
+
+class Live(Pane):
+    """Angle of attack, pitch rate and elevator of the manoeuvre in the air."""
+
+    TITLE = "5 Live"
+    HELP = """\
+# Live
+
+The manoeuvre in the air: measured (dots) and the model fitted so far (line), refreshed ten times a
+second, and the moment derivatives with their 95 % intervals as they settle. When further free response
+adds nothing, it says so: recover. Between manoeuvres nothing moves here; the last trace stays.
+"""
+
+    def compose(self) -> ComposeResult:
+        """A line of numbers over three traces."""
+        yield Static(
+            "Nothing is being flown; the trace begins with the first step of the elevator.",
+            id="settling",
+            markup=False,
+        )
+        for name in TRACES:
+            yield Plot(Chart(channel(name).label, "t [s]", why_empty="no manoeuvre yet."), id=f"live-{name}")
+
+    def show(self, view: View) -> None:
+        """Draw what is in the air; without anything, keep the last trace."""
+        flying, settling = view.state.flying, view.state.settling
+        if flying is None:
+            self.border_subtitle = ""
+            return
+        self.border_subtitle = f"in the air: manoeuvre {flying.number}"
+        self.query_one("#settling", Static).update(view.state.enough or _settling_in_words(settling))
+        for name, ink in TRACES.items():
+            self.query_one(f"#live-{name}", Plot).chart = _trace(flying, settling, name, ink)
+
+    def on_resize(self, event: Resize) -> None:
+        """Show as many traces as have room."""
+        count = max(1, (event.size.height - 2) // _ROWS_FOR_ONE)
+        for k, name in enumerate(TRACES):
+            self.query_one(f"#live-{name}").display = k < count
+
+
+def _trace(flying: Maneuver, settling: Estimate | None, name: str, ink: Ink) -> Chart:
+    quantity, start_s = channel(name), flying.span.start_s
+    samples = flying.channels.get(name)
+    if samples is None or len(samples) == 0:
+        return Chart(quantity.label, "t [s]", why_empty="no samples in this manoeuvre so far.")
+    measured = Series("measured", samples.t - start_s, samples.y * quantity.factor, ink, "points")
+    fit = settling.fits[0].get(name) if settling else None
+    if fit is None:
+        return Chart(quantity.label, "t [s]", series=(measured,))
+    fitted = Series("fitted so far", fit.t - start_s, fit.fitted * quantity.factor, "fitted")
+    return Chart(quantity.label, "t [s]", series=(measured, fitted))
+
+
+def _settling_in_words(settling: Estimate | None) -> str:
+    if settling is None:
+        return "Too little flown yet for an estimate."
+    words = []
+    for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha"):
+        quantity, std = PARAMETERS[name], float(settling.std[NAMES.index(name)])
+        words.append(f"{quantity.symbol} {quantity.with_interval(settling.value(name), std)}")
+    return "   ".join(words)

@@ -1,0 +1,98 @@
+"""The eight parameters with their intervals, against the prior model and manoeuvre by manoeuvre."""
+
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.widgets import DataTable
+
+from advisor.aircraft import PARAMETERS as NAMES
+from advisor.oem.estimate import Estimate
+from advisor.tui.panes.history import history_chart
+from advisor.tui.panes.pane import Pane
+from advisor.tui.plot.widget import Plot
+from advisor.tui.view import View
+from advisor.tui.words import PARAMETERS, signed
+
+_COLUMNS = ("parameter", "model ± 95 %", "selected ± 95 %", "prior", "off by")
+
+
+class Parameters(Pane):
+    """Table of the joint estimate, and the history of the parameter under the cursor."""
+
+    TITLE = "3 Parameters"
+    HELP = """\
+# Parameters
+
+*model*: the joint estimate over the accepted manoeuvres; *selected*: the selected manoeuvre alone; both
+with 95 % intervals (1.96 σ, corrected for coloured residuals). *prior*: the aircraft file's model; *off
+by*: how many σ it lies from the estimate.
+
+**up/down** chooses the parameter whose history is drawn: each manoeuvre's value with its interval, the
+prior as a dashed line. *not identifiable*: the input did not tell this parameter from the others; the
+verdict pane says why.
+"""
+
+    def compose(self) -> ComposeResult:
+        """The table over the history."""
+        table: DataTable[Text] = DataTable(cursor_type="row", cell_padding=1)
+        table.add_columns(*_COLUMNS)
+        yield table
+        yield Plot(history_chart(None, NAMES[0]))
+
+    def on_mount(self) -> None:
+        """Nothing is shown yet."""
+        super().on_mount()
+        self._view: View | None = None
+        self._shown: object = None
+
+    def show(self, view: View) -> None:
+        """Fill the table anew when an estimate changed."""
+        self._view = view
+        key = (id(view.state.maneuvers), id(view.state.model), view.selected)
+        if key == self._shown and view.state.maneuvers:
+            return
+        self._shown = key
+        table = self.query_one(DataTable)
+        row = max(table.cursor_row, 0)
+        selected = view.judged.estimate if view.judged else None
+        with self.prevent(DataTable.RowHighlighted):
+            table.clear()
+            for name in NAMES:
+                cells = _cells(name, view.state.model, selected, view.aircraft.model.get(name))
+                table.add_row(*(Text(cell) for cell in cells), key=name)
+            table.move_cursor(row=row)
+        self._draw_history(NAMES[row])
+
+    def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
+        """Draw the history of the parameter under the cursor."""
+        event.stop()
+        if event.row_key.value is not None:
+            self._draw_history(event.row_key.value)
+
+    def _draw_history(self, name: str) -> None:
+        self.query_one(Plot).chart = history_chart(self._view, name)
+
+
+def _cells(name: str, model: object, selected: object, prior: float | None) -> tuple[str, ...]:
+    quantity = PARAMETERS[name]
+    before = signed(prior * quantity.factor, 3) if prior is not None else "-"
+    return (
+        f"{quantity.symbol} {quantity.unit}",
+        _value(name, model),
+        _value(name, selected),
+        before,
+        _off_by(name, model, prior),
+    )
+
+
+def _value(name: str, estimate: object) -> str:
+    if not isinstance(estimate, Estimate):
+        return "-"
+    if name in estimate.not_identifiable:
+        return "not identifiable"
+    return PARAMETERS[name].with_interval(estimate.value(name), float(estimate.std[NAMES.index(name)]))
+
+
+def _off_by(name: str, estimate: object, prior: float | None) -> str:
+    if prior is None or not isinstance(estimate, Estimate) or name in estimate.not_identifiable:
+        return "-"
+    return f"{abs(estimate.value(name) - prior) / float(estimate.std[NAMES.index(name)]):.1f} σ"

@@ -1,0 +1,26 @@
+"""The first line of every screen: which aircraft, in which mode, heard how."""
+
+from textual.widgets import Static
+
+from advisor.tui.view import View
+
+CONDITIONS = {
+    "good": "✓ link good",
+    "poor": "! link poor",
+    "waiting": "… waiting",
+    "lost": "✗ LINK LOST",
+    "ended": "■ end of log",
+}
+
+
+class StatusLine(Static):
+    """Aircraft, vehicle, mode and source at the left; the link's condition by symbol and word."""
+
+    def show(self, view: View) -> None:
+        """Write the line; colour follows the link's condition."""
+        state = view.state
+        vehicle = str(state.vehicle) if state.vehicle else "no vehicle yet"
+        parts = [CONDITIONS[view.health.condition], view.aircraft.name, vehicle, state.mode, view.title]
+        self.update("  ·  ".join(part for part in parts if part))
+        for condition in CONDITIONS:
+            self.set_class(condition == view.health.condition, f"-{condition}")

@@ -1,0 +1,53 @@
+"""Why the selected manoeuvre was judged as it was."""
+
+from textual.app import ComposeResult
+from textual.containers import VerticalScroll
+from textual.widgets import Static
+
+from advisor.campaign_state import JudgedManeuver
+from advisor.oem.estimate import Estimate
+from advisor.tui.panes.last_verdict import symbol_and_word
+from advisor.tui.panes.pane import Pane
+from advisor.tui.view import View
+from advisor.tui.words import channel
+
+
+class Verdict(Pane):
+    """Sentence, reasons with number beside limit, quality of the fit, cautions."""
+
+    TITLE = "2 Verdict"
+    HELP = """\
+# Verdict
+
+The selected manoeuvre: the sentence the pilot saw, each reason with its number beside the limit, and how
+well the model explains each output (R², Theil's coefficient TIC, lag-1 correlation of the residual: 0 is
+white). A line with **!** does not reject the manoeuvre but belongs on its verdict.
+"""
+
+    def compose(self) -> ComposeResult:
+        """Text that scrolls when there is much to say."""
+        with VerticalScroll(can_focus=False):
+            yield Static("No manoeuvre has ended yet.", markup=False)
+
+    def show(self, view: View) -> None:
+        """Write the selected manoeuvre's verdict."""
+        if view.judged is not None:
+            self.query_one(Static).update("\n".join(_lines(view.judged)))
+
+
+def _lines(judged: JudgedManeuver) -> list[str]:
+    verdict, estimate = judged.verdict, judged.estimate
+    symbol, word = symbol_and_word(judged)
+    lines = [f"{symbol} {word}  manoeuvre {judged.maneuver.number}: {verdict.sentence}"]
+    if judged.excluded_because:
+        lines.append(f"excluded by hand: {judged.excluded_because}")
+    lines += [f"  {r.code}: {r.value:.3g} (limit {r.limit:.3g})  {r.text}" for r in verdict.reasons]
+    if isinstance(estimate, Estimate):
+        for name, fit in estimate.fits[0].items():
+            q = channel(name)
+            rms = f"{fit.rms * q.factor:.3g} {q.unit}"
+            lines.append(f"  {q.symbol}: R² {fit.r2:.3f}, TIC {fit.tic:.3f}, rms {rms}, lag-1 {fit.lag1:.2f}")
+        lines += [f"! {note}" for note in estimate.notes]
+    else:
+        lines.append(f"no estimate: {estimate.text}")
+    return lines + [f"! {caution}" for caution in verdict.cautions]

@@ -1,0 +1,1 @@
+"""Plots in a terminal: braille dots, axes with units, one widget."""

@@ -1,0 +1,63 @@
+"""Axes: ranges and ticks at round numbers."""
+
+from dataclasses import dataclass
+from math import ceil, floor, log10
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+_FINENESS = 8
+"""The ends of an axis are rounded to about this share of its length."""
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """A range with rounded ends, so that it stays put while data grow inside it, and its tick step."""
+
+    low: float
+    high: float
+    step: float
+
+    @property
+    def ticks(self) -> list[float]:
+        """The multiples of ``step`` from ``low`` to ``high``."""
+        first, last = ceil(self.low / self.step - 1e-9), floor(self.high / self.step + 1e-9)
+        return [k * self.step for k in range(first, last + 1)]
+
+    @property
+    def labels(self) -> list[str]:
+        """The ticks in as many decimals as the step needs."""
+        decimals = max(0, -floor(log10(self.step) + 1e-9))
+        return [f"{tick:.{decimals}f}" for tick in self.ticks]
+
+
+def round_axis(values: list[FloatArray], intervals: int) -> Axis:
+    """Choose the axis that holds all finite values, with about ``intervals`` steps and at least two ticks.
+
+    Parameters
+    ----------
+    values : list of ndarray
+        Data of any lengths; empty or not finite data give the range 0 to 1.
+    intervals : int
+        Wanted number of steps of 1, 2 or 5 times a power of ten, at least 1.
+    """
+    finite = [v[np.isfinite(v)] for v in values]
+    finite = [v for v in finite if len(v)]
+    low = min((float(v.min()) for v in finite), default=0.0)
+    high = max((float(v.max()) for v in finite), default=1.0)
+    if high - low <= 1e-9 * max(abs(low), abs(high), 1e-12):
+        margin = max(abs(low) * 0.1, 1e-6)
+        low, high = low - margin, high + margin
+    grain = _round_up((high - low) / _FINENESS)
+    low, high = floor(low / grain + 1e-9) * grain, ceil(high / grain - 1e-9) * grain
+    axis = Axis(low, high, _round_up((high - low) / max(intervals, 1)))
+    while len(axis.ticks) < 2:
+        axis = Axis(low, high, _round_up(axis.step * 0.4))
+    return axis
+
+
+def _round_up(step: float) -> float:
+    """The next of 1, 2 and 5 times a power of ten."""
+    magnitude = 10.0 ** floor(log10(step))
+    return next(m * magnitude for m in (1.0, 2.0, 5.0, 10.0) if m * magnitude >= step * (1.0 - 1e-9))

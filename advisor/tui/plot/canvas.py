@@ -1,0 +1,83 @@
+"""Braille canvas: each terminal cell is a field of 2 x 4 dots."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.flight.messages import FloatArray
+
+BLANK = 0x2800
+# Bit of each dot in a cell, row by row, as Unicode lays out U+2800..U+28FF.
+_BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], dtype=np.uint8)
+
+
+class Canvas:
+    """A drawing surface of ``columns`` x ``rows`` cells over a rectangle of data.
+
+    Later marks take the colour of a cell; dots of all marks stay.
+
+    Parameters
+    ----------
+    columns, rows : int
+        Size in cells, at least 1 each.
+    x_range, y_range : tuple of float
+        Data values at the outermost dots; each must have lower < upper.
+    """
+
+    def __init__(
+        self, columns: int, rows: int, x_range: tuple[float, float], y_range: tuple[float, float]
+    ) -> None:
+        self._width, self._height = 2 * columns, 4 * rows
+        self._x0, self._x_scale = x_range[0], (self._width - 1) / (x_range[1] - x_range[0])
+        self._y1, self._y_scale = y_range[1], (self._height - 1) / (y_range[1] - y_range[0])
+        self._dots = np.zeros((self._height, self._width), dtype=np.uint8)
+        self.ink = np.full((rows, columns), -1, dtype=np.int8)
+        """Shape (rows, columns). Number of the ink last used in each cell, -1 where none."""
+
+    def points(self, x: FloatArray, y: FloatArray, ink: int) -> None:
+        """One dot per sample; what is not finite or lies outside is left out."""
+        self._set(*self._place(x, y), ink)
+
+    def line(self, x: FloatArray, y: FloatArray, ink: int) -> None:
+        """A polyline; a NaN breaks it."""
+        px, py = self._place(x, y)
+        if len(px) < 2:
+            self._set(px, py, ink)
+            return
+        dx, dy = np.diff(px), np.diff(py)
+        drawn = np.isfinite(dx) & np.isfinite(dy)
+        start_x, start_y, dx, dy = px[:-1][drawn], py[:-1][drawn], dx[drawn], dy[drawn]
+        count = np.ceil(np.maximum(np.abs(dx), np.abs(dy))).astype(np.int64) + 1
+        segment = np.repeat(np.arange(len(count)), count)
+        along = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
+        share = along / np.maximum(count[segment] - 1, 1)
+        self._set(start_x[segment] + share * dx[segment], start_y[segment] + share * dy[segment], ink)
+
+    def level(self, y: float, ink: int) -> None:
+        """A dashed horizontal line."""
+        px = np.flatnonzero(np.arange(self._width) % 4 < 2).astype(np.float64)
+        self._set(px, np.full(len(px), (self._y1 - y) * self._y_scale), ink)
+
+    def text(self) -> list[str]:
+        """The rows as strings, blanks where nothing was drawn."""
+        rows, columns = self.ink.shape
+        cells = self._dots.reshape(rows, 4, columns, 2)
+        codes = (cells * _BITS[None, :, None, :]).sum(axis=(1, 3), dtype=np.uint32) + BLANK
+        codes[codes == BLANK] = ord(" ")
+        return [str(row) for row in codes.view(f"<U{columns}").ravel()]
+
+    def _place(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        px = (np.asarray(x, dtype=np.float64) - self._x0) * self._x_scale
+        py = (self._y1 - np.asarray(y, dtype=np.float64)) * self._y_scale
+        # A value far outside would make a segment of millions of dots.
+        return (
+            np.clip(px, -self._width, 2.0 * self._width),
+            np.clip(py, -self._height, 2.0 * self._height),
+        )
+
+    def _set(self, px: NDArray[np.float64], py: NDArray[np.float64], ink: int) -> None:
+        finite = np.isfinite(px) & np.isfinite(py)
+        column, row = np.rint(px[finite]).astype(np.int64), np.rint(py[finite]).astype(np.int64)
+        inside = (column >= 0) & (column < self._width) & (row >= 0) & (row < self._height)
+        column, row = column[inside], row[inside]
+        self._dots[row, column] = 1
+        self.ink[row // 4, column // 2] = ink

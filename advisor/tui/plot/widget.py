@@ -1,0 +1,103 @@
+"""The plot widget: a chart painted on a braille canvas with axes."""
+
+from itertools import pairwise
+from textwrap import wrap
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.segment import Segment
+from rich.style import Style
+from textual.strip import Strip
+from textual.widget import Widget
+
+from advisor.tui.plot.axis import round_axis
+from advisor.tui.plot.canvas import Canvas
+from advisor.tui.plot.chart import INKS, Chart
+from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
+from advisor.tui.plot.legend import legend
+
+_ROWS_PER_TICK = 3
+_COLUMNS_PER_TICK = 12
+
+
+class Plot(Widget):
+    """Paints a `Chart`; repaints only when the chart, the size or the theme changes."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"plot--axis", *(f"plot--{ink}" for ink in INKS)}
+
+    def __init__(self, chart: Chart, *, id: str | None = None, classes: str | None = None) -> None:
+        super().__init__(id=id, classes=classes)
+        self._chart = chart
+        self._strips: list[Strip] | None = None
+
+    @property
+    def chart(self) -> Chart:
+        """What is shown."""
+        return self._chart
+
+    @chart.setter
+    def chart(self, chart: Chart) -> None:
+        if chart is not self._chart:
+            self._chart = chart
+            self._strips = None
+            self.refresh()
+
+    def on_resize(self) -> None:
+        """A new size needs new ticks."""
+        self._strips = None
+
+    def notify_style_update(self) -> None:
+        """A new theme needs new colours."""
+        super().notify_style_update()
+        self._strips = None
+
+    def render_line(self, y: int) -> Strip:
+        """One line of the painted chart."""
+        if self._strips is None:
+            self._strips = self._paint(self.size.width, self.size.height)
+        return self._strips[y] if y < len(self._strips) else Strip.blank(self.size.width, self.rich_style)
+
+    def _paint(self, width: int, height: int) -> list[Strip]:
+        chart, base = self._chart, self.rich_style
+        label_style = base + self.get_component_rich_style("plot--axis", partial=True)
+        if not chart.series:
+            return _sentence(f"{chart.y_label}: {chart.why_empty}", width, label_style)
+        if width < 16 or height < 4:
+            return _sentence(f"{chart.y_label}: too little room for a plot.", width, label_style)
+        inks = [base + self.get_component_rich_style(f"plot--{ink}", partial=True) for ink in INKS]
+        rows = height - 2
+        heights = [s.y for s in chart.series] + [np.array([level.y]) for level in chart.levels]
+        y_axis = round_axis(heights, max(1, rows // _ROWS_PER_TICK))
+        gutter = max(len(label) for label in y_axis.labels) + 1
+        columns = max(2, width - gutter)
+        x_axis = round_axis([s.x for s in chart.series], max(1, columns // _COLUMNS_PER_TICK))
+        if chart.whole_x:
+            x_axis = whole(x_axis)
+        canvas = Canvas(columns, rows, (x_axis.low, x_axis.high), (y_axis.low, y_axis.high))
+        for level in chart.levels:
+            canvas.level(level.y, INKS.index(level.ink))
+        for series in chart.series:
+            draw = canvas.line if series.mark == "line" else canvas.points
+            draw(series.x, series.y, INKS.index(series.ink))
+        side = down_the_side(y_axis, rows, gutter)
+        foot = along_the_foot(x_axis, chart.x_label, gutter, width)
+        return [
+            legend(chart, width, label_style, inks),
+            *(
+                Strip([Segment(side[row], label_style), *_runs(text, canvas.ink[row], inks, base)], width)
+                for row, text in enumerate(canvas.text())
+            ),
+            Strip([Segment(foot, label_style)], width),
+        ]
+
+
+def _runs(text: str, ink: NDArray[np.int8], inks: list[Style], base: Style) -> list[Segment]:
+    """One segment for each stretch of cells in one colour."""
+    edges = [0, *(np.flatnonzero(np.diff(ink)) + 1).tolist(), len(text)]
+    styles = [*inks, base]
+    return [Segment(text[i:j], styles[ink[i]]) for i, j in pairwise(edges)]
+
+
+def _sentence(text: str, width: int, style: Style) -> list[Strip]:
+    return [Strip([Segment(line.ljust(width), style)], width) for line in wrap(text, max(width, 1))]

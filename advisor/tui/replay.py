@@ -1,0 +1,116 @@
+"""A log played like a flight: paused, stepped, sped up, always in its order of arrival."""
+
+from collections.abc import Callable, Sequence
+from math import inf
+from threading import Event
+
+from advisor.flight.messages import Columns
+from advisor.tui.source import LinkHealth, Playback
+from advisor.tui.timeline import Timeline
+
+STEP_S = 0.1
+_FAST_SLICE_S = 1.0
+
+
+def _wait(changed: Event, seconds: float) -> None:
+    changed.wait(seconds)
+
+
+class LogPlayer:
+    """A `Playable` source over the messages of a log.
+
+    Parameters
+    ----------
+    title : str
+        The log's name.
+    load : callable
+        Returns the log's columns; called once, in the reading thread.
+    speed : float
+        Multiple of real time; infinite: as fast as it can.
+    wait : callable
+        ``wait(event, seconds)`` waits until the event is set or the time is over; tests have their own clock.
+    """
+
+    def __init__(
+        self,
+        title: str,
+        load: Callable[[], Sequence[Columns]],
+        speed: float = 1.0,
+        wait: Callable[[Event, float], None] = _wait,
+    ) -> None:
+        self._title = title
+        self._load = load
+        self._wait = wait
+        self._speed = speed
+        self._paused = False
+        self._steps = 0
+        self._position_s = 0.0
+        self._timeline: Timeline | None = None
+        self._changed = Event()
+
+    @property
+    def title(self) -> str:
+        """The log's name."""
+        return self._title
+
+    def read(self, timeout_s: float) -> Sequence[Columns] | None:
+        """The next stretch of the log when its time has come, see `Source.read`."""
+        if self._timeline is None:
+            self._timeline = Timeline(self._load())
+        if self._position_s >= self._timeline.duration_s:
+            return None
+        self._changed.clear()
+        if self._steps:
+            self._steps -= 1
+            stretch_s = STEP_S
+        elif self._paused:
+            self._wait(self._changed, timeout_s)
+            return ()
+        elif self._speed == inf:
+            stretch_s = _FAST_SLICE_S
+        else:
+            stretch_s = STEP_S * max(1.0, self._speed)
+            self._wait(self._changed, stretch_s / self._speed)
+            if self._changed.is_set():
+                return ()
+        self._position_s = min(self._position_s + stretch_s, self._timeline.duration_s)
+        return self._timeline.up_to(self._position_s)
+
+    def health(self) -> LinkHealth:
+        """A log cannot get lost; it can only be over."""
+        timeline = self._timeline
+        if timeline is None:
+            return LinkHealth("waiting", f"Reading {self._title}.")
+        figures = (("messages", f"{len(timeline)}"), ("length", f"{timeline.duration_s:.0f} s"))
+        if self._position_s >= timeline.duration_s:
+            return LinkHealth("ended", "The log has been played to its end.", figures)
+        return LinkHealth("good", "A recorded log is being played.", figures)
+
+    def playback(self) -> Playback:
+        """Where it stands."""
+        duration_s = self._timeline.duration_s if self._timeline else 0.0
+        return Playback(self._paused, self._speed, self._position_s, duration_s)
+
+    def pause(self, paused: bool) -> None:
+        """Hold or go on."""
+        self._paused = paused
+        self._changed.set()
+
+    def set_speed(self, speed: float) -> None:
+        """Multiple of real time, above 0; infinite: as fast as it can."""
+        self._speed = speed
+        self._changed.set()
+
+    def step(self) -> None:
+        """Deliver the next `STEP_S`, paused or not."""
+        self._steps += 1
+        self._changed.set()
+
+    def rewind(self) -> None:
+        """Start again with the first record. Only between two reads."""
+        self._position_s = 0.0
+        if self._timeline:
+            self._timeline.rewind()
+
+    def close(self) -> None:
+        """A log holds nothing open."""

@@ -1,0 +1,1 @@
+"""Screens: the pilot's, the engineer's, and the dialogs over them."""

@@ -1,0 +1,135 @@
+"""The engineer's screen: every number behind the word."""
+
+from dataclasses import replace
+
+from textual.app import ComposeResult
+from textual.containers import Container
+from textual.events import Resize
+from textual.widgets import Footer
+
+from advisor.tui import keys
+from advisor.tui.hand import HandDecision, Verb
+from advisor.tui.panes.channels import Channels
+from advisor.tui.panes.criterion import Criterion
+from advisor.tui.panes.event_log import EventLog
+from advisor.tui.panes.fit import Fit
+from advisor.tui.panes.live import Live
+from advisor.tui.panes.maneuvers import Maneuvers
+from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane_tabs import PaneTabs
+from advisor.tui.panes.parameters import Parameters
+from advisor.tui.panes.replay_bar import ReplayBar
+from advisor.tui.panes.status_line import StatusLine
+from advisor.tui.panes.verdict import Verdict
+from advisor.tui.screens.ask import Ask
+from advisor.tui.screens.face import Face
+from advisor.tui.view import View
+
+# In the order of their numbers.
+PANES: tuple[type[Pane], ...] = (Maneuvers, Verdict, Parameters, Fit, Live, Criterion, Channels, EventLog)
+# In the order in which the grid of the widest layout is filled.
+_PLACES = (Maneuvers, Fit, Live, Verdict, Criterion, Parameters, Channels, EventLog)
+_WIDE, _MEDIUM = (160, 42), (110, 30)
+
+
+class EngineerScreen(Face):
+    """Eight panes: all at once on a wide terminal, one beside or below the manoeuvres on a small one."""
+
+    CSS_PATH = "../styles/engineer.tcss"
+    BINDINGS = keys.ENGINEER
+    HELP = """\
+# Engineer
+
+**1** to **8** goes to a pane, **tab** to the next; **?** explains the pane that has the focus. On a
+small terminal one pane is shown with the manoeuvres; on a wide one all are.
+"""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._view: View | None = None
+        self._chosen = 4
+
+    def compose(self) -> ComposeResult:
+        """The panes in one grid; the style sheet places them by size."""
+        yield StatusLine()
+        yield PaneTabs([pane.TITLE for pane in PANES])
+        with Container(id="panes"):
+            for pane in _PLACES:
+                yield pane()
+        yield ReplayBar()
+        yield Footer(compact=True)
+
+    def on_mount(self) -> None:
+        """Begin with the fit beside the manoeuvres."""
+        self.action_choose(self._chosen)
+        self.query_one("Maneuvers DataTable").focus()
+
+    def on_resize(self, event: Resize) -> None:
+        """Choose the layout that the terminal has room for."""
+        width, height = event.size
+        fits = [width >= w and height >= h for w, h in (_WIDE, _MEDIUM)]
+        self.set_class(fits[0], "-wide")
+        self.set_class(fits[1] and not fits[0], "-medium")
+        self.set_class(not any(fits), "-narrow")
+        self.call_after_refresh(self._refresh_panes)
+
+    def show(self, view: View) -> None:
+        """Update what is visible."""
+        selected = self._view.selected if self._view else None
+        self._view = replace(view, selected=selected)
+        self._refresh_panes()
+
+    def _refresh_panes(self) -> None:
+        view = self._view
+        if view is None:
+            return
+        self.query_one(StatusLine).show(view)
+        self.query_one(ReplayBar).show(view)
+        for pane in self.query(Pane):
+            if pane.display:
+                pane.show(view)
+
+    def on_maneuvers_selected(self, event: Maneuvers.Selected) -> None:
+        """Show another manoeuvre in every pane."""
+        if self._view is not None:
+            self._view = replace(self._view, selected=event.number)
+            self._refresh_panes()
+
+    def action_choose(self, number: int) -> None:
+        """Show a pane and give it the focus."""
+        chosen = self.query_one(PANES[number - 1])
+        if number > 1:
+            for pane in self.query(Pane):
+                pane.set_class(pane is chosen, "-chosen")
+        self.query_one(PaneTabs).choose(number)
+        inner = chosen.query("DataTable")
+        (inner.first() if inner else chosen).focus()
+        self._refresh_panes()
+
+    def action_next_output(self) -> None:
+        """Bring the next output of the fit to the top."""
+        self.query_one(Fit).next_output()
+
+    def action_exclude(self) -> None:
+        """Take the selected manoeuvre out of every decision, or in again; ask why."""
+        judged = self._view.judged if self._view else None
+        if judged is None:
+            self.notify("There is no manoeuvre to exclude yet.")
+            return
+        verb: Verb = "exclude" if judged.excluded_because is None else "include"
+        self._ask(verb, judged.maneuver.number, f"Why {verb} manoeuvre {judged.maneuver.number}?")
+
+    def action_note(self) -> None:
+        """Add a note to the selected manoeuvre."""
+        judged = self._view.judged if self._view else None
+        if judged is None:
+            self.notify("There is no manoeuvre to note anything on yet.")
+            return
+        self._ask("note", judged.maneuver.number, f"Note on manoeuvre {judged.maneuver.number}:")
+
+    def _ask(self, verb: Verb, number: int, question: str) -> None:
+        def decide(text: str | None) -> None:
+            if text is not None:
+                self.post_message(self.Decided(HandDecision(verb, text, number)))
+
+        self.app.push_screen(Ask(question), decide)

@@ -1,0 +1,55 @@
+"""The pilot's screen: one glance, one word."""
+
+from textual.app import ComposeResult
+from textual.widgets import Footer, Static
+
+from advisor.tui.advice import advise
+from advisor.tui.panes.big_word import BigWord
+from advisor.tui.panes.crew_notes import CrewNotes
+from advisor.tui.panes.gauge import Gauge
+from advisor.tui.panes.last_verdict import LastVerdict
+from advisor.tui.panes.replay_bar import ReplayBar
+from advisor.tui.panes.status_line import StatusLine
+from advisor.tui.screens.face import Face
+from advisor.tui.view import View
+
+
+class PilotScreen(Face):
+    """Word, verdict, progress, what to fly next; nothing moves unless it matters."""
+
+    CSS_PATH = "../styles/pilot.tcss"
+    HELP = """\
+# Pilot
+
+The large word is what to do now:
+
+- **CONTINUE**: fly the next manoeuvre.
+- **REPEAT**: the last one was of no use; the line below says why and what to change.
+- **RECOVER**: the manoeuvre in the air has told all it can.
+- **STOP TESTING**: the criterion fell below its limit.
+- **WAIT**, **NO LINK**: no vehicle is heard (any more).
+
+✓ a good manoeuvre, ✗ one to repeat, ∅ one taken out by hand.
+"""
+
+    def compose(self) -> ComposeResult:
+        """From top to bottom in the order of urgency."""
+        yield StatusLine()
+        yield BigWord(id="word")
+        yield Static(id="word-sentence")
+        yield LastVerdict()
+        yield Gauge()
+        yield CrewNotes()
+        yield ReplayBar()
+        yield Footer(compact=True)
+
+    def show(self, view: View) -> None:
+        """Update every part."""
+        advice = advise(view)
+        self.query_one(BigWord).show(advice)
+        self.query_one("#word-sentence", Static).update(advice.sentence)
+        self.query_one(StatusLine).show(view)
+        self.query_one(LastVerdict).show(view)
+        self.query_one(Gauge).show(view)
+        self.query_one(CrewNotes).show(view)
+        self.query_one(ReplayBar).show(view)

@@ -1,0 +1,85 @@
+"""Settings of the screens: what a user may put into the settings file."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+from advisor.problems import ConfigurationError
+
+Face = Literal["pilot", "engineer"]
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """The settings file, ``advisor locate config``. Every key is optional.
+
+    An example::
+
+        theme: light
+        screen: engineer
+        keys: {quit: ctrl+q, pause: "space,k"}
+    """
+
+    theme: str = "dark"
+    """``dark``, ``light`` (cockpit sun), ``high contrast`` or ``colour-blind safe``."""
+    screen: Face = "pilot"
+    """The screen to start with."""
+    keys: Mapping[str, str] = field(default_factory=dict)
+    """Action to its key, or keys with commas between; ``?`` on a screen lists the actions."""
+
+
+def settings_path() -> Path:
+    """Where the settings file belongs on this system, whether it exists or not."""
+    from platformdirs import user_config_path
+
+    return user_config_path("inflight-advisor") / "settings.yaml"
+
+
+def load_settings(path: Path | None = None) -> Settings:
+    """Read the settings file; without one, the defaults.
+
+    Raises
+    ------
+    ConfigurationError
+        Lists every mistake with its key and what is allowed there.
+    """
+    import yaml
+
+    path = path or settings_path()
+    if not path.exists():
+        return Settings()
+    try:
+        data = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
+    except (yaml.YAMLError, OSError, UnicodeDecodeError) as error:
+        raise ConfigurationError(f"{path} cannot be read as YAML: {error}") from error
+    if not isinstance(data, dict):
+        raise ConfigurationError(f"{path} must hold keys and values, as in `theme: light`.")
+    mistakes = [*_unknown(data), *_wrong(data)]
+    if mistakes:
+        raise ConfigurationError(f"{path}: " + "; ".join(mistakes))
+    return Settings(**data)
+
+
+def _unknown(data: dict[str, Any]) -> list[str]:
+    known = [f.name for f in fields(Settings)]
+    return [f"unknown key {key!r} (known: {', '.join(known)})" for key in data if key not in known]
+
+
+def _wrong(data: dict[str, Any]) -> list[str]:
+    from advisor.tui.keys import ACTIONS
+    from advisor.tui.themes import NAMES
+
+    mistakes = []
+    for key, allowed in (("theme", NAMES), ("screen", get_args(Face))):
+        if key in data and data[key] not in allowed:
+            mistakes.append(f"{key}: {data[key]!r} is none of {', '.join(allowed)}")
+    keys = data.get("keys", {})
+    if not isinstance(keys, dict):
+        return [*mistakes, "keys: must map actions to keys, as in `keys: {quit: ctrl+q}`"]
+    for action, key in keys.items():
+        if action not in ACTIONS:
+            mistakes.append(f"keys.{action}: no such action (known: {', '.join(sorted(ACTIONS))})")
+        elif not isinstance(key, str) or not key:
+            mistakes.append(f"keys.{action}: {key!r} is no key, as `ctrl+q` would be")
+    return mistakes

@@ -1,0 +1,67 @@
+"""The messages of a log on the time scale of its replay."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.messages import Columns
+
+LONGEST_SILENCE_S = 2.0
+"""Silences of a log, and the leaps of its clock, are played in at most this time."""
+
+
+class Timeline:
+    """Columns cut into stretches of replay time, each message delivered once and in order.
+
+    Parameters
+    ----------
+    columns : sequence of Columns
+        A whole log; several pieces of one message type are allowed.
+    """
+
+    def __init__(self, columns: Sequence[Columns]) -> None:
+        self._pieces = [piece for piece in columns if len(piece)]
+        order = np.concatenate([np.zeros(0, np.int64), *(p.order for p in self._pieces)])
+        arrival = np.concatenate([np.zeros(0), *(p.arrival_s for p in self._pieces)])
+        sequence = np.argsort(order)
+        self._order = order[sequence]
+        # Arrival stamps of damaged or spliced logs leap by years and run backwards.
+        pauses = np.clip(np.diff(arrival[sequence]), 0.0, LONGEST_SILENCE_S)
+        self._played_s = np.concatenate([np.zeros(min(1, len(order))), np.cumsum(pauses)])
+        self._next = [0] * len(self._pieces)
+
+    def __len__(self) -> int:
+        return len(self._order)
+
+    @property
+    def duration_s(self) -> float:
+        """Replay time of the last message."""
+        return float(self._played_s[-1]) if len(self) else 0.0
+
+    def up_to(self, position_s: float) -> list[Columns]:
+        """Everything not yet delivered with a replay time of at most ``position_s``."""
+        count = int(np.searchsorted(self._played_s, position_s, side="right"))
+        if count == 0:
+            return []
+        last = self._order[count - 1]
+        batch = []
+        for number, piece in enumerate(self._pieces):
+            start, end = self._next[number], int(np.searchsorted(piece.order, last, side="right"))
+            if end > start:
+                batch.append(_cut(piece, start, end))
+                self._next[number] = end
+        return batch
+
+    def rewind(self) -> None:
+        """Deliver from the first message again."""
+        self._next = [0] * len(self._pieces)
+
+
+def _cut(piece: Columns, start: int, end: int) -> Columns:
+    return replace(
+        piece,
+        order=piece.order[start:end],
+        arrival_s=piece.arrival_s[start:end],
+        fields={name: values[start:end] for name, values in piece.fields.items()},
+    )

@@ -1,0 +1,53 @@
+"""One moment as the panes see it."""
+
+from dataclasses import dataclass
+
+from advisor.aircraft import Aircraft
+from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.decision.verdict import FlightTestVerdict
+from advisor.tui.source import LinkHealth, Playback, Source
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """The campaign, the link, the replay, and which manoeuvre an engineer looks at."""
+
+    state: CampaignState
+    health: LinkHealth
+    playback: Playback | None
+    aircraft: Aircraft
+    title: str
+    """What the source is called."""
+    selected: int | None = None
+    """Number of the manoeuvre chosen by hand; None: always the newest."""
+
+    @property
+    def judged(self) -> JudgedManeuver | None:
+        """The manoeuvre to show in detail; None before the first."""
+        maneuvers = self.state.maneuvers
+        newest = maneuvers[-1] if maneuvers else None
+        return next((j for j in maneuvers if j.maneuver.number == self.selected), newest)
+
+    @property
+    def last(self) -> JudgedManeuver | None:
+        """The newest manoeuvre that nobody took out by hand."""
+        return next((j for j in reversed(self.state.maneuvers) if j.excluded_because is None), None)
+
+
+def view_before_first(aircraft: Aircraft, source: Source) -> View:
+    """What there is to show before the first report: nothing flown, nothing heard."""
+    plan = aircraft.campaign
+    verdict = FlightTestVerdict(
+        plan.rule, "continue", "No manoeuvre has been flown yet.", None, plan.limit_percent, None
+    )
+    state = CampaignState(
+        vehicle=None,
+        now_s=0.0,
+        duration_s=0.0,
+        mode="",
+        channels={},
+        maneuvers=(),
+        flight_test=verdict,
+        model=None,
+    )
+    return View(state, source.health(), None, aircraft, source.title)

@@ -1,0 +1,77 @@
+"""How quantities are called and written for people: symbols, degrees, digits that mean something."""
+
+from dataclasses import dataclass
+from math import degrees, floor, isfinite, log10
+
+_DEG = degrees(1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A name and unit for people, and the factor from SI."""
+
+    symbol: str
+    unit: str
+    factor: float = 1.0
+
+    @property
+    def label(self) -> str:
+        """For an axis: ``q [deg/s]``."""
+        return f"{self.symbol} [{self.unit}]"
+
+    def with_interval(self, value: float, std: float) -> str:
+        """An SI value with its 95 % interval, in digits that mean something: ``-48.3 ± 2.1``."""
+        half = 1.96 * std * self.factor
+        decimals = decimals_for(half)
+        return f"{signed(value * self.factor, decimals)} ± {half:.{decimals}f}"
+
+
+CHANNELS = {
+    "elevator": Quantity("δe", "deg", _DEG),
+    "alpha": Quantity("α", "deg", _DEG),
+    "q": Quantity("q", "deg/s", _DEG),
+    "theta": Quantity("θ", "deg", _DEG),
+    "a_z": Quantity("a_z", "m/s²"),
+}
+
+PARAMETERS = {
+    "Z_0": Quantity("Z_0", "deg/s", _DEG),
+    "Z_alpha": Quantity("Z_α", "1/s"),
+    "Z_q": Quantity("Z_q", "-"),
+    "Z_delta_e": Quantity("Z_δe", "1/s"),
+    "M_0": Quantity("M_0", "deg/s²", _DEG),
+    "M_alpha": Quantity("M_α", "1/s²"),
+    "M_q": Quantity("M_q", "1/s"),
+    "M_delta_e": Quantity("M_δe", "1/s²"),
+}
+
+
+def channel(name: str) -> Quantity:
+    """How a channel is written; one without an entry keeps its own name and SI."""
+    return CHANNELS.get(name, Quantity(name, "SI"))
+
+
+def decimals_for(spread: float) -> int:
+    """Decimals that show two significant digits of ``spread``, between 0 and 6."""
+    if not (isfinite(spread) and spread > 0.0):
+        return 3
+    return min(max(1 - floor(log10(spread)), 0), 6)
+
+
+def signed(value: float, decimals: int) -> str:
+    """A number with a real minus sign, never "-0"."""
+    if not isfinite(value):
+        return "-"
+    return f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")
+
+
+def percent(value: float | None) -> str:
+    """A percentage for a glance: no decimals above 10."""
+    if value is None or not isfinite(value):
+        return "-"
+    return f"{value:.1f} %" if abs(value) < 10.0 else f"{value:.0f} %"
+
+
+def clock(seconds: float) -> str:
+    """Minutes and seconds of vehicle time: ``3:07``."""
+    return f"{int(seconds // 60)}:{int(seconds % 60):02d}"

@@ -1,0 +1,100 @@
+"""Stand-ins for the campaign and the link, under the tests' control."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from queue import Empty, SimpleQueue
+
+import numpy as np
+
+from advisor.campaign_state import CampaignState
+from advisor.flight.messages import Columns
+from advisor.tui.source import LinkHealth
+from tests.tui import flights
+
+
+def columns(order: Sequence[int], arrival_s: Sequence[float], name: str = "ATTITUDE") -> Columns:
+    """Messages whose only field is their own arrival index."""
+    index = np.asarray(order, dtype=np.int64)
+    return Columns(name, 1, 1, index, np.asarray(arrival_s, dtype=np.float64), {"index": index})
+
+
+class StagedCampaign:
+    """Shows the states it was given, one more for each batch it is fed; records what it is asked."""
+
+    def __init__(self, states: Sequence[CampaignState], on_feed: Callable[[], None] = lambda: None) -> None:
+        self._states = states
+        self._on_feed = on_feed
+        self._stage = 0
+        self.fed: list[int] = []
+        self.calls: list[tuple[object, ...]] = []
+        self._excluded: dict[int, str] = {}
+
+    @property
+    def state(self) -> CampaignState:
+        now = self._states[min(self._stage, len(self._states) - 1)]
+        maneuvers = tuple(
+            replace(j, excluded_because=self._excluded.get(j.maneuver.number)) for j in now.maneuvers
+        )
+        return replace(now, maneuvers=maneuvers)
+
+    def feed(self, batch: Sequence[Columns]) -> list[object]:
+        self._on_feed()
+        self._stage += 1
+        self.fed += sorted(int(k) for piece in batch for k in piece.order)
+        return []
+
+    def finish(self) -> list[object]:
+        self.calls.append(("finish",))
+        return []
+
+    def exclude(self, number: int, because: str) -> None:
+        self.calls.append(("exclude", number, because))
+        self._excluded[number] = because
+
+    def include(self, number: int) -> None:
+        self.calls.append(("include", number))
+        self._excluded.pop(number, None)
+
+    def mark(self, text: str) -> None:
+        self.calls.append(("mark", text))
+
+    def note(self, number: int, text: str) -> None:
+        self.calls.append(("note", number, text))
+
+
+class HandFedSource:
+    """Delivers what a test puts into it."""
+
+    title = "udpin:127.0.0.1:0"
+
+    def __init__(self) -> None:
+        self.batches: SimpleQueue[Sequence[Columns] | Exception | None] = SimpleQueue()
+        self.condition = LinkHealth(
+            "good", "412 messages/s, none lost.", (("messages", "412 /s"), ("lost", "0.0 %"))
+        )
+        self.closed = False
+
+    def deliver(self, count: int = 1) -> None:
+        """Put in ``count`` batches of one message."""
+        for _ in range(count):
+            self.batches.put([columns([0], [0.0])])
+
+    def read(self, timeout_s: float) -> Sequence[Columns] | None:
+        try:
+            batch = self.batches.get(timeout=timeout_s)
+        except Empty:
+            return ()
+        if isinstance(batch, Exception):
+            raise batch
+        return batch
+
+    def health(self) -> LinkHealth:
+        return self.condition
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def staged(*states: CampaignState) -> StagedCampaign:
+    """A campaign that is in the last of these states after as many batches."""
+    return StagedCampaign(states or (flights.state(),))
