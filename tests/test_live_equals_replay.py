@@ -1,0 +1,104 @@
+"""What is decided in the air is decided again from the recording, to the last bit."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.campaign import Campaign
+from advisor.campaign_state import CampaignState
+from advisor.demo import Demonstration
+from advisor.flight.messages import Columns
+from advisor.mavlink.logs import open_log
+from advisor.oem.estimate import Estimate
+from tests.flights import recorded
+
+pytestmark = pytest.mark.xdist_group("links")
+
+
+def facts(state: CampaignState) -> list[object]:
+    """Everything that was decided, with every number as it is."""
+    told: list[object] = [state.flight_test, state.estimate_from]
+    for judged in state.maneuvers:
+        assert isinstance(judged.estimate, Estimate)
+        told += [judged.verdict, judged.maneuver.span, judged.estimate.cost]
+        told += [judged.estimate.theta.tobytes(), judged.estimate.covariance.tobytes()]
+    assert state.model is not None
+    return [*told, state.model.theta.tobytes()]
+
+
+def replayed(log: Path) -> CampaignState:
+    campaign = Campaign(Aircraft())
+    for batch in open_log(log):
+        campaign.feed(batch)
+    campaign.finish()
+    return campaign.state
+
+
+def test_a_flight_followed_live_and_its_own_recording_give_identical_verdicts(tmp_path: Path) -> None:
+    recording = tmp_path / "live.tlog"
+    campaign = Campaign(Aircraft(), settle=True)
+    with Demonstration("linear", 30.0, 5, recording) as flight:
+        while not flight.over():
+            campaign.feed(flight.link.read(0.05))
+        while columns := flight.link.read(0.05):
+            campaign.feed(columns)
+    campaign.finish()
+    assert len(campaign.state.maneuvers) == 7
+    assert facts(campaign.state) == facts(replayed(recording))
+
+
+def one_by_one(columns: list[Columns]) -> list[Columns]:
+    """Every message by itself, in order of arrival."""
+    singles = [
+        Columns(
+            piece.name,
+            piece.system,
+            piece.component,
+            piece.order[i : i + 1],
+            piece.arrival_s[i : i + 1],
+            {name: values[i : i + 1] for name, values in piece.fields.items()},
+        )
+        for piece in columns
+        for i in range(len(piece))
+    ]
+    return sorted(singles, key=lambda single: int(single.order[0]))
+
+
+def test_it_does_not_matter_how_the_stream_is_cut_into_batches() -> None:
+    log = recorded("linear", 1.0)
+    columns = [piece for batch in open_log(log) for piece in batch]
+    campaign = Campaign(Aircraft())
+    for single in one_by_one(columns):
+        campaign.feed([single])
+    campaign.finish()
+    assert facts(campaign.state) == facts(replayed(log))
+
+
+def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_back_restores_it() -> None:
+    campaign = Campaign(Aircraft())
+    for batch in open_log(recorded("linear", 1.0)):
+        campaign.feed(batch)
+    campaign.finish()
+    before = facts(campaign.state)
+    campaign.exclude(3, "a gust")
+    state = campaign.state
+    assert 3 not in state.estimate_from
+    assert state.maneuvers[2].excluded_because == "a gust"
+    assert not state.maneuvers[2].verdict.accepted
+    assert state.flight_test.stopped_at != 3
+    assert state.model is not None
+    assert np.any(np.frombuffer(before[-1]) != state.model.theta)  # type: ignore[call-overload]
+    campaign.include(3)
+    assert facts(campaign.state) == before
+
+
+def test_notes_and_marks_are_kept() -> None:
+    campaign = Campaign(Aircraft())
+    for batch in open_log(recorded("linear", 1.0)):
+        campaign.feed(batch)
+    campaign.note(2, "rough hands")
+    campaign.mark("turning back")
+    assert campaign.state.maneuvers[1].notes == ("rough hands",)
+    assert "turning back" in campaign.state.notices[-1]
