@@ -20,14 +20,20 @@ SMALLEST_RAD = float(np.radians(0.15))
 
 _BAND = 0.3
 """Within this share of the amplitude the elevator counts as at trim."""
-_SQUARE = 0.58
-"""Share of an input's time spent on its levels; half a sine reaches 0.45, steps slewed by a hand 0.62."""
+_SQUARE = {"pulse": 0.7, "doublet": 0.6, "other": 0.6}
+"""Least share of an input's time spent on its levels: half a sine reaches 0.45, a hand's steps 0.62."""
 _SQUARE_3211 = 0.4
 """The same for a pattern whose timing already gives it away."""
-_SHARP = 0.18
+_SHARP = 0.2
 """Longest time from a fifth to four fifths of a step, as a share of the shortest level; a sine takes 0.23."""
-_QUIET_S = 0.9
-"""Other inputs are told from corrections by the quiet before them: this long."""
+_SHARP_3211 = 0.33
+"""The same for the pattern, where reversals go from side to side; there a sine takes 0.41."""
+_HAND_S = (0.1, 0.25)
+"""A hand needs at least the one for that part of a step, and at most the other."""
+_QUIET_S = {"pulse": 1.5, "doublet": 0.9, "multisine": 0.9, "other": 0.9}
+"""Inputs that a correction might resemble are told from it by the quiet before them: this long."""
+_SLOWEST_STEP_S = 0.25
+"""Samples farther apart than this hide the shape of an input."""
 _LEAST_LEVEL = 0.4
 """A lobe smaller than this share of the largest is no step of a known input."""
 
@@ -61,7 +67,7 @@ class Shape:
     def band(self) -> float:
         """Deviation from trim that would be a new input, rad."""
         share = _BAND if self.is_3211 else 0.7 * _BAND
-        return max(share * self.amplitude, 4.0 * self.quiet)
+        return max(share * self.amplitude, min(4.0 * self.quiet, 0.45 * self.amplitude))
 
     @property
     def is_3211(self) -> bool:
@@ -84,8 +90,8 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
         movement (a trim change), or moved in no recognisable way.
     """
     resting = t >= t[-1] - RESTING_S
-    if np.count_nonzero(resting) < 3:
-        resting[-3:] = True
+    if np.count_nonzero(resting) < 3 or float(np.median(np.diff(t))) > _SLOWEST_STEP_S:
+        return None
     trim = float(np.median(u[resting]))
     d = _without_spikes(u) - trim
     found = _extent(t, d, float(np.ptp(d[resting])))
@@ -99,10 +105,12 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
     if abs(float(np.mean(d[before:first]))) > 0.5 * _BAND * amplitude:
         return None
     shape = _classify(t, d, first, last, trim, amplitude, quiet)
-    if shape is None or shape.is_3211:
+    if shape is None or not _is_sharp(t, d, shape):
+        return None
+    if shape.is_3211:
         return shape
-    steady = t[first] - t[before] >= _QUIET_S and amplitude >= 8.0 * quiet
-    return shape if steady and _is_sharp(t, d, shape) else None
+    steady = t[first] - t[before] >= _QUIET_S[shape.kind] and amplitude >= 8.0 * quiet
+    return shape if steady else None
 
 
 def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, int] | None:
@@ -125,7 +133,7 @@ def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, 
     else:
         first = int(away[0])
         before = 0
-    before = max(before, int(np.searchsorted(t, t[first] - 1.0)))
+    before = max(before, int(np.searchsorted(t, t[first] - 1.7)))
     if first - before < 2 or t[first] - t[before] < 0.8 * RESTING_S:
         return None
     return before, first, last
@@ -136,6 +144,8 @@ def _classify(
 ) -> Shape | None:
     lobes = _lobes(d, first, last, amplitude)
     levels = np.array([float(np.median(d[a : b + 1])) for a, b in lobes])
+    if np.min(np.abs(levels)) < 0.5 * _BAND * amplitude:
+        return None
     onsets = _onsets(t, d, lobes, levels)
     durations = np.diff(onsets)
     kind = _kind(
@@ -196,14 +206,18 @@ def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape) -> bool:
     """Whether the elevator steps from level to level rather than swings (multisines swing)."""
     if shape.kind == "multisine":
         return True
-    durations = np.diff([onset for onset, _ in shape.steps])
-    longest = _SHARP * float(np.min(durations)) + 1.5 * float(np.median(np.diff(t)))
+    shortest = float(np.min(np.diff([onset for onset, _ in shape.steps])))
+    least, most = _HAND_S
+    longest = (
+        max(least, _SHARP_3211 * shortest) if shape.is_3211 else min(most, max(least, _SHARP * shortest))
+    )
+    longest += 1.5 * float(np.median(np.diff(t)))
     old = 0.0
     for onset, new in shape.steps:
-        near = np.abs(t - onset) <= float(np.min(durations))
-        done = (d[near] - old) / (new - old)
-        left, arrived = t[near][done <= 0.2], t[near][done >= 0.8]
-        left, arrived = left[left <= onset], arrived[arrived >= onset]
+        near = np.abs(t - onset) <= shortest
+        side = np.sign(new - old)
+        left = t[near & (side * (d - old) <= 0.2 * abs(new - old)) & (t <= onset)]
+        arrived = t[near & (side * (d - old) >= 0.8 * abs(new - old)) & (t >= onset)]
         if len(left) == 0 or len(arrived) == 0 or arrived[0] - left[-1] > longest:
             return False
         old = new
@@ -213,17 +227,19 @@ def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape) -> bool:
 def _kind(levels: FloatArray, durations: FloatArray, square: float, step_s: float) -> InputKind | None:
     """Which input these lobes are, None for movements that are no test input."""
     sizes = np.abs(levels) / np.max(np.abs(levels))
-    if len(levels) == 4 and square >= _SQUARE_3211 and np.all(sizes >= _LEAST_LEVEL):
+    even = bool(np.all(sizes >= _LEAST_LEVEL))
+    if len(levels) == 4 and square >= _SQUARE_3211 and even:
         unit = float(np.sum(durations)) / 7.0
         if np.all(np.abs(durations - unit * np.array([3, 2, 1, 1])) <= 0.45 * unit + step_s):
             return "3-2-1-1" if levels[0] < 0.0 else "reverse 3-2-1-1"
-    if square < _SQUARE:
-        return "multisine" if _is_multisine(levels, durations) else None
-    if len(levels) == 1:
-        return "pulse" if 0.08 <= durations[0] <= 4.0 else None
-    if len(levels) == 2 and np.all(sizes >= _LEAST_LEVEL) and 0.5 <= durations[0] / durations[1] <= 2.0:
-        return "doublet"
-    return "other"
+    kind: InputKind = "other"
+    if len(levels) == 1 and 0.08 <= durations[0] <= 4.0:
+        kind = "pulse"
+    elif len(levels) == 2 and even and 0.5 <= durations[0] / durations[1] <= 2.0:
+        kind = "doublet"
+    if square >= _SQUARE[kind] and (kind != "other" or len(levels) > 1):
+        return kind
+    return "multisine" if _is_multisine(levels, durations) else None
 
 
 def _is_multisine(levels: FloatArray, durations: FloatArray) -> bool:
@@ -232,7 +248,7 @@ def _is_multisine(levels: FloatArray, durations: FloatArray) -> bool:
         return False
     half = len(levels) // 2
     early, late = np.max(np.abs(levels[:half])), np.max(np.abs(levels[half:]))
-    return bool(late > 0.5 * early and early > 0.3 * late)
+    return bool(late > 0.6 * early and early > 0.4 * late)
 
 
 def _without_spikes(u: FloatArray) -> FloatArray:
