@@ -1,6 +1,7 @@
 """Whole logs: recorded ones against pymavlink, and files that are no logs."""
 
 import struct
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -53,6 +54,24 @@ def test_the_size_of_the_chunks_has_no_influence(tmp_path: Path) -> None:
     for chunk_bytes in (1, 7, 64, 1000):
         pieces = [column for batch in read_tlog(path, chunk_bytes=chunk_bytes) for column in batch]
         assert one_by_one(pieces) == one_by_one(whole)
+
+
+def peak_memory_of_reading(path: Path) -> int:
+    tracemalloc.start()
+    for _ in read_tlog(path, chunk_bytes=1 << 16):
+        pass
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    return peak
+
+
+def test_a_log_ten_times_as_long_streams_through_the_same_memory(tmp_path: Path) -> None:
+    path = tmp_path / "long.tlog"
+    path.write_bytes(small_log() * 200)
+    peak_memory_of_reading(path)  # loads the compiled scanner
+    short = peak_memory_of_reading(path)
+    path.write_bytes(small_log() * 2000)
+    assert peak_memory_of_reading(path) < 1.1 * short
 
 
 @pytest.mark.parametrize("lost_bytes", [1, 5, 9, 20])
