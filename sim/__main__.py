@@ -8,8 +8,10 @@ from typing import Any
 
 import click
 
+from sim.effects.fitting import flight_of
 from sim.flight import Flight
 from sim.loading import ScenarioError
+from sim.modelled import modelled_flight
 from sim.scenario import Scenario, read_scenario
 from sim.trim import TrimError
 
@@ -30,7 +32,13 @@ def _flown(options: dict[str, Any]) -> Flight:
     path = options["scenario"]
     scenario = read_scenario(path) if path else Scenario()
     changes = {key: options[key] for key in ("seed", "aircraft", "engine") if options[key] is not None}
-    return Flight(replace(scenario, **changes))
+    scenario = replace(scenario, **changes)
+    replayed = options["replay_inputs"]
+    if Path(scenario.aircraft).suffix in (".yaml", ".yml"):
+        return modelled_flight(scenario, Path(scenario.aircraft), replayed)
+    if replayed is not None:
+        raise click.UsageError("--replay-inputs needs --aircraft FILE (an aircraft file with its model)")
+    return flight_of(scenario)
 
 
 def _flight_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -40,6 +48,9 @@ def _flight_options(command: Callable[..., None]) -> Callable[..., None]:
         ),
         click.option("--aircraft", help="uav, light, linear, an aircraft file; with JSBSim e.g. c172p."),
         click.option("--engine", type=click.Choice(["bundled", "jsbsim"]), help="Flight dynamics engine."),
+        click.option(
+            "--replay-inputs", type=click.Path(path_type=Path), help="Log whose elevator is flown again."
+        ),
         click.option("--seed", type=int, help="Same seed, same bytes."),
     ):
         command = option(command)

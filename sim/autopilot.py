@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from sim.linear import ShortPeriod
 from sim.maneuvers import Input, elevator_input
@@ -27,6 +27,10 @@ class Demand(NamedTuple):
     mode: int
     turbulence: float
     """Standard deviation of turbulence that the scenario wants now, m/s, beside the background's."""
+
+
+BANDWIDTH_RAD_S = 0.8
+"""Of the attitude hold."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,22 @@ def plan(scenario: Scenario, amplitude_deg: float, unit_s: float) -> tuple[Plann
     return tuple(planned)
 
 
+class Pilot(Protocol):
+    """Whoever moves the controls."""
+
+    def demand(self, time_s: float, motion: Motion, period_s: float) -> Demand:
+        """Return what the controls shall be at ``time_s``, decided with ``motion`` as it is a tick before."""
+        ...
+
+    def current(self, time_s: float) -> Planned | None:
+        """The manoeuvre being flown at ``time_s``, from the change to MANUAL to that back."""
+        ...
+
+    def mode(self, time_s: float) -> int:
+        """Flight mode at ``time_s``."""
+        ...
+
+
 class Autopilot:
     """Attitude, height, speed and bank loops, and a pilot who flies the plan."""
 
@@ -65,10 +85,11 @@ class Autopilot:
         self._planned = planned
         self._trim = trim
         self._start = start
-        # Gains relative to the aircraft's own stiffness and control power hold any aircraft steady.
-        power = abs(model.M_delta_e)
-        self._stiffness = 0.4 * model.frequency() ** 2 / power
-        self._damping = 0.4 * model.frequency() / power
+        # Gains relative to the aircraft's own stiffness, lift slope and control power hold any aircraft
+        # steady; small ones, so that servo lags and delays do not upset the loop.
+        power, squared = abs(model.M_delta_e), model.frequency() ** 2
+        self._stiffness = min(0.4, BANDWIDTH_RAD_S / max(abs(model.Z_alpha), 1e-3)) * squared / power
+        self._damping = 0.2 * model.frequency() / power
         self._settled_elevator = trim.elevator
         self._settled_throttle = trim.throttle
         self._integral = 0.0
@@ -79,6 +100,10 @@ class Autopilot:
             if planned.manual_from_s <= time_s < planned.end_s:
                 return planned
         return None
+
+    def mode(self, time_s: float) -> int:
+        """Flight mode at ``time_s``."""
+        return MANUAL if self.current(time_s) else CRUISE
 
     def _next(self, time_s: float) -> Maneuver | None:
         """The manoeuvre whose speed, height and bank are to be reached."""

@@ -66,6 +66,7 @@ def derivatives(x: NDArray[np.float64], u: NDArray[np.float64], airframe, dx: ND
     lift_path = lift * math.cos(slip) + drag * math.sin(slip)
     drag_path = drag * math.cos(slip) - lift * math.sin(slip)
     speed_dot = (thrust * cos_a - drag_path) / a.mass - GRAVITY_M_S2 * sin_gamma
+    pushing = thrust
     if a.speed_held > 0.0:
         thrust += -a.mass * speed_dot / cos_a
         speed_dot = 0.0
@@ -88,7 +89,8 @@ def derivatives(x: NDArray[np.float64], u: NDArray[np.float64], airframe, dx: ND
         + (cl * math.cos(air_alpha) + cd * math.sin(air_alpha)) * a.cg_aft / a.chord
         + u[6]
     )
-    moment = force * a.chord * cm + thrust * a.thrust_arm
+    # What holds the speed ideally pushes through the centre of gravity, the throttle's thrust does not.
+    moment = force * a.chord * cm + pushing * a.thrust_arm
 
     dx[0] = speed_dot
     dx[1] = alpha_dot

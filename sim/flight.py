@@ -2,20 +2,20 @@
 
 import math
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from sim import hangar
 from sim.atmosphere import DrydenTurbulence
-from sim.autopilot import Autopilot, Demand, Planned, plan
+from sim.autopilot import Autopilot, Demand, Pilot, Planned, plan
 from sim.fittings import Fittings
 from sim.motion import Controls, Motion
 from sim.scenario import Maneuver, Noise, Scenario
 from sim.sensors import NOISY, ChannelNoise, DerivedAlpha, Reading, ideal
-from sim.servo import Calibration, FirstOrderServo, SecondOrderServo, Servo, TransportDelay
+from sim.servo import FirstOrderServo, SecondOrderServo, Servo, TransportDelay
 
 CLOSING_S = 5.0
 """Attitude hold after the last manoeuvre."""
@@ -56,6 +56,12 @@ class Flight:
         Effects to fit; None: only what the scenario's own sections say.
     engine
         The aircraft; None: the scenario's from the hangar.
+    pilot
+        Who flies; None: an autopilot with the scenario's plan.
+    duration_s
+        How long; None: until the plan is flown.
+    fresh
+        Builds the plain aircraft again, for the flight that shows how large the signals are.
 
     Notes
     -----
@@ -66,18 +72,27 @@ class Flight:
     """
 
     def __init__(
-        self, scenario: Scenario, fittings: Fittings | None = None, engine: hangar.Aircraft | None = None
+        self,
+        scenario: Scenario,
+        fittings: Fittings | None = None,
+        engine: hangar.Aircraft | None = None,
+        pilot: Pilot | None = None,
+        duration_s: float | None = None,
+        fresh: Callable[[Scenario], hangar.Aircraft] = hangar.build,
     ) -> None:
         self.scenario = scenario
-        self.engine = engine or hangar.build(scenario)
+        self.engine = engine or fresh(scenario)
         usual = hangar.habits(scenario)
         self.planned = plan(scenario, usual.amplitude_deg, usual.unit_s)
-        self.duration_s = (self.planned[-1].end_s if self.planned else scenario.lead_in_s) + CLOSING_S
-        self.calibration = Calibration()
+        planned_s = self.planned[-1].end_s if self.planned else scenario.lead_in_s
+        self.duration_s = planned_s + CLOSING_S if duration_s is None else duration_s
+        self.calibration = self.engine.calibration
         self._fittings = _with_basics(scenario, fittings or Fittings())
         self._servo = Servo(tuple(self._fittings.mechanisms))
-        self._pilot = Autopilot(self.planned, self.engine.trim, self.engine.motion(), self.engine.truth)
-        self._noise = ChannelNoise(noise_sigma(scenario), scenario.noise.colour, scenario.seed)
+        self._pilot = pilot or Autopilot(
+            self.planned, self.engine.trim, self.engine.motion(), self.engine.truth
+        )
+        self._noise = ChannelNoise(noise_sigma(scenario, fresh), scenario.noise.colour, scenario.seed)
         self._passing = DrydenTurbulence(0.0, 60.0, np.random.default_rng([scenario.seed, 7]))
         self._steps = round(1.0 / (scenario.loop_hz * scenario.step_s))
         self._early_s = max([0.0, *(-skew for skew in self._fittings.skews.values())])
@@ -91,13 +106,14 @@ class Flight:
         trim_us = self.calibration.pulse(self.engine.trim.elevator)
         self._servo.reset(self.calibration.deflection(trim_us))
         demand = Demand(
-            self.engine.trim.elevator, self.engine.trim.throttle, 0.0, 0.0, self._pilot_mode(0.0), 0.0
+            self.engine.trim.elevator, self.engine.trim.throttle, 0.0, 0.0, self._pilot.mode(0.0), 0.0
         )
         pulse, north, east = trim_us, 0.0, 0.0
         past: deque[tuple[float, Reading]] = deque()
         waiting: deque[Sample] = deque()
         reading = self._read(motion, 0.0)
-        for tick in range(math.ceil(self.duration_s / period)):
+        ticks = math.ceil(self.duration_s / period - 1e-9)
+        for tick in range(ticks + math.ceil(self._early_s / period)):
             now = tick * period
             following = self._pilot.demand(now if held else now + period, motion, period)
             if held:
@@ -107,7 +123,7 @@ class Flight:
             waiting.append(
                 Sample(
                     now, copy(reading), motion, pulse, demand.throttle, demand.aileron, demand.rudder,
-                    self._pilot_mode(now), north, east, self._pilot.current(now),
+                    self._pilot.mode(now), north, east, self._pilot.current(now),
                 )
             )  # fmt: skip
             if self._fittings.skews:
@@ -126,12 +142,11 @@ class Flight:
             east += self.scenario.air.wind_east_m_s * period
             while waiting and waiting[0].time_s + self._early_s <= now + period - dt:
                 sample = waiting.popleft()
+                if sample.time_s >= self.duration_s - 1e-9:
+                    return
                 self._skew(sample, past)
                 self._noise.add(sample.reading)
                 yield sample
-
-    def _pilot_mode(self, time_s: float) -> int:
-        return 0 if self._pilot.current(time_s) else 7
 
     def _step(self, command: float, demand: Demand, time_s: float, motion: Motion, dt: float) -> Motion:
         surface = self._servo.step(command, dt)
@@ -210,7 +225,9 @@ def _with_basics(scenario: Scenario, fittings: Fittings) -> Fittings:
     )
 
 
-def noise_sigma(scenario: Scenario) -> dict[str, float]:
+def noise_sigma(
+    scenario: Scenario, fresh: Callable[[Scenario], hangar.Aircraft] = hangar.build
+) -> dict[str, float]:
     """Standard deviation of each channel's noise, SI units.
 
     Percentages refer to the channel's deviation from trim while the scenario's first manoeuvre is
@@ -242,14 +259,11 @@ def noise_sigma(scenario: Scenario) -> dict[str, float]:
             maneuvers=(plain,),
             noise=Noise(),
         )
-        signal = [s for s in Flight(quiet).samples() if s.flying and s.time_s >= s.flying.start_s]
+        signal = [
+            s for s in Flight(quiet, fresh=fresh).samples() if s.flying and s.time_s >= s.flying.start_s
+        ]
         for name in NOISY:
             values = np.array([getattr(sample.reading, name) for sample in signal])
             size = np.abs(values - values[0]).max() if noise.of == "peak" else values.std()
             sigma[name] += noise.percent / 100.0 * float(size)
     return {name: value for name, value in sigma.items() if value > 0.0}
-
-
-def with_seed(scenario: Scenario, seed: int | None) -> Scenario:
-    """Return the scenario under another seed, or as it is."""
-    return scenario if seed is None else replace(scenario, seed=seed)

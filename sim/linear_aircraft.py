@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sim.airframe import GRAVITY_M_S2
 from sim.linear import ShortPeriod
 from sim.motion import Controls, Motion
+from sim.servo import Calibration
 
 ROLL_RATE_MAX = 2.0
 ROLL_LAG_S = 0.15
@@ -154,6 +155,7 @@ class LinearAircraft:
             [(*astuple(model), *astuple(terms), alpha, elevator, throttle, airspeed_m_s)], dtype=MODEL_RECORD
         )
         """The model being flown; effects may change its fields in flight."""
+        self.calibration = Calibration()
         self.trim = Controls(elevator, throttle, 0.0)
         self.airspeed = airspeed_m_s
         """m/s; constant unless an effect or a replayed record moves it."""

@@ -7,6 +7,7 @@ from sim.airframe import Airframe, as_record
 from sim.dynamics import DERIVATIVES, derivatives, step
 from sim.linear import ShortPeriod, linearise
 from sim.motion import Controls, Motion
+from sim.servo import Calibration
 from sim.trim import trim_level
 
 
@@ -20,6 +21,7 @@ class NonlinearAircraft:
         self.record["alpha_ref"] = level.alpha
         self.record["delta_e_ref"] = level.elevator
         self.level = trim_level(self.record, airspeed_m_s, height_m)
+        self.calibration = Calibration()
         self._state = self.level.state()
         self._inputs = self.level.inputs()
         self._before = self._inputs.copy()

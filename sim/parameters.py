@@ -48,7 +48,8 @@ def parameter_table(rates: Mapping[str, float], system: int, calibration: Calibr
         table[f"SERVO{output}_MIN"] = low
         table[f"SERVO{output}_TRIM"] = trim
         table[f"SERVO{output}_MAX"] = high
-        table[f"SERVO{output}_REVERSED"] = 0
+        # ArduPilot's elevator pulls with more pulse width unless reversed; here more pushes.
+        table[f"SERVO{output}_REVERSED"] = 1 if output == ELEVATOR_OUTPUT else 0
     for group, names in STREAM_GROUPS.items():
         table[f"SR0_{group}"] = round(max((rates.get(name, 0.0) for name in names), default=0.0))
     table["SYSID_THISMAV"] = system

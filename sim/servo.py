@@ -1,7 +1,9 @@
 """The elevator's way from command to surface: pulse width, servo dynamics, stops."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 
 
@@ -19,23 +21,44 @@ class Mechanism(Protocol):
 
 @dataclass(frozen=True)
 class Calibration:
-    """Pulse width against deflection, linear: what SERVOn_MIN/TRIM/MAX and ±25 deg say."""
+    """Pulse width against deflection: straight lines between points, none beyond the ends."""
 
-    low_us: int = 1100
-    trim_us: int = 1500
-    high_us: int = 1900
-    throw_rad: float = math.radians(25.0)
+    points: tuple[tuple[float, float], ...] = ((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))
+    """Pairs (µs, deg trailing edge down), pulse widths rising."""
+
+    @property
+    def low_us(self) -> int:
+        """Smallest pulse width."""
+        return round(self.points[0][0])
+
+    @property
+    def high_us(self) -> int:
+        """Largest pulse width."""
+        return round(self.points[-1][0])
+
+    @property
+    def trim_us(self) -> int:
+        """Pulse width of the neutral surface."""
+        return self.pulse(0.0)
 
     def pulse(self, deflection: float) -> int:
         """Nearest whole pulse width in µs for a deflection in rad, within the stops."""
-        share = deflection / self.throw_rad
-        half = self.high_us - self.trim_us if share > 0 else self.trim_us - self.low_us
-        return min(max(round(self.trim_us + share * half), self.low_us), self.high_us)
+        pairs = sorted((math.radians(angle), pulse) for pulse, angle in self.points)
+        return round(_between(pairs, deflection))
 
     def deflection(self, pulse_us: int) -> float:
         """Deflection in rad that a pulse width commands."""
-        half = self.high_us - self.trim_us if pulse_us > self.trim_us else self.trim_us - self.low_us
-        return (pulse_us - self.trim_us) / half * self.throw_rad
+        return math.radians(_between(self.points, pulse_us))
+
+
+def _between(pairs: Sequence[tuple[float, float]], at: float) -> float:
+    """Interpolate linearly in rising pairs (x, y); the end values hold beyond them."""
+    if at <= pairs[0][0]:
+        return pairs[0][1]
+    for (x0, y0), (x1, y1) in pairwise(pairs):
+        if at <= x1:
+            return y0 + (y1 - y0) * (at - x0) / (x1 - x0)
+    return pairs[-1][1]
 
 
 class FirstOrderServo:

@@ -8,6 +8,11 @@ import numpy as np
 from sim.flight import Flight
 from sim.mavlink import Message, Voice
 
+GREETING = "Bundled aircraft, ArduPlane V4.5.6 manners"
+"""Said now and again, so that whoever listens knows a simulated aircraft by its own words."""
+
+GREETING_EVERY_S = 10.0
+
 
 @dataclass(frozen=True)
 class Burst:
@@ -32,11 +37,13 @@ class Telemetry:
     def bursts(self) -> Iterator[Burst]:
         """Yield what leaves the vehicle tick by tick."""
         scenario = self.flight.scenario
-        self.voice.say("ArduPlane V4.5.6 (bundled aircraft)")
         # A ground station on the same link has asked for the parameters.
         self.voice.send_parameters()
-        arrival = 0.0
+        arrival, greeting_s = 0.0, 0.0
         for sample in self.flight.samples():
+            if sample.time_s >= greeting_s:
+                self.voice.say(GREETING)
+                greeting_s += GREETING_EVERY_S
             error = scenario.clock.jitter_s
             stamp_error = float(self._generator.uniform(-error, error)) if error > 0 else 0.0
             messages = list(self.voice.speak(sample, stamp_error))

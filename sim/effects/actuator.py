@@ -1,0 +1,71 @@
+"""What keeps a surface from following its command: speed, play, friction."""
+
+
+class RateLimit:
+    """The surface moves at most so fast."""
+
+    def __init__(self, rate_rad_s: float) -> None:
+        self.rate = rate_rad_s
+        self.reset(0.0)
+
+    def reset(self, value: float) -> None:
+        """Stand still at ``value``."""
+        self._output = value
+
+    def step(self, value: float, dt: float) -> float:
+        """Return the deflection after ``dt``."""
+        most = self.rate * dt
+        self._output += min(max(value - self._output, -most), most)
+        return self._output
+
+
+class Backlash:
+    """Play in the linkage: the surface moves only when pushed by one flank or the other."""
+
+    def __init__(self, half_width_rad: float) -> None:
+        self.half_width = half_width_rad
+        self.reset(0.0)
+
+    def reset(self, value: float) -> None:
+        """Stand in the middle of the play."""
+        self._output = value
+
+    def step(self, value: float, dt: float) -> float:
+        """Return the deflection after ``dt``."""
+        self._output = min(max(self._output, value - self.half_width), value + self.half_width)
+        return self._output
+
+
+class Deadband:
+    """Commands near neutral move nothing; beyond, the surface follows short of the band."""
+
+    def __init__(self, half_width_rad: float, neutral_rad: float) -> None:
+        self.half_width = half_width_rad
+        self.neutral = neutral_rad
+
+    def reset(self, value: float) -> None:
+        """There is no memory to reset."""
+
+    def step(self, value: float, dt: float) -> float:
+        """Return the deflection for ``value``."""
+        off = value - self.neutral
+        beyond = max(abs(off) - self.half_width, 0.0)
+        return self.neutral + (beyond if off > 0 else -beyond)
+
+
+class Stiction:
+    """Dry friction: the surface sticks until the error breaks it loose, then jumps all the way."""
+
+    def __init__(self, breakaway_rad: float) -> None:
+        self.breakaway = breakaway_rad
+        self.reset(0.0)
+
+    def reset(self, value: float) -> None:
+        """Stick at ``value``."""
+        self._output = value
+
+    def step(self, value: float, dt: float) -> float:
+        """Return the deflection after ``dt``."""
+        if abs(value - self._output) > self.breakaway:
+            self._output = value
+        return self._output

@@ -1,0 +1,42 @@
+"""Air that moves."""
+
+from sim.atmosphere import DrydenTurbulence, gust_1_minus_cos
+from sim.motion import Motion
+
+
+class Turbulent:
+    """Continuous turbulence."""
+
+    def __init__(self, turbulence: DrydenTurbulence) -> None:
+        self.turbulence = turbulence
+
+    def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
+        """Return the gusts after ``dt``."""
+        return self.turbulence.step(motion.airspeed, dt)
+
+
+class Gusts:
+    """A 1 − cos gust met at each of several times."""
+
+    def __init__(self, amplitude_m_s: float, length_m: float, times_s: tuple[float, ...]) -> None:
+        self.amplitude, self.length, self.times_s = amplitude_m_s, length_m, times_s
+
+    def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
+        """Return the gust at ``time_s``."""
+        up = sum(
+            gust_1_minus_cos((time_s - at) * motion.airspeed, self.length, self.amplitude)
+            for at in self.times_s
+        )
+        return up, 0.0
+
+
+class WindShear:
+    """Head wind that grows with height through a layer, and is steady above and below it."""
+
+    def __init__(self, gradient_1_s: float, height_m: float, most_m_s: float = 3.0) -> None:
+        self.gradient, self.height, self.most = gradient_1_s, height_m, most_m_s
+
+    def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
+        """Return the head wind at the present height."""
+        wind = self.gradient * (motion.height - self.height)
+        return 0.0, min(max(wind, -self.most), self.most)

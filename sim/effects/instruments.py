@@ -1,0 +1,78 @@
+"""Instruments that are not ideal."""
+
+import math
+from collections.abc import Callable
+
+from sim.motion import Motion
+from sim.sensors import Reading
+
+
+class Lagging:
+    """An angle-of-attack vane with inertia and a filter: τ α̇_m = α − α_m."""
+
+    def __init__(self, lag_s: float) -> None:
+        self.lag_s = lag_s
+        self._shown: float | None = None
+
+    def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
+        """Show a lagged angle of attack."""
+        if self._shown is None or dt == 0.0:
+            self._shown = reading.alpha
+        self._shown = reading.alpha + (self._shown - reading.alpha) * math.exp(-dt / self.lag_s)
+        reading.alpha = self._shown
+
+
+class Scaled:
+    """A channel with a scale error and an offset."""
+
+    def __init__(self, channel: str, scale: float = 0.0, bias: float = 0.0) -> None:
+        self.channel, self.scale, self.bias = channel, scale, bias
+
+    def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
+        """Show (1 + scale) times the truth plus the bias."""
+        value = getattr(reading, self.channel)
+        setattr(reading, self.channel, (1.0 + self.scale) * value + self.bias)
+
+
+class VaneAhead:
+    """A vane ahead of the centre of gravity meets the air that pitching adds: α − x q / V."""
+
+    def __init__(self, arm_m: float) -> None:
+        self.arm_m = arm_m
+
+    def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
+        """Show the angle of attack at the vane."""
+        reading.alpha -= self.arm_m * motion.q / motion.airspeed
+
+
+class BendingMode:
+    """The gyro sits on a fuselage that bends when the elevator pushes the tail.
+
+    η̈ + 2ζω η̇ + ω² η = ω² (δ − δ_trim); the gyro turns with the local slope, q + gain η̇.
+    """
+
+    def __init__(self, frequency_hz: float, damping: float, gain: float) -> None:
+        self.omega = 2 * math.pi * frequency_hz
+        self.damping, self.gain = damping, gain
+        self._trim: float | None = None
+        self._bend = self._rate = 0.0
+
+    def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
+        """Add the local slope's rate to the pitch rate."""
+        if self._trim is None:
+            self._trim = motion.elevator
+        push = self.omega**2 * (motion.elevator - self._trim - self._bend)
+        self._rate += (push - 2 * self.damping * self.omega * self._rate) * dt
+        self._bend += self._rate * dt
+        reading.q += self.gain * self._rate
+
+
+class Transformed:
+    """A channel seen through a function of (its value, the motion)."""
+
+    def __init__(self, channel: str, shown: Callable[[float, Motion], float]) -> None:
+        self.channel, self.shown = channel, shown
+
+    def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
+        """Show what the function makes of the value."""
+        setattr(reading, self.channel, self.shown(getattr(reading, self.channel), motion))

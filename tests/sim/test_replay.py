@@ -1,0 +1,116 @@
+"""Aircraft files flown by the simulator, and recorded inputs flown again."""
+
+import io
+
+import numpy as np
+import pytest
+import yaml
+
+from sim.linear import RESEARCH_JET
+from sim.loading import ScenarioError
+from sim.modelled import modelled_flight
+from sim.record import record
+from sim.scenario import Maneuver, Noise, Scenario
+from sim.tlog import read_tlog
+
+QUIET = Scenario(maneuvers=(Maneuver("3211"), Maneuver("rev")), noise=Noise())
+
+
+def aircraft_file(path, **more):
+    path.write_text(yaml.safe_dump({"model": RESEARCH_JET.as_dict(), "airspeed_m_s": 100.0, **more}))
+    return path
+
+
+def streams(path):
+    found = {"ATTITUDE": [], "AOA_SSA": [], "SERVO_OUTPUT_RAW": [], "HEARTBEAT": []}
+    for _, message in read_tlog(path, found):
+        found[message.get_type()].append(message)
+    stamps = [message.time_boot_ms for message in found["ATTITUDE"]]
+    return {
+        "time": np.array(stamps) / 1e3,
+        "q": np.array([message.pitchspeed for message in found["ATTITUDE"]]),
+        "alpha": np.radians([message.AOA for message in found["AOA_SSA"]]),
+        "pulse": np.array([message.servo2_raw for message in found["SERVO_OUTPUT_RAW"]]),
+    }
+
+
+def test_flying_a_log_again_through_the_same_aircraft_gives_the_same_manoeuvres(tmp_path):
+    path = aircraft_file(tmp_path / "jet.yaml", effects={"transport_delay": {"delay_s": 0.06}})
+    record(modelled_flight(QUIET, path), tmp_path / "first.tlog")
+    record(modelled_flight(QUIET, path, tmp_path / "first.tlog"), tmp_path / "again.tlog")
+    first, again = streams(tmp_path / "first.tlog"), streams(tmp_path / "again.tlog")
+    assert first["time"][0] == again["time"][0]
+    for planned in modelled_flight(QUIET, path).planned:
+        flown = slice(round(50 * planned.start_s), round(50 * planned.end_s) - 50)
+        for name in ("q", "alpha"):
+            np.testing.assert_allclose(
+                again[name][flown], first[name][flown], atol=0.03 * np.ptp(first[name])
+            )
+
+
+def test_an_effect_in_the_aircraft_file_changes_the_flight(tmp_path):
+    plain = aircraft_file(tmp_path / "plain.yaml")
+    late = aircraft_file(tmp_path / "late.yaml", effects={"transport_delay": {"delay_s": 0.1}})
+    record(modelled_flight(QUIET, plain), tmp_path / "plain.tlog")
+    record(modelled_flight(QUIET, late, tmp_path / "plain.tlog"), tmp_path / "late.tlog")
+    there, here = streams(tmp_path / "plain.tlog"), streams(tmp_path / "late.tlog")
+    flown = slice(480, 900)
+    by_shift = {
+        shift: np.abs(here["q"][480 + shift : 900 + shift] - there["q"][flown]).mean() for shift in range(10)
+    }
+    assert min(by_shift, key=by_shift.get) == 5
+
+
+@pytest.mark.parametrize(
+    ("effect", "sizes"),
+    [
+        ("nonlinear_lift", {"Z_alpha2": 3.0, "Z_alpha3": 1.0}),
+        ("nonlinear_pitching_moment", {"M_alpha2": 20.0, "M_alpha3": 1.0}),
+        ("elevator_nonlinearity", {"M_delta2": 30.0, "M_delta3": 10.0}),
+        ("alpha_dot", {"M_alpha_dot": -1.0}),
+        ("unsteady_lift", {"share": 0.3, "lag_s": 0.3}),
+        ("cg_shift", {"step": 0.2, "at_s": 35.0}),
+        ("mass_change", {"rate_per_s": 0.01}),
+        ("icing", {"Z_alpha": -0.2, "M_alpha": -0.2, "at_s": 35.0}),
+        ("ground_effect", {"Z_h": -0.05, "M_h": 0.05, "scale_m": 100.0}),
+        ("thrust_moment", {"M_throttle": 1.0}),
+        ("structural_mode", {"gain": 0.0, "rate_gain": 0.1, "omega_rad_s": 20.0, "damping": 0.05}),
+        ("alpha_skew", {"skew_s": -0.05}),
+        ("turbulence", {"sigma_w_m_s": 1.0, "length_m": 100.0}),
+    ],
+)
+def test_every_kind_of_added_term_can_be_flown(tmp_path, effect, sizes):
+    plain = [s.reading for s in modelled_flight(QUIET, aircraft_file(tmp_path / "a.yaml")).samples()]
+    path = aircraft_file(tmp_path / "b.yaml", effects={effect: sizes})
+    changed = [s.reading for s in modelled_flight(QUIET, path).samples()]
+    moved = max(abs(a.q - b.q) + abs(a.alpha - b.alpha) for a, b in zip(plain, changed, strict=True))
+    assert (moved > 1e-4) == (effect != "thrust_moment")
+
+
+def test_an_aircraft_file_that_cannot_be_flown_says_everything_that_is_wrong(tmp_path):
+    path = tmp_path / "bad.yaml"
+    path.write_text(
+        yaml.safe_dump({"model": {"Z_0": 1.0}, "effects": {"wobble": {}, "alpha_lag": {"lag": 1}}})
+    )
+    with pytest.raises(ScenarioError) as caught:
+        modelled_flight(QUIET, path)
+    text = "\n".join(caught.value.problems)
+    assert "model: Z_alpha" in text
+    assert "effects.wobble: unknown effect" in text
+    assert "effects.alpha_lag.lag: unknown parameter, choose from lag_s" in text
+
+
+def test_a_log_without_elevator_is_refused(tmp_path):
+    (tmp_path / "empty.tlog").write_bytes(b"")
+    with pytest.raises(ScenarioError, match="no SERVO_OUTPUT_RAW"):
+        modelled_flight(QUIET, aircraft_file(tmp_path / "a.yaml"), tmp_path / "empty.tlog")
+
+
+def test_damage_between_records_is_skipped(tmp_path):
+    path = tmp_path / "log.tlog"
+    record(modelled_flight(QUIET, aircraft_file(tmp_path / "a.yaml")), path)
+    data = path.read_bytes()
+    whole = sum(1 for _ in read_tlog(path, ["ATTITUDE"]))
+    damaged = io.BytesIO(data[:5000] + b"\x00" * 200 + data[5000:])
+    path.write_bytes(damaged.getvalue())
+    assert whole - sum(1 for _ in read_tlog(path, ["ATTITUDE"])) <= 2
