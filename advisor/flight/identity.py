@@ -1,12 +1,10 @@
 """What the vehicle says of itself: who it is, its firmware, its mode, what its outputs drive."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from advisor.aircraft import Elevator
 from advisor.flight.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.messages import Columns
-from advisor.flight.record import Channel
 from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_elevator, find_surface
 from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
 from advisor.problems import Problem
@@ -53,17 +51,16 @@ class Identity:
         """System ids of further vehicles heard."""
         return frozenset(self._finder.others)
 
-    def with_provenance(self, channel: Channel) -> Channel:
-        """The channel, its provenance said as far as the vehicle's identity tells.
+    def provenance(self, source: str, stated: str) -> str:
+        """Provenance of a channel, as far as the vehicle's identity tells.
 
         AOA_SSA is derived from inertial speed and estimated wind on ArduPilot; elsewhere nobody knows.
         """
-        if channel.source != "AOA_SSA.AOA" or self.vehicle is None:
-            return channel
+        if source != "AOA_SSA.AOA" or self.vehicle is None:
+            return stated
         if self.simulated:
-            return replace(channel, provenance="simulated")
-        known = self.vehicle.autopilot == "ardupilot"
-        return replace(channel, provenance="derived" if known else "unknown")
+            return "simulated"
+        return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
 
     def learn(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Take messages among which at most the first changes anything."""

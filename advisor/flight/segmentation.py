@@ -12,6 +12,7 @@ import numpy as np
 
 from advisor.flight.input_shape import RESTING_S, SMALLEST_RAD, Shape, recognise
 from advisor.flight.maneuver import Span
+from advisor.flight.messages import FloatArray
 
 LEAD_IN_S = 1.0
 """How much of the flight before the first step belongs to the record."""
@@ -22,6 +23,8 @@ _CHECK_S = 0.1
 _FREE_S = (3.0, 8.0)
 """Free response: as long as the input, but within these."""
 _LONGEST_GAP_S = 1.0
+_STEP_S = 0.12
+"""A movement most of which happens within this time is a step."""
 
 
 class Segmenter:
@@ -69,6 +72,7 @@ class Segmenter:
 
     def mode_changed(self, t: float) -> Span | None:
         """The flight mode changed at ``t``: a free response ends there."""
+        self._level, self._onset_s = None, None
         return self._end("mode change", t)
 
     def finish(self) -> Span | None:
@@ -92,17 +96,21 @@ class Segmenter:
         self._pending = recognise(times, u)
         self._away.clear()
 
-    def _watch_onset(self, times: np.ndarray, u: np.ndarray, resting: np.ndarray) -> None:
-        if (
-            len(resting) > 2
-            and np.ptp(resting) <= SMALLEST_RAD
-            and (self._level is None or abs(float(resting[-1]) - self._level) <= SMALLEST_RAD)
-        ):
+    def _watch_onset(self, times: FloatArray, u: FloatArray, resting: FloatArray) -> None:
+        """Keep track of rest, and of when the elevator left it with a step."""
+        steady = len(resting) > 2 and np.ptp(resting) <= SMALLEST_RAD
+        if steady and (self._level is None or abs(float(resting[-1]) - self._level) <= SMALLEST_RAD):
             self._level, self._onset_s = float(np.median(resting)), None
         elif self._level is not None and self._onset_s is None:
-            gone = np.flatnonzero(np.abs(resting - self._level) > SMALLEST_RAD)
-            if len(gone):
-                self._onset_s = float(times[len(times) - len(resting) + gone[0]])
+            away = np.abs(resting - self._level)
+            gone = np.flatnonzero(away > SMALLEST_RAD)
+            if len(gone) and times[-1] - times[len(times) - len(resting) + gone[0]] >= 0.8 * _STEP_S:
+                recent = times[len(times) - len(resting) :]
+                before = np.interp(recent - _STEP_S, recent, resting)
+                stepped = np.max(np.abs(resting - before)) >= 0.7 * np.max(away)
+                self._level, self._onset_s = (
+                    (self._level, float(recent[gone[0]])) if stepped else (None, None)
+                )
         elif self._onset_s is not None and times[-1] - self._onset_s > 0.5 * _REACH_S:
             self._level, self._onset_s = None, None
 

@@ -7,7 +7,7 @@ events. Memory is bounded by two minutes of channels.
 
 import heapq
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -134,7 +134,11 @@ class FlightStream:
     @property
     def channels(self) -> Mapping[str, ChannelStatus]:
         """How every channel arrives, from the source that would be used now."""
-        return {**self._best, **self._tracks.statuses()}
+        arriving = {**self._best, **self._tracks.statuses()}
+        return {
+            name: replace(status, provenance=self._who.provenance(status.source, status.provenance))
+            for name, status in arriving.items()
+        }
 
     def problems(self) -> list[Problem]:
         """Why this stream cannot be used, as far as it has been heard; empty when it can."""
@@ -307,7 +311,9 @@ class FlightStream:
         for name in UNITS:
             channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
             if channel is not None:
-                channels[name] = self._who.with_provenance(channel)
+                channels[name] = replace(
+                    channel, provenance=self._who.provenance(channel.source, channel.provenance)
+                )
         mode = next(mode for since, mode in reversed(self._modes) if since <= span.start_s)
         return Maneuver(number, self.boot, span, channels, mode)
 

@@ -40,6 +40,11 @@ class Vehicle:
         return replace(self, firmware=firmware)
 
 
+def is_aircraft(autopilot: int, kind: int) -> bool:
+    """Whether a heartbeat with this MAV_AUTOPILOT and MAV_TYPE is that of a vehicle."""
+    return autopilot != _AUTOPILOT_INVALID and kind not in _PERIPHERALS
+
+
 class VehicleFinder:
     """Picks the vehicle out of everything that sends heartbeats.
 
@@ -59,7 +64,7 @@ class VehicleFinder:
         """Take the first row of one sender's heartbeats; true when it settles who the vehicle is."""
         autopilot = int(heartbeat.fields["autopilot"][0])
         kind = int(heartbeat.fields["type"][0])
-        if autopilot == _AUTOPILOT_INVALID or kind in _PERIPHERALS:
+        if not is_aircraft(autopilot, kind):
             return False
         if self.vehicle is None and self._target in (None, heartbeat.system):
             name = _AUTOPILOTS.get(autopilot, f"autopilot {autopilot}")
