@@ -46,7 +46,7 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
 
     TITLE = "inflight advisor"
     CSS_PATH = "styles/app.tcss"
-    BINDINGS: ClassVar[list[BindingType]] = [*keys.EVERYWHERE, *keys.REPLAY]
+    BINDINGS: ClassVar[list[BindingType]] = [*keys.EVERYWHERE, *keys.REPLAY, *keys.SELDOM]
     MODES: ClassVar[dict[str, str | Callable[[], Screen[Any]]]] = {
         "pilot": PilotScreen,
         "engineer": EngineerScreen,

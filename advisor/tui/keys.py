@@ -7,23 +7,27 @@ def _key(key: str, action: str, description: str, *, id: str, show: bool = False
     return Binding(key, action, description, id=id, show=show)
 
 
+# In the order of their worth: what a narrow footer has no room for is at the end.
 EVERYWHERE: list[BindingType] = [
     _key("p", "face('pilot')", "Pilot", id="pilot", show=True),
     _key("e", "face('engineer')", "Engineer", id="engineer", show=True),
     _key("question_mark", "explain", "Help", id="help", show=True),
-    _key("t", "next_theme", "Theme", id="theme", show=True),
-    _key("m", "mark", "Mark this moment", id="mark"),
     _key("q", "leave", "Quit", id="quit", show=True),
 ]
 
 REPLAY: list[BindingType] = [
     _key("space", "pause", "Pause", id="pause", show=True),
-    _key("full_stop", "step", "Step", id="step", show=True),
+    _key("j", "jump", "Jump", id="jump", show=True),
     _key("plus,equals_sign", "faster", "Faster", id="faster", show=True),
     _key("minus", "slower", "Slower", id="slower", show=True),
-    _key("j", "jump", "Jump", id="jump", show=True),
+    _key("full_stop", "step", "Step", id="step", show=True),
     _key("right_square_bracket", "jump_by(1)", "Next manoeuvre", id="next_maneuver"),
     _key("left_square_bracket", "jump_by(-1)", "Previous manoeuvre", id="previous_maneuver"),
+]
+
+SELDOM: list[BindingType] = [
+    _key("t", "next_theme", "Theme", id="theme", show=True),
+    _key("m", "mark", "Mark", id="mark", show=True),
 ]
 
 ENGINEER: list[BindingType] = [
@@ -35,7 +39,7 @@ ENGINEER: list[BindingType] = [
 
 ACTIONS = frozenset(
     binding.id
-    for binding in (*EVERYWHERE, *REPLAY, *ENGINEER)
+    for binding in (*EVERYWHERE, *REPLAY, *SELDOM, *ENGINEER)
     if isinstance(binding, Binding) and binding.id is not None
 )
 """The names of all actions, as settings may rebind them."""

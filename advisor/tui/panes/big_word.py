@@ -1,19 +1,19 @@
 """CONTINUE, REPEAT or STOP TESTING, readable at arm's length."""
 
 from textual.events import Resize
-from textual.widgets import Static
 
 from advisor.tui.advice import Advice
 from advisor.tui.letters import block_letters
+from advisor.tui.panes.lines import Lines
 
 TONES = ("good", "warn", "bad", "quiet")
 
 
-class BigWord(Static):
+class BigWord(Lines):
     """One word in block letters; plain text is kept as its tooltip."""
 
     def __init__(self, *, id: str | None = None) -> None:
-        super().__init__("", id=id, markup=False)
+        super().__init__("", id=id)
         self.word = ""
 
     def show(self, advice: Advice) -> None:
@@ -31,4 +31,4 @@ class BigWord(Static):
 
     def _write(self) -> None:
         if self.word and self.size.width:
-            self.update(block_letters(self.word, self.size.width, self.size.height))
+            self.write(block_letters(self.word, self.size.width, self.size.height))

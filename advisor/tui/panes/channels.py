@@ -2,9 +2,9 @@
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
-from textual.widgets import Static
 
 from advisor.tui.panes.crew_notes import alpha_in_words
+from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.status_line import CONDITIONS
 from advisor.tui.view import View
@@ -25,7 +25,7 @@ gap. Below: the link.
     def compose(self) -> ComposeResult:
         """Text that scrolls."""
         with VerticalScroll(can_focus=False):
-            yield Static("Nothing has arrived yet.", markup=False)
+            yield Lines("Nothing has arrived yet.")
 
     def show(self, view: View) -> None:
         """Write the lists."""
@@ -38,4 +38,4 @@ gap. Below: the link.
             lines.append("no channel yet: the vehicle has not sent what the advisor needs")
         lines += ["", f"{CONDITIONS[health.condition]}: {health.sentence}"]
         lines += [f"{name:<22}{value}" for name, value in health.figures]
-        self.query_one(Static).update("\n".join(lines))
+        self.query_one(Lines).write("\n".join(lines))

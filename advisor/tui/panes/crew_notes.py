@@ -1,8 +1,7 @@
 """What else a pilot must know: what to fly next, where alpha comes from, what has changed."""
 
-from textual.widgets import Static
-
 from advisor.aircraft import PARAMETERS as NAMES
+from advisor.tui.panes.lines import Lines
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
@@ -28,7 +27,7 @@ def flying_in_words(view: View) -> str:
     return f"{words}; {m_alpha.symbol} {m_alpha.with_interval(settling.value('M_alpha'), std)} {m_alpha.unit}"
 
 
-class CrewNotes(Static):
+class CrewNotes(Lines):
     """Next input, the manoeuvre in the air, alpha's provenance, warnings."""
 
     def show(self, view: View) -> None:
@@ -42,4 +41,4 @@ class CrewNotes(Static):
             f"link        {view.health.sentence}",
             *(f"! {warning}" for warning in verdict.warnings),
         ]
-        self.update("\n".join(lines))
+        self.write("\n".join(lines))

@@ -2,9 +2,9 @@
 
 import numpy as np
 from textual.app import ComposeResult
-from textual.widgets import Static
 
 from advisor.decision.verdict import FlightTestVerdict
+from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Level, Series
 from advisor.tui.plot.widget import Plot
@@ -29,7 +29,7 @@ dashed limit. The rule that decides is marked **►**; what the others would hav
 
     def compose(self) -> ComposeResult:
         """A line for each rule over the curves."""
-        yield Static("No manoeuvre has ended yet.", markup=False)
+        yield Lines("No manoeuvre has ended yet.")
         yield Plot(_chart(None))
 
     def on_mount(self) -> None:
@@ -44,7 +44,7 @@ dashed limit. The rule that decides is marked **►**; what the others would hav
             return
         self._shown = verdict
         self.query_one(Plot).chart = _chart(verdict)
-        self.query_one(Static).update("\n".join(_rule_lines(verdict)) or "No manoeuvre has ended yet.")
+        self.query_one(Lines).write("\n".join(_rule_lines(verdict)) or "No manoeuvre has ended yet.")
 
 
 def _rule_lines(verdict: FlightTestVerdict) -> list[str]:

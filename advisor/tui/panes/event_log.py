@@ -2,8 +2,8 @@
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
-from textual.widgets import Static
 
+from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.view import View
 
@@ -24,7 +24,7 @@ mark at this moment.
     def compose(self) -> ComposeResult:
         """Text that scrolls and stays at its end."""
         with VerticalScroll(can_focus=False):
-            yield Static("Nothing has happened yet.", markup=False)
+            yield Lines("Nothing has happened yet.")
 
     def on_mount(self) -> None:
         """Nothing is shown yet."""
@@ -36,5 +36,5 @@ mark at this moment.
         newest = view.state.notices[-_KEPT:]
         if newest and newest != self._shown:
             self._shown = newest
-            self.query_one(Static).update("\n".join(newest))
+            self.query_one(Lines).write("\n".join(newest))
             self.query_one(VerticalScroll).scroll_end(animate=False)

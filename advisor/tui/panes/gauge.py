@@ -1,9 +1,8 @@
 """The stop criterion against its limit, and how far there is to go."""
 
-from textual.widgets import Static
-
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.tui.panes.last_verdict import symbol_and_word
+from advisor.tui.panes.lines import Lines
 from advisor.tui.view import View
 from advisor.tui.words import percent
 
@@ -21,12 +20,12 @@ def bar(value: float, limit: float, width: int) -> str:
     return "".join(cells)
 
 
-class Gauge(Static):
+class Gauge(Lines):
     """Criterion, manoeuvres so far, and what is still expected."""
 
     def show(self, view: View) -> None:
         """Write the two lines."""
-        self.update(f"criterion   {_criterion(view)}\nmanoeuvres  {_flown(view)}")
+        self.write(f"criterion   {_criterion(view)}\nmanoeuvres  {_flown(view)}")
 
 
 def _criterion(view: View) -> str:

@@ -2,9 +2,9 @@
 
 from textual.app import ComposeResult
 from textual.containers import Vertical
-from textual.widgets import Static
 
 from advisor.campaign_state import JudgedManeuver
+from advisor.tui.panes.lines import Lines
 from advisor.tui.view import View
 
 
@@ -20,19 +20,19 @@ class LastVerdict(Vertical):
 
     def compose(self) -> ComposeResult:
         """A line that names it, and its sentence."""
-        yield Static(id="verdict-word", markup=False)
-        yield Static(id="verdict-sentence", markup=False)
+        yield Lines(id="verdict-word")
+        yield Lines(id="verdict-sentence")
 
     def show(self, view: View) -> None:
         """Write the newest verdict, or why there is none."""
-        word, sentence = self.query_one("#verdict-word", Static), self.query_one("#verdict-sentence", Static)
+        word, sentence = self.query_one("#verdict-word", Lines), self.query_one("#verdict-sentence", Lines)
         if not view.state.maneuvers:
-            word.update("no manoeuvre yet")
-            sentence.update("The verdict stands here a few seconds after a manoeuvre ends.")
+            word.write("no manoeuvre yet")
+            sentence.write("The verdict stands here a few seconds after a manoeuvre ends.")
             return
         judged = view.state.maneuvers[-1]
         symbol, name = symbol_and_word(judged)
-        word.update(f"{symbol} {name}   manoeuvre {judged.maneuver.number}: {judged.maneuver.span.kind}")
-        sentence.update(judged.excluded_because or judged.verdict.sentence)
+        word.write(f"{symbol} {name}   manoeuvre {judged.maneuver.number}: {judged.maneuver.span.kind}")
+        sentence.write(judged.excluded_because or judged.verdict.sentence)
         self.set_class(judged.verdict.accepted, "-good")
         self.set_class(not judged.verdict.accepted, "-warn")

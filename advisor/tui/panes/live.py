@@ -2,11 +2,11 @@
 
 from textual.app import ComposeResult
 from textual.events import Resize
-from textual.widgets import Static
 
 from advisor.aircraft import PARAMETERS as NAMES
 from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
+from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Series
 from advisor.tui.plot.widget import Plot
@@ -31,10 +31,9 @@ adds nothing, it says so: recover. Between manoeuvres nothing moves here; the la
 
     def compose(self) -> ComposeResult:
         """A line of numbers over three traces."""
-        yield Static(
+        yield Lines(
             "Nothing is being flown; the trace begins with the first step of the elevator.",
             id="settling",
-            markup=False,
         )
         for name in TRACES:
             yield Plot(Chart(channel(name).label, "t [s]", why_empty="no manoeuvre yet."), id=f"live-{name}")
@@ -46,7 +45,7 @@ adds nothing, it says so: recover. Between manoeuvres nothing moves here; the la
             self.border_subtitle = ""
             return
         self.border_subtitle = f"in the air: manoeuvre {flying.number}"
-        self.query_one("#settling", Static).update(view.state.enough or _settling_in_words(settling))
+        self.query_one("#settling", Lines).write(view.state.enough or _settling_in_words(settling))
         for name, ink in TRACES.items():
             self.query_one(f"#live-{name}", Plot).chart = _trace(flying, settling, name, ink)
 

@@ -2,15 +2,14 @@
 
 from math import isinf
 
-from textual.widgets import Static
-
+from advisor.tui.panes.lines import Lines
 from advisor.tui.view import View
 from advisor.tui.words import clock
 
 _WIDTH = 24
 
 
-class ReplayBar(Static):
+class ReplayBar(Lines):
     """Playing or paused, speed, and the place in the log."""
 
     def show(self, view: View) -> None:
@@ -24,4 +23,4 @@ class ReplayBar(Static):
         place = "━" * round(share * _WIDTH) + "─" * (_WIDTH - round(share * _WIDTH))
         state = "❚❚ paused" if playback.paused else "► replay"
         times = f"{clock(playback.position_s)} of {clock(playback.duration_s)}"
-        self.update(f"{state}  {speed}  {place}  {times}")
+        self.write(f"{state}  {speed}  {place}  {times}")

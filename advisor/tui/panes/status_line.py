@@ -1,7 +1,6 @@
 """The first line of every screen: which aircraft, in which mode, heard how."""
 
-from textual.widgets import Static
-
+from advisor.tui.panes.lines import Lines
 from advisor.tui.view import View
 
 CONDITIONS = {
@@ -13,7 +12,7 @@ CONDITIONS = {
 }
 
 
-class StatusLine(Static):
+class StatusLine(Lines):
     """Aircraft, vehicle, mode and source at the left; the link's condition by symbol and word."""
 
     def show(self, view: View) -> None:
@@ -21,6 +20,6 @@ class StatusLine(Static):
         state = view.state
         vehicle = str(state.vehicle) if state.vehicle else "no vehicle yet"
         parts = [CONDITIONS[view.health.condition], view.aircraft.name, vehicle, state.mode, view.title]
-        self.update("  ·  ".join(part for part in parts if part))
+        self.write("  ·  ".join(part for part in parts if part))
         for condition in CONDITIONS:
             self.set_class(condition == view.health.condition, f"-{condition}")

@@ -2,11 +2,11 @@
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
-from textual.widgets import Static
 
 from advisor.campaign_state import JudgedManeuver
 from advisor.oem.estimate import Estimate
 from advisor.tui.panes.last_verdict import symbol_and_word
+from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.view import View
 from advisor.tui.words import channel
@@ -27,12 +27,12 @@ white). A line with **!** does not reject the manoeuvre but belongs on its verdi
     def compose(self) -> ComposeResult:
         """Text that scrolls when there is much to say."""
         with VerticalScroll(can_focus=False):
-            yield Static("No manoeuvre has ended yet.", markup=False)
+            yield Lines("No manoeuvre has ended yet.")
 
     def show(self, view: View) -> None:
         """Write the selected manoeuvre's verdict."""
         if view.judged is not None:
-            self.query_one(Static).update("\n".join(_lines(view.judged)))
+            self.query_one(Lines).write("\n".join(_lines(view.judged)))
 
 
 def _lines(judged: JudgedManeuver) -> list[str]:

@@ -1,13 +1,14 @@
 """The pilot's screen: one glance, one word."""
 
 from textual.app import ComposeResult
-from textual.widgets import Footer, Static
+from textual.widgets import Footer
 
 from advisor.tui.advice import advise
 from advisor.tui.panes.big_word import BigWord
 from advisor.tui.panes.crew_notes import CrewNotes
 from advisor.tui.panes.gauge import Gauge
 from advisor.tui.panes.last_verdict import LastVerdict
+from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.screens.face import Face
@@ -36,7 +37,7 @@ The large word is what to do now:
         """From top to bottom in the order of urgency."""
         yield StatusLine()
         yield BigWord(id="word")
-        yield Static(id="word-sentence")
+        yield Lines(id="word-sentence")
         yield LastVerdict()
         yield Gauge()
         yield CrewNotes()
@@ -47,7 +48,7 @@ The large word is what to do now:
         """Update every part."""
         advice = advise(view)
         self.query_one(BigWord).show(advice)
-        self.query_one("#word-sentence", Static).update(advice.sentence)
+        self.query_one("#word-sentence", Lines).write(advice.sentence)
         self.query_one(StatusLine).show(view)
         self.query_one(LastVerdict).show(view)
         self.query_one(Gauge).show(view)
