@@ -82,7 +82,7 @@ def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
     """The records of the named types; those that do not occur, or have no TimeUS, are left out."""
     stream = np.fromfile(path, dtype=np.uint8)
     starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
-    starts = starts[: _scan(stream, starts)]
+    starts = starts[: scan_records(stream, starts)]
     types = stream[starts + 2]
     wanted = set(names)
     tables = {}
@@ -140,18 +140,19 @@ def _layout(definition: Any) -> tuple["np.dtype[np.void] | None", list[float | N
 
 def _records(stream: NDArray[np.uint8], bodies: IntArray, layout: "np.dtype[np.void]") -> NDArray[Any]:
     rows = np.empty((len(bodies), layout.itemsize), dtype=np.uint8)
-    _gather(stream, bodies, rows)
+    gather(stream, bodies, rows)
     return np.asarray(rows.view(layout)[:, 0])
 
 
 @njit(cache=True)
-def _gather(stream: NDArray[np.uint8], bodies: IntArray, rows: NDArray[np.uint8]) -> None:
+def gather(stream: NDArray[np.uint8], bodies: IntArray, rows: NDArray[np.uint8]) -> None:
+    """Copy what begins at each of ``bodies`` into its row of ``rows``."""
     for i in range(len(bodies)):
         rows[i] = stream[bodies[i] : bodies[i] + rows.shape[1]]
 
 
 @njit(cache=True)
-def _scan(stream: NDArray[np.uint8], starts: IntArray) -> int:
+def scan_records(stream: NDArray[np.uint8], starts: IntArray) -> int:
     """Find the records; fill ``starts``, give their number. FMT records teach the lengths."""
     n = len(stream)
     lengths = np.zeros(256, dtype=np.int64)

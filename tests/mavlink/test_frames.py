@@ -9,8 +9,11 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.messages import Columns
+from advisor.mavlink.dataflash import scan_records
 from advisor.mavlink.definitions import DEFINITIONS
 from advisor.mavlink.frames import FrameScanner
+from advisor.mavlink.scan import copy_payloads, scan
+from advisor.mavlink.warm import warm_up
 from tests.mavlink.builders import START_US, Sender, as_message, one_by_one, random_message, record
 
 KEY = bytes(range(32))
@@ -180,3 +183,10 @@ def test_text_ends_at_its_first_zero() -> None:
     text = dialect.MAVLink_statustext_message(6, b"seven\0garbage")
     (column,) = read(record(Sender().frame(text)))
     assert column.fields["text"].tolist() == [b"seven"]
+
+
+def test_warming_up_compiles_what_reading_needs() -> None:
+    warm_up()
+    compiled = len(scan.signatures), len(copy_payloads.signatures), len(scan_records.signatures)
+    read(mixed_stream(seed=6, count=20))
+    assert (len(scan.signatures), len(copy_payloads.signatures), len(scan_records.signatures)) == compiled
