@@ -5,7 +5,7 @@ between two neighbouring stamps of any channel the solution is known in closed f
 (``transition``); each output is read off exactly where it was measured. Gaps and irregular
 sampling need no special case.
 
-Parameters of one manoeuvre, in this order: the six shared derivatives ``SHARED``, then its own
+Parameters of one manoeuvre, in this order: what all share, ``SHARED``, then its own
 ``LOCAL``. With the air speed ratio s = V/V_ref of a step, the model is
 
     α̇ = s·(Z_0 + Z_α·α + Z_δe·δe) + (1 + Z_q)·q + g(t)
@@ -15,9 +15,10 @@ Parameters of one manoeuvre, in this order: the six shared derivatives ``SHARED`
 and the outputs are, with the vane x_α and the accelerometer x_a ahead of the centre of gravity,
 
     α_m = α - (x_α/V)·q                       q_m = q + b_q
-    a_z = V·cos α·(α̇ - q) + V̇·sin α - g·cos θ·cos φ - x_a·q̇ + b_a        θ_m = θ
+    a_z = (1 + k)·V·cos α·(α̇ - q) + V̇·sin α - g·cos θ·cos φ - x_a·q̇ + b_a        θ_m = θ
 
-(a_z: specific force along body z, Klein & Morelli, *Aircraft System Identification*, Ch. 3).
+with k the scale error of the air speed (a_z: specific force along body z; Klein & Morelli,
+*Aircraft System Identification*, Ch. 3).
 """
 
 from typing import NamedTuple
@@ -32,7 +33,7 @@ from advisor.model.transition import WIDTH, divisions, fill
 Index = NDArray[np.int64]
 
 OUTPUTS = ("alpha", "q", "a_z", "theta")
-SHARED = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
+SHARED = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e", "airspeed_scale")
 LOCAL = ("Z_0", "M_0", "alpha_initial", "q_initial", "theta_initial", "q_bias", "a_z_bias")
 N_SHARED, N_LOCAL = len(SHARED), len(LOCAL)
 N_PARAMETERS = N_SHARED + N_LOCAL
@@ -80,11 +81,11 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
 
     Parameters
     ----------
-    shared : (6,), order of ``SHARED``.
+    shared : (7,), order of ``SHARED``.
     local : (m, 7), order of ``LOCAL``.
     y : (N,) receives the outputs.
-    g : (N, 13) receives their derivatives by the parameters of the row's manoeuvre; with
-        shape (0, 13) only the outputs are computed.
+    g : (N, 14) receives their derivatives by the parameters of the row's manoeuvre; with
+        shape (0, 14) only the outputs are computed.
 
     Returns
     -------
@@ -110,7 +111,7 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
         z_0, m_0 = local[m, 0], local[m, 1]
         alpha, q, theta = local[m, 2], local[m, 3], local[m, 4]
         state[:] = 0.0
-        state[0, 8] = state[1, 9] = state[2, 10] = 1.0
+        state[0, 9] = state[1, 10] = state[2, 11] = 1.0
         for e in range(begin, end):
             _read(grid, e, shared, local[m], alpha, q, theta, state, y, g, wanted)
             if e + 1 == end:
@@ -151,7 +152,7 @@ def _carry(
     slope: float,
     state: FloatArray,
 ) -> None:
-    """Carry the sensitivities ``state`` (3, 13) of α, q, θ over one step that starts at (α, q)."""
+    """Carry the sensitivities ``state`` (3, 14) of α, q, θ over one step that starts at (α, q)."""
     a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
     for j in range(N_PARAMETERS):
         f, k = state[0, j], state[1, j]
@@ -188,12 +189,12 @@ def _carry(
     state[0, 5] += s * s * (t[14] * delta + t[27] * slope)
     state[1, 5] += s * s * (t[16] * delta + t[29] * slope)
     state[2, 5] += s * s * (t[29] * delta + t[42] * slope)
-    state[0, 6] += s * t[13]
-    state[1, 6] += s * t[15]
-    state[2, 6] += s * t[28]
-    state[0, 7] += s * s * t[14]
-    state[1, 7] += s * s * t[16]
-    state[2, 7] += s * s * t[29]
+    state[0, 7] += s * t[13]
+    state[1, 7] += s * t[15]
+    state[2, 7] += s * t[28]
+    state[0, 8] += s * s * t[14]
+    state[1, 8] += s * s * t[16]
+    state[2, 8] += s * s * t[29]
 
 
 @numba.njit(cache=True)
@@ -222,7 +223,7 @@ def _read(
         y[row] = q + local[5]
         if wanted:
             g[row] = state[1]
-            g[row, 11] += 1.0
+            g[row, 12] += 1.0
     row = grid.row[3, e]
     if row >= 0:
         y[row] = theta
@@ -254,7 +255,7 @@ def _specific_force(
     alpha_dot = a11 * alpha + a12 * q + s * (shared[2] * delta + local[0]) + grid.known[e]
     q_dot = a21 * alpha + a22 * q + s * s * (shared[5] * delta + local[1])
     cosine, sine = np.cos(alpha), np.sin(alpha)
-    speed, arm = grid.airspeed[e], grid.arm
+    speed, arm = (1.0 + shared[6]) * grid.airspeed[e], grid.arm
     y[row] = (
         speed * cosine * (alpha_dot - q)
         + grid.acceleration[e] * sine
@@ -275,6 +276,7 @@ def _specific_force(
     g[row, 3] -= arm * s * s * alpha
     g[row, 4] -= arm * s * q
     g[row, 5] -= arm * s * s * delta
-    g[row, 6] += lift * s
-    g[row, 7] -= arm * s * s
-    g[row, 12] += 1.0
+    g[row, 6] += grid.airspeed[e] * cosine * (alpha_dot - q)
+    g[row, 7] += lift * s
+    g[row, 8] -= arm * s * s
+    g[row, 13] += 1.0

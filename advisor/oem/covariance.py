@@ -13,11 +13,12 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
-from advisor.model.response import LOCAL, N_SHARED, SHARED
+from advisor.model.response import LOCAL, N_PARAMETERS, N_SHARED, SHARED
 from advisor.oem.problem import Assembly
 
 LEAST_EIGENVALUE = 1e-13
 """Of a normalised information matrix; below, round-off decides the inverse."""
+OPEN_SHARE = 0.01
 REPORTED = tuple((name in SHARED, (SHARED if name in SHARED else LOCAL).index(name)) for name in PARAMETERS)
 """Where each of the eight stands: (shared or local, index)."""
 
@@ -27,73 +28,97 @@ class Influence:
     """The linear map from measurements to the eight parameters."""
 
     rows: FloatArray
-    """(N, 8) change of each parameter for a unit change of each measurement."""
+    """(N, 8 + k) change of each parameter for a unit change of each measurement."""
     condition: float
     """Condition number of the information matrix of the eight, normalised to a unit diagonal."""
-    inflation: FloatArray
-    """(8,) variance of each parameter over what it would be were all others known."""
+    unresolved: tuple[str, ...]
+    """Parameters that lie in a direction about which the data say nothing at all."""
 
 
-def influence(assembly: Assembly, g: FloatArray, noise: FloatArray) -> Influence | None:
-    """Influence of every measurement on the eight parameters; None when the information is singular.
+def influence(
+    assembly: Assembly, g: FloatArray, noise: FloatArray, extra: FloatArray | None = None
+) -> Influence | None:
+    """Influence of every measurement on the eight parameters; None when it overflows.
 
     Z_0 and M_0 are means over the manoeuvres.
+
+    Parameters
+    ----------
+    extra : (N, k) derivatives of the outputs by parameters estimated besides, such as a servo's lag;
+        the result then has their columns after the eight.
     """
+    extra = np.empty((len(g), 0)) if extra is None else extra
+
     weight = 1.0 / noise[assembly.channel] ** 2
-    own = assembly.free[N_SHARED:]
+    common, own = assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
+    shared_g = np.column_stack([g[:, common], extra])
     parts = []
-    projected = np.empty((len(g), N_SHARED))
-    try:
-        for m, named in enumerate(assembly.rows):
-            rows = slice(min(s.start for s in named.values()), max(s.stop for s in named.values()))
-            weighted = (g[rows][:, own] * weight[rows, None]).T
-            inverse = _inverse(weighted @ g[rows][:, own])
-            gain = inverse @ weighted
-            mix = gain @ g[rows, :N_SHARED]
-            projected[rows] = g[rows, :N_SHARED] - g[rows][:, own] @ mix
-            parts.append((m, rows, gain, mix))
-        information = projected.T @ (projected * weight[:, None])
-        shared = projected * weight[:, None] @ _inverse(information)
-    except np.linalg.LinAlgError:
+    projected = np.empty_like(shared_g)
+    open_share = np.zeros(N_PARAMETERS)
+    for named in assembly.rows:
+        rows = slice(min(s.start for s in named.values()), max(s.stop for s in named.values()))
+        weighted = (g[rows][:, own] * weight[rows, None]).T
+        inverse, left_open = _inverse(weighted @ g[rows][:, own])
+        open_share[own] = np.maximum(open_share[own], left_open)
+        gain = inverse @ weighted
+        mix = gain @ shared_g[rows]
+        projected[rows] = shared_g[rows] - g[rows][:, own] @ mix
+        parts.append((rows, gain, mix))
+    information = projected.T @ (projected * weight[:, None])
+    if not np.all(np.isfinite(information)):
         return None
-    result = np.zeros((len(g), len(PARAMETERS)))
+    inverse, left_open = _inverse(information)
+    open_share[common] = left_open[: len(common)]
+    shared = projected * weight[:, None] @ inverse
+    result = np.zeros((len(g), len(PARAMETERS) + extra.shape[1]))
+    result[:, len(PARAMETERS) :] = shared[:, len(common) :]
     for j, (is_shared, index) in enumerate(REPORTED):
         if is_shared:
             result[:, j] = shared[:, index]
             continue
         at = int(np.flatnonzero(own == N_SHARED + index)[0])
-        for _, rows, gain, mix in parts:
+        for rows, gain, mix in parts:
             result[rows, j] += gain[at] / len(parts)
             result[:, j] -= shared @ mix[at] / len(parts)
-    covariance = (result / weight[:, None]).T @ result
+    eight = result[:, : len(PARAMETERS)]
+    covariance = (eight / weight[:, None]).T @ eight
     scale = np.sqrt(np.diag(covariance))
-    if not np.all(np.isfinite(scale)) or not np.all(scale > 0.0):
+    if not np.all(np.isfinite(scale)):
         return None
+    scale = np.where(scale > 0.0, scale, 1.0)
     correlation = covariance / np.outer(scale, scale)
-    inverse = np.linalg.pinv(correlation, hermitian=True)
-    return Influence(result, float(np.linalg.cond(correlation)), np.diag(inverse).copy())
+    return Influence(
+        rows=result,
+        condition=float(np.linalg.cond(correlation)),
+        unresolved=tuple(
+            name
+            for name, (is_shared, index) in zip(PARAMETERS, REPORTED, strict=True)
+            if open_share[index if is_shared else N_SHARED + index] > OPEN_SHARE
+        ),
+    )
 
 
-def _inverse(information: FloatArray) -> FloatArray:
-    """Inverse of a symmetric matrix; LinAlgError when it is not positive definite to working precision."""
+def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Inverse of a symmetric matrix, and how much of each unknown it leaves open, 0 to 1.
+
+    Directions in which the matrix is singular to working precision are left out.
+    """
     diagonal = np.diag(information)
-    if not np.all(diagonal > 0.0):
-        raise np.linalg.LinAlgError
-    scale = 1.0 / np.sqrt(diagonal)
+    scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
     values, vectors = np.linalg.eigh(information * np.outer(scale, scale))
-    if not values[0] > LEAST_EIGENVALUE:
-        raise np.linalg.LinAlgError
-    result: FloatArray = (vectors / values) @ vectors.T * np.outer(scale, scale)
-    return result
+    dead = values <= LEAST_EIGENVALUE
+    kept = np.where(dead, 0.0, 1.0 / np.where(dead, 1.0, values))
+    result: FloatArray = (vectors * kept) @ vectors.T * np.outer(scale, scale)
+    return result, np.sum(vectors[:, dead] ** 2, axis=1)
 
 
 def cramer_rao(assembly: Assembly, rows: FloatArray, noise: FloatArray) -> FloatArray:
-    """AᵀRA, shape (8, 8)."""
+    """AᵀRA, shape (8 + k, 8 + k)."""
     return (rows * noise[assembly.channel, None] ** 2).T @ rows
 
 
 def coloured(assembly: Assembly, rows: FloatArray, residual: FloatArray) -> FloatArray:
-    """AᵀΓA, shape (8, 8), with the autocovariance of each output pooled over the manoeuvres."""
+    """AᵀΓA, shape (8 + k, 8 + k), with the autocovariance of each output pooled over the manoeuvres."""
     total = np.zeros((rows.shape[1], rows.shape[1]))
     for output in {name for named in assembly.rows for name in named}:
         stretches = [named[output] for named in assembly.rows if output in named]

@@ -1,18 +1,21 @@
 """From manoeuvres to estimates: what the rest of the program calls."""
 
 from collections.abc import Sequence
-
-import numpy as np
+from dataclasses import replace
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
-from advisor.oem.prepare import prepare
+from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
+from advisor.oem.notes import notes
+from advisor.oem.prepare import Prepared, prepare
+from advisor.oem.servo_lag import Lag, find_lag
 from advisor.oem.solution import Method, Solution, solve
+from advisor.oem.surface import Servo
 
-HIGH_CORRELATION = 0.9
+N = len(PARAMETERS)
 
 
 def estimate(
@@ -24,45 +27,57 @@ def estimate(
     ----------
     method : ``gauss-newton``, or ``nelder-mead`` for the paper's simplex (the same optimum, later).
     """
-    return _estimate([maneuver], aircraft, method)
+    prepared = prepare([maneuver], aircraft)
+    if isinstance(prepared, NoEstimate):
+        return prepared
+    solution = solve(prepared.problem, method=method)
+    if isinstance(solution, NoEstimate):
+        return solution
+    return _report(solution, prepared, aircraft, None)
 
 
 def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | NoEstimate:
-    """One estimate over several manoeuvres: shared derivatives, own trim, initial states and biases."""
+    """One estimate over several manoeuvres: shared derivatives, own trim, initial states and biases.
+
+    When the aircraft file does not give the servo's lag, one is estimated too, and applied if the
+    data tell it from zero.
+    """
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
-    return _estimate(maneuvers, aircraft, "gauss-newton")
-
-
-def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method) -> Estimate | NoEstimate:
-    problem = prepare(maneuvers, aircraft)
-    if isinstance(problem, NoEstimate):
-        return problem
-    solution = solve(problem, method=method)
+    prepared = prepare(maneuvers, aircraft)
+    if isinstance(prepared, NoEstimate):
+        return prepared
+    solution = solve(prepared.problem)
     if isinstance(solution, NoEstimate):
         return solution
-    return report(solution)
+    lag = find_lag(prepared.problem, solution) if aircraft.elevator.lag_s is None else None
+    return _report(lag.solution if lag else solution, prepared, aircraft, lag)
 
 
-def report(solution: Solution, notes: tuple[str, ...] = ()) -> Estimate:
-    """A solution as the rest of the program sees it."""
-    airspeed = solution.problem.reference_airspeed_m_s
-    if airspeed is None:
-        speeds = [r.airspeed.y for r in solution.problem.records if r.airspeed is not None]
-        airspeed = float(np.mean(np.concatenate(speeds))) if speeds else None
+def _report(solution: Solution, prepared: Prepared, aircraft: Aircraft, lag: Lag | None) -> Estimate:
+    unknown = aircraft.elevator.lag_s is None and not (lag is not None and lag.lag_s > 0.0)
+    lagged = _supposing_a_lag(solution) if unknown else None
     return Estimate(
         theta=solution.theta,
-        covariance_cr=solution.covariance_cr,
-        covariance=solution.covariance,
+        covariance_cr=solution.covariance_cr[:N, :N],
+        covariance=solution.covariance[:N, :N],
         cost=solution.cost,
         fits=channel_fits(solution),
         iterations=solution.optimum.iterations,
-        not_identifiable={},
-        correlated=_correlated(solution.covariance_cr),
+        not_identifiable=not_identifiable(solution, lagged),
+        correlated=correlated(solution.covariance_cr[:N, :N]),
         condition=solution.influence.condition,
-        airspeed_m_s=airspeed,
-        notes=notes,
+        airspeed_m_s=solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s,
+        notes=notes(solution, prepared, aircraft, lag, lagged),
     )
+
+
+def _supposing_a_lag(solution: Solution) -> FloatArray | None:
+    """(8,) the estimate had the servo a lag of ``SUPPOSED_LAG_S``."""
+    servo = Servo(SUPPOSED_LAG_S, solution.problem.servo.delay_s)
+    begin = (solution.optimum.shared, solution.optimum.local)
+    moved = solve(replace(solution.problem, servo=servo), begin=begin)
+    return None if isinstance(moved, NoEstimate) else moved.theta
 
 
 def channel_fits(solution: Solution) -> tuple[dict[str, ChannelFit], ...]:
@@ -80,15 +95,4 @@ def channel_fits(solution: Solution) -> tuple[dict[str, ChannelFit], ...]:
             for name, rows in named.items()
         }
         for named in assembly.rows
-    )
-
-
-def _correlated(covariance: FloatArray) -> tuple[tuple[str, str, float], ...]:
-    scale = np.sqrt(np.diag(covariance))
-    correlation = covariance / np.outer(scale, scale)
-    return tuple(
-        (PARAMETERS[i], PARAMETERS[j], float(correlation[i, j]))
-        for i in range(len(PARAMETERS))
-        for j in range(i + 1, len(PARAMETERS))
-        if abs(correlation[i, j]) > HIGH_CORRELATION
     )

@@ -34,7 +34,7 @@ class Optimum(NamedTuple):
     status: int
     """``CONVERGED``, ``EXHAUSTED`` (no step lowers the cost, or too many), ``OVERFLOW``, ``SINGULAR``."""
     shared: FloatArray
-    """(6,), order of ``SHARED``."""
+    """(7,), order of ``SHARED``."""
     local: FloatArray
     """(m, 7), order of ``LOCAL``."""
     noise: FloatArray
@@ -71,7 +71,7 @@ def normal_equations(
     owner: Index,
     noise: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Information matrix (m, 13, 13) and gradient (m, 13) of each manoeuvre, lower triangles."""
+    """Information matrix (m, 14, 14) and gradient (m, 14) of each manoeuvre, lower triangles."""
     m = len(grid.first) - 1
     information = np.zeros((m, N_PARAMETERS, N_PARAMETERS))
     gradient = np.zeros((m, N_PARAMETERS))
@@ -136,53 +136,54 @@ def arrow_step(
 
     Returns
     -------
-    False when singular; the step of the shared (6,) and of the local parameters (m, 7); and
+    False when singular; the step of the shared (7,) and of the local parameters (m, 7); and
     the promised decrease gradientᵀ·step of the weighted sum of squares.
     """
     maneuvers = len(information)
-    own = free[N_SHARED:]
-    n = len(own)
+    common, own = free[free < N_SHARED], free[free >= N_SHARED]
+    width, n = len(common), len(own)
     shared_step, local_step = np.zeros(N_SHARED), np.zeros((maneuvers, N_LOCAL))
-    top = np.zeros((N_SHARED, N_SHARED))
-    right = np.zeros((N_SHARED, 1))
+    top = np.zeros((width, width))
+    right = np.zeros((width, 1))
     factors = np.zeros((maneuvers, n, n))
-    carried = np.zeros((maneuvers, n, N_SHARED + 1))
+    carried = np.zeros((maneuvers, n, width + 1))
     for m in range(maneuvers):
-        for j in range(N_SHARED):
-            right[j, 0] += gradient[m, j]
+        for j in range(width):
+            right[j, 0] += gradient[m, common[j]]
             for k in range(j + 1):
-                top[j, k] += information[m, j, k]
-            top[j, j] += damping * information[m, j, j]
+                top[j, k] += information[m, common[j], common[k]]
+            top[j, j] += damping * information[m, common[j], common[j]]
         for j in range(n):
             for k in range(j + 1):
                 factors[m, j, k] = information[m, own[j], own[k]]
             factors[m, j, j] *= 1.0 + damping
-            for k in range(N_SHARED):
-                carried[m, j, k] = information[m, own[j], k]
-            carried[m, j, N_SHARED] = gradient[m, own[j]]
+            for k in range(width):
+                carried[m, j, k] = information[m, own[j], common[k]]
+            carried[m, j, width] = gradient[m, own[j]]
         if not _cholesky(factors[m]):
             return False, shared_step, local_step, 0.0
         _solve_lower(factors[m], carried[m])
-        for j in range(N_SHARED):
+        for j in range(width):
             for i in range(n):
-                right[j, 0] -= carried[m, i, j] * carried[m, i, N_SHARED]
+                right[j, 0] -= carried[m, i, j] * carried[m, i, width]
                 for k in range(j + 1):
                     top[j, k] -= carried[m, i, j] * carried[m, i, k]
     if not _cholesky(top):
         return False, shared_step, local_step, 0.0
     _solve_lower(top, right)
     promise = 0.0
-    for j in range(N_SHARED):
+    for j in range(width):
         promise += right[j, 0] ** 2
     _solve_upper(top, right)
-    shared_step[:] = right[:, 0]
+    for j in range(width):
+        shared_step[common[j]] = right[j, 0]
     for m in range(maneuvers):
         rest = np.empty((n, 1))
         for i in range(n):
-            promise += carried[m, i, N_SHARED] ** 2
-            rest[i, 0] = carried[m, i, N_SHARED]
-            for j in range(N_SHARED):
-                rest[i, 0] -= carried[m, i, j] * shared_step[j]
+            promise += carried[m, i, width] ** 2
+            rest[i, 0] = carried[m, i, width]
+            for j in range(width):
+                rest[i, 0] -= carried[m, i, j] * right[j, 0]
         _solve_upper(factors[m], rest)
         for i in range(n):
             local_step[m, own[i] - N_SHARED] = rest[i, 0]

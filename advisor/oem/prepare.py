@@ -1,12 +1,15 @@
-"""From a manoeuvre and the aircraft file to the estimator's record."""
+"""From manoeuvres and the aircraft file to the estimator's problem."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
+from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.problem import GRAVITY, Problem, Record, Signal
 from advisor.oem.surface import Servo
@@ -14,29 +17,91 @@ from advisor.oem.surface import Servo
 FEWEST_SAMPLES = 20
 SPEED_CHANGE = 0.03
 """Beyond this relative change of air speed the derivatives are scaled with it."""
+REPEATED_SHARE = 0.3
+"""A channel whose samples repeat the last value more often than this is held between renewals."""
 
 
-def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Problem | NoEstimate:
-    """Collect what the estimator needs, or say why it cannot begin."""
-    records = []
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """The problem, and what was learnt on the way to it."""
+
+    problem: Problem
+    renewed_hz: float
+    """Rate at which angle of attack really changes, the slowest of the manoeuvres."""
+    alpha_held: bool
+    """Angle of attack arrives under fresh stamps without being renewed."""
+    missing: tuple[str, ...]
+    """Outputs that no manoeuvre has: a_z, theta."""
+    airspeed_lag_s: float
+    """How late the air speed reads, mean over the manoeuvres."""
+    airspeed_m_s: float | None
+    """Mean measured speed."""
+
+
+def prepare(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, outputs: Sequence[str] = ("alpha", "q", "a_z", "theta")
+) -> Prepared | NoEstimate:
+    """Collect what the estimator needs, or say why it cannot begin.
+
+    Parameters
+    ----------
+    outputs : the outputs to use when measured; alpha and q always are.
+    """
     for maneuver in maneuvers:
         missing = _missing(maneuver)
         if missing is not None:
             return missing
-        records.append(_record(maneuver))
-    return Problem(
-        records=tuple(records),
-        reference_airspeed_m_s=_reference(records, aircraft),
-        servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
-        vane_arm_m=aircraft.alpha.vane_arm_m or 0.0,
-        accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+    usable = [name for name in outputs if all(_has(m.channels, name) for m in maneuvers)]
+    speeds = [airspeed(m.channels) for m in maneuvers]
+    if any(speed is None for speed in speeds) and aircraft.airspeed_m_s is None:
+        usable = [name for name in usable if name != "a_z"]
+    measured = [speed for speed in speeds if speed is not None]
+    together = len(measured) == len(maneuvers)
+    signals = [
+        speed.signal if speed is not None and together else _constant(maneuver, aircraft.airspeed_m_s)
+        for maneuver, speed in zip(maneuvers, speeds, strict=True)
+    ]
+    alphas = [renewed(_signal(m.channels["alpha"])) for m in maneuvers]
+    records = tuple(
+        _record(maneuver, signal, alpha, usable)
+        for maneuver, signal, (alpha, _) in zip(maneuvers, signals, alphas, strict=True)
     )
+    known = [signal for signal in signals if signal is not None]
+    return Prepared(
+        problem=Problem(
+            records=records,
+            reference_airspeed_m_s=_reference(known, aircraft) if together else None,
+            servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
+            vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
+            accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+        ),
+        renewed_hz=min(1.0 / float(np.median(np.diff(alpha.t))) for alpha, _ in alphas),
+        alpha_held=any(held for _, held in alphas),
+        missing=tuple(name for name in outputs if name not in usable),
+        airspeed_lag_s=float(np.mean([speed.lag_s for speed in measured])) if measured else 0.0,
+        airspeed_m_s=float(np.mean([signal.y.mean() for signal in known])) if known else None,
+    )
+
+
+def renewed(signal: Signal) -> tuple[Signal, bool]:
+    """Samples that bring a new value, and whether the channel is held between them.
+
+    A staircase under fresh stamps would count each value several times, and late.
+    """
+    fresh = np.concatenate([[True], np.diff(signal.y) != 0.0])
+    if np.count_nonzero(~fresh) <= REPEATED_SHARE * len(fresh) or np.count_nonzero(fresh) < FEWEST_SAMPLES:
+        return signal, False
+    return Signal(signal.t[fresh], signal.y[fresh]), True
+
+
+def _has(channels: Mapping[str, Channel], name: str) -> bool:
+    return name in channels and int(np.count_nonzero(np.isfinite(channels[name].y))) >= FEWEST_SAMPLES
 
 
 def _missing(maneuver: Maneuver) -> NoEstimate | None:
     for name, spoken in (("elevator", "the elevator"), ("alpha", "angle of attack"), ("q", "pitch rate")):
         samples = len(maneuver.channels[name]) if name in maneuver.channels else 0
-        if samples < FEWEST_SAMPLES:
+        if not _has(maneuver.channels, name):
             text = (
                 f"Manoeuvre {maneuver.number} has {samples} samples of {spoken}; it takes {FEWEST_SAMPLES}."
             )
@@ -46,31 +111,63 @@ def _missing(maneuver: Maneuver) -> NoEstimate | None:
     return None
 
 
-def _record(maneuver: Maneuver) -> Record:
+def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Sequence[str]) -> Record:
     channels = maneuver.channels
-    outputs = {name: _signal(channels[name]) for name in ("alpha", "q")}
-    airspeed = channels.get("airspeed")
+    outputs = {"alpha": alpha, "q": _signal(channels["q"])}
+    path = gravity = None
+    if "a_z" in usable:
+        outputs["a_z"] = _signal(channels["a_z"])
+    if "theta" in usable:
+        outputs["theta"] = _level(channels)
+    if _has(channels, "theta"):
+        theta = _signal(channels["theta"])
+        cosine = np.cos(_signal(channels["bank"]).at(theta.t)) if _has(channels, "bank") else 1.0
+        path = Signal(theta.t, theta.y - alpha.at(theta.t))
+        gravity = Signal(theta.t, GRAVITY * np.cos(theta.y) * cosine)
     return Record(
         elevator=_signal(channels["elevator"]),
         outputs=outputs,
-        airspeed=_signal(airspeed) if airspeed is not None and len(airspeed) > 1 else None,
+        airspeed=speed,
+        path=path,
+        gravity_z=gravity,
     )
 
 
-def _reference(records: Sequence[Record], aircraft: Aircraft) -> float | None:
-    """Reference air speed, when the speed is measured and moves enough to matter."""
-    if any(record.airspeed is None for record in records):
+def _level(channels: Mapping[str, Channel]) -> Signal:
+    """Pitch angle as if the wings were level: θ minus the integral of (cos φ - 1)·q - r·sin φ."""
+    theta = _signal(channels["theta"])
+    if not _has(channels, "bank"):
+        return theta
+    bank = _signal(channels["bank"]).at(theta.t)
+    rate = (np.cos(bank) - 1.0) * _signal(channels["q"]).at(theta.t)
+    if _has(channels, "r"):
+        rate = rate - np.sin(bank) * _signal(channels["r"]).at(theta.t)
+    return Signal(theta.t, theta.y - _running(theta.t, rate))
+
+
+def _running(t: FloatArray, y: FloatArray) -> FloatArray:
+    """Integral of ``y`` from the first stamp on, by trapezoids."""
+    total: FloatArray = np.concatenate([[0.0], np.cumsum(np.diff(t) * (y[1:] + y[:-1]) / 2.0)])
+    return total
+
+
+def _constant(maneuver: Maneuver, speed: float | None) -> Signal | None:
+    if speed is None:
         return None
-    speeds = np.concatenate([record.airspeed.y for record in records if record.airspeed is not None])
-    mean = float(np.mean(speeds))
-    reference = aircraft.reference_airspeed_m_s or mean
-    if np.min(speeds) <= 0.0 or float(np.max(np.abs(speeds / reference - 1.0))) < SPEED_CHANGE / 2.0:
+    return Signal(maneuver.channels["elevator"].t[[0, -1]], np.array([speed, speed]))
+
+
+def _reference(speeds: Sequence[Signal], aircraft: Aircraft) -> float | None:
+    """Reference air speed, when the speed moves enough to matter."""
+    together = np.concatenate([speed.y for speed in speeds])
+    if np.min(together) <= 0.0:
         return None
-    return reference
+    reference = aircraft.reference_airspeed_m_s or float(np.mean(together))
+    moved = float(np.max(together) - np.min(together)) > SPEED_CHANGE * reference
+    apart = abs(float(np.mean(together)) / reference - 1.0) > SPEED_CHANGE / 2.0
+    return reference if moved or apart else None
 
 
 def _signal(channel: Channel) -> Signal:
-    return Signal(np.asarray(channel.t, float), np.asarray(channel.y, float))
-
-
-__all__ = ["GRAVITY", "prepare"]
+    keep = np.isfinite(channel.y)
+    return Signal(np.asarray(channel.t[keep], float), np.asarray(channel.y[keep], float))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, Grid, Index
+from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, SHARED, Grid, Index
 from advisor.oem.surface import Servo
 
 GRAVITY = 9.80665
@@ -56,6 +56,9 @@ class Problem:
     servo: Servo = field(default_factory=Servo)
     vane_arm_m: float = 0.0
     accelerometer_arm_m: float = 0.0
+    airspeed_may_be_off: bool = True
+    """Estimate a scale error of the air speed in a_z (equivalent, ratiometric, or derived speeds are
+    off by some per cent, which would otherwise pull Z_alpha and M_alpha along)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +77,7 @@ class Assembly:
     owner: Index
     """(N,) the manoeuvre."""
     free: Index
-    """The parameters of 13 that are estimated, increasing."""
+    """The parameters of 14 that are estimated, increasing."""
 
     @property
     def maneuvers(self) -> int:
@@ -135,18 +138,21 @@ def assemble(problem: Problem) -> Assembly:
         rows=tuple(rows),
         channel=np.repeat([OUTPUTS.index(name) for _, name, _ in signals], sizes),
         owner=np.repeat([m for m, _, _ in signals], sizes),
-        free=_free(measured),
+        free=_free(measured, problem.airspeed_may_be_off and "a_z" in measured),
     )
 
 
-def _free(measured: set[str]) -> Index:
-    """Which of the 13 parameters the measured outputs give a meaning to."""
+def _free(measured: set[str], scaled: bool) -> Index:
+    """Which of the 14 parameters the measured outputs give a meaning to."""
     local = ["Z_0", "M_0", "alpha_initial", "q_initial"]
     if "theta" in measured:
         local += ["theta_initial", "q_bias"]
     if "a_z" in measured:
         local += ["a_z_bias"]
-    return np.array([*range(N_SHARED), *(N_SHARED + LOCAL.index(name) for name in local)])
+    shared = [name for name in SHARED if name != "airspeed_scale" or scaled]
+    return np.array(
+        [*(SHARED.index(name) for name in shared), *(N_SHARED + LOCAL.index(name) for name in local)]
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,11 +221,11 @@ def _finite(signal: Signal) -> Signal:
 
 def _merged(stamps: FloatArray, pace: float) -> FloatArray:
     """Distinct stamps in order, with more between where they lie further apart than ``pace``."""
-    t = np.sort(stamps)
-    t = t[np.concatenate([[True], np.diff(t) > STAMP_S])]
+    ordered = np.sort(stamps)
+    t: FloatArray = ordered[np.concatenate([[True], np.diff(ordered) > STAMP_S])]
     if not np.isfinite(pace):
         return t
-    parts = np.maximum(1, np.ceil(np.diff(t) / pace - 1e-6)).astype(int)
+    parts: Index = np.maximum(1, np.ceil(np.diff(t) / pace - 1e-6)).astype(np.int64)
     cells = np.repeat(np.arange(len(parts)), parts)
     within = np.arange(len(cells)) - np.repeat(np.cumsum(parts) - parts, parts)
     merged: FloatArray = np.append(t[cells] + within * (np.diff(t) / parts)[cells], t[-1])

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from advisor.flight.messages import FloatArray
-from advisor.model.response import N_SHARED, Grid, Index, respond
+from advisor.model.response import N_PARAMETERS, N_SHARED, Grid, Index, respond
 from advisor.oem.gauss_newton import CONVERGED, EXHAUSTED, OVERFLOW, Optimum, weigh
 
 FIRST_STEP = 0.05
@@ -32,20 +32,21 @@ def descend_by_simplex(
     The simplex is begun anew at its own end until that no longer helps, because a simplex
     collapses in valleys as narrow as those of Z_q and Z_δe.
     """
-    own = free[N_SHARED:] - N_SHARED
-    y, none = np.empty(len(z)), np.empty((0, 13))
+    common, own = free[free < N_SHARED], free[free >= N_SHARED] - N_SHARED
+    y, none = np.empty(len(z)), np.empty((0, N_PARAMETERS))
 
     def unpack(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        moved = local.copy()
-        moved[:, own] = x[N_SHARED:].reshape(len(local), len(own))
-        return np.ascontiguousarray(x[:N_SHARED]), moved
+        moved_shared, moved_local = shared.copy(), local.copy()
+        moved_shared[common] = x[: len(common)]
+        moved_local[:, own] = x[len(common) :].reshape(len(local), len(own))
+        return moved_shared, moved_local
 
     def cost(x: FloatArray) -> float:
         if not respond(grid, *unpack(x), y, none):
             return 1e300
         return float(weigh(z, y, channel, floor)[1])
 
-    x = np.concatenate([shared, local[:, own].ravel()])
+    x = np.concatenate([shared[common], local[:, own].ravel()])
     best = cost(x)
     if best >= 1e300:
         return Optimum(OVERFLOW, shared, local, np.zeros(4), best, 0)

@@ -27,14 +27,14 @@ class Solution:
     fitted: FloatArray
     """(N,) model outputs, rows as in ``assembly``."""
     sensitivities: FloatArray
-    """(N, 13)."""
+    """(N, 14)."""
     influence: Influence
     theta: FloatArray
     """(8,) order of ``PARAMETERS``; Z_0 and M_0 are means over the manoeuvres."""
     covariance_cr: FloatArray
-    """(8, 8) Cramér-Rao bound."""
+    """(8 + k, 8 + k) Cramér-Rao bound; beyond the eight stand the k extra parameters."""
     covariance: FloatArray
-    """(8, 8) corrected for coloured residuals."""
+    """(8 + k, 8 + k) corrected for coloured residuals."""
 
     @property
     def residual(self) -> FloatArray:
@@ -57,7 +57,7 @@ def solve(
 
     Parameters
     ----------
-    begin : shared (6,) and local (m, 7) parameters to start from, e.g. of an earlier, shorter
+    begin : shared (7,) and local (m, 7) parameters to start from, e.g. of an earlier, shorter
         solution; by default the regression of ``start``.
     """
     assembly = assemble(problem)
@@ -82,11 +82,13 @@ def solve(
     return evaluate(problem, assembly, optimum)
 
 
-def evaluate(problem: Problem, assembly: Assembly, optimum: Optimum) -> Solution | NoEstimate:
-    """Errors of an optimum."""
+def evaluate(
+    problem: Problem, assembly: Assembly, optimum: Optimum, extra: FloatArray | None = None
+) -> Solution | NoEstimate:
+    """Errors of an optimum; ``extra`` as in ``covariance.influence``."""
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     respond(assembly.grid, optimum.shared, optimum.local, y, g)
-    effect = influence(assembly, g, optimum.noise)
+    effect = influence(assembly, g, optimum.noise, extra)
     if effect is None:
         return NoEstimate(
             "singular", "The input does not excite the motion enough to tell the parameters apart."

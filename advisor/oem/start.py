@@ -19,7 +19,7 @@ from advisor.oem.surface import Servo
 
 
 def start(problem: Problem) -> tuple[FloatArray, FloatArray]:
-    """Shared (6,) and local (m, 7) parameters to begin with.
+    """Shared (7,) and local (m, 7) parameters to begin with.
 
     Always returns finite numbers; a record that teaches nothing yields a least-norm solution.
     """

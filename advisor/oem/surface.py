@@ -4,8 +4,8 @@
 
 A command that is linear between its stamps drives the lag to
 δ(t + h) = u₁ - τ·u̇ + (δ(t) - u₀ + τ·u̇)·exp(-h/τ), so the surface is known without error at
-every stamp of the grid; between two stamps it is taken as linear, and the grid is refined to a
-tenth of the lag so that this costs less than 0.2 % of a step's height.
+every stamp of the grid; between two stamps it is taken as linear, on a grid fine enough that this costs
+less than 0.1 % of a step's height at a lag of 0.1 s.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 
-PARTS_PER_LAG = 10.0
+LONGEST_STEP_S = 0.008
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class Servo:
 
     def grid(self, command_t: FloatArray) -> tuple[FloatArray, float]:
         """Where the surface's motion has corners, and the longest step that still follows it."""
-        return command_t + self.delay_s, self.lag_s / PARTS_PER_LAG if self.lag_s > 0.0 else np.inf
+        return command_t + self.delay_s, LONGEST_STEP_S if self.lag_s > 0.0 else np.inf
 
     def move(
         self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool = False

@@ -66,7 +66,7 @@ def problem_with_everything():
 
 def test_sensitivities_are_the_derivatives_of_the_outputs():
     assembly = assemble(problem_with_everything())
-    shared = UAV[[1, 2, 3, 5, 6, 7]]
+    shared = np.append(UAV[[1, 2, 3, 5, 6, 7]], 0.04)
     local = np.array([[0.05, 0.4, 0.05, 0.1, 0.02, 0.01, 0.2], [0.03, 0.5, 0.04, -0.1, 0.1, -0.02, 0.1]])
     n = len(assembly.z)
     y, g = np.empty(n), np.empty((n, N_PARAMETERS))
@@ -74,7 +74,7 @@ def test_sensitivities_are_the_derivatives_of_the_outputs():
 
     def outputs(step):
         moved = np.empty(n)
-        assert respond(assembly.grid, shared + step[:6], local + step[6:], moved, np.empty((0, N_PARAMETERS)))
+        assert respond(assembly.grid, shared + step[:7], local + step[7:], moved, np.empty((0, N_PARAMETERS)))
         return moved
 
     for j, name in enumerate((*SHARED, *LOCAL)):
@@ -95,7 +95,9 @@ def test_the_response_is_exact_at_irregular_stamps_and_over_gaps(theta):
     assembly = assemble(Problem((record,)))
     y = np.empty(len(assembly.z))
     local = np.array([[theta[0], theta[4], 0.04, 0.1, 0.2, 0.0, 0.0]])
-    assert respond(assembly.grid, theta[[1, 2, 3, 5, 6, 7]], local, y, np.empty((0, N_PARAMETERS)))
+    assert respond(
+        assembly.grid, np.append(theta[[1, 2, 3, 5, 6, 7]], 0.0), local, y, np.empty((0, N_PARAMETERS))
+    )
     for name, column, offset in (("alpha", 0, 0.0), ("q", 1, 0.0), ("theta", 2, 0.2)):
         truth = (
             simulate(theta, [0.04, 0.1], t, u, np.concatenate([[first], stamps[name]]))[1:, column] + offset
@@ -106,5 +108,5 @@ def test_the_response_is_exact_at_irregular_stamps_and_over_gaps(theta):
 def test_parameters_that_run_away_are_reported_not_returned():
     assembly = assemble(problem_with_everything())
     y = np.empty(len(assembly.z))
-    shared = np.array([90.0, 0.0, 0.0, 50.0, 90.0, 1.0])
+    shared = np.array([90.0, 0.0, 0.0, 50.0, 90.0, 1.0, 0.0])
     assert not respond(assembly.grid, shared, np.ones((2, 7)), y, np.empty((0, N_PARAMETERS)))

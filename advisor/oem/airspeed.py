@@ -1,0 +1,89 @@
+"""The air speed inside a manoeuvre, made from a slow, late instrument and the accelerometers.
+
+Air speed arrives a few times a second, filtered and late (0.3 s on an ArduPlane), while within
+a 3-2-1-1 it swings by metres per second. Its rate, however, follows from the motion alone,
+
+    V̇ = a_x·cos α + a_z·sin α - g·sin(θ - α)
+
+in still air. The integral gives the shape, the instrument the level and the drift, and the
+delay between the two is the instrument's. An instrument that disagrees with the motion (gusts)
+is believed over the motion.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.flight.record import Channel
+from advisor.oem.problem import GRAVITY, Signal
+
+LONGEST_LAG_S = 0.6
+LAG_STEP_S = 0.02
+SMALLEST_GAIN = 0.3
+"""A lag is believed when it takes away this share of the disagreement's power."""
+LARGEST_DISAGREEMENT = 0.03
+"""Of the mean speed; above, the instrument alone is used."""
+FEWEST_SAMPLES = 8
+MOTION = ("a_x", "a_z", "theta", "alpha")
+
+
+@dataclass(frozen=True, slots=True)
+class Airspeed:
+    """V over time, and how it was come by."""
+
+    signal: Signal
+    """V in m/s."""
+    lag_s: float
+    """How late the instrument reads; 0 when it could not be told."""
+    smooth: bool
+    """Shape from the accelerometers; False: the instrument as it is."""
+
+
+def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
+    """Air speed of a manoeuvre; None when none was measured."""
+    measured = channels.get("airspeed")
+    if measured is None or len(measured) < 2 or not np.all(np.isfinite(measured.y)):
+        return None
+    plain = Airspeed(Signal(measured.t, measured.y), 0.0, False)
+    if any(name not in channels or len(channels[name]) < FEWEST_SAMPLES for name in MOTION):
+        return plain
+    t = channels["theta"].t
+    shape = _shape(t, channels)
+    inside = (measured.t >= t[0] + LONGEST_LAG_S) & (measured.t <= t[-1])
+    if np.count_nonzero(inside) < FEWEST_SAMPLES:
+        return plain
+    lags = np.arange(0.0, LONGEST_LAG_S + LAG_STEP_S / 2.0, LAG_STEP_S)
+    fits = [_drift(measured.t[inside], measured.y[inside], t, shape, lag) for lag in lags]
+    left = np.array([power for _, power in fits])
+    best = int(np.argmin(left))
+    if left[best] > (1.0 - SMALLEST_GAIN) * left[0] or best == len(lags) - 1:
+        best = 0
+    (level, drift), power = fits[best]
+    if np.sqrt(power) > LARGEST_DISAGREEMENT * level:
+        return plain
+    return Airspeed(Signal(t, shape + level + drift * (t - t[0])), float(lags[best]), True)
+
+
+def _shape(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
+    """∫V̇ from the first of ``t`` on."""
+
+    def at(name: str) -> FloatArray:
+        return np.interp(t, channels[name].t, channels[name].y)
+
+    alpha = at("alpha")
+    rate = at("a_x") * np.cos(alpha) + at("a_z") * np.sin(alpha) - GRAVITY * np.sin(at("theta") - alpha)
+    shape: FloatArray = np.concatenate([[0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)])
+    return shape
+
+
+def _drift(
+    t: FloatArray, y: FloatArray, grid: FloatArray, shape: FloatArray, lag: float
+) -> tuple[tuple[float, float], float]:
+    """Level and drift that join shape and instrument at this lag, and the mean square left over."""
+    late = t - lag
+    columns = np.column_stack([np.ones(len(t)), late - grid[0]])
+    side = y - np.interp(late, grid, shape)
+    found = np.linalg.lstsq(columns, side, rcond=None)[0]
+    return (float(found[0]), float(found[1])), float(np.mean((side - columns @ found) ** 2))
