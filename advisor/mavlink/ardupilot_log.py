@@ -62,6 +62,7 @@ class _Translation:
     def __init__(self, tables: dict[str, Table]) -> None:
         self._tables = tables
         self._base_s = gps_time_base_s(tables.get("GPS"))
+        self._system = self._system_id()
 
     def columns(self) -> Iterator[Columns]:
         yield self._heartbeat()
@@ -84,9 +85,18 @@ class _Translation:
         if air is not None:
             yield self._vfr_hud(air.first_instance())
 
+    def _system_id(self) -> int:
+        """As the parameters give it, under its old or its new name."""
+        parm = self._tables.get("PARM")
+        if parm is not None:
+            for name, value in zip(parm.fields["Name"].tolist(), parm.fields["Value"].tolist(), strict=True):
+                if name in (b"SYSID_THISMAV", b"MAV_SYSID"):
+                    return int(value)
+        return 1
+
     def _message(self, name: str, table: Table, fields: dict[str, ArrayLike], place: int = 0) -> Columns:
         """A message made of each record; ``place`` keeps several made of one record in order."""
-        return message(name, table.order + place, self._base_s + seconds(table.time_us), fields)
+        return message(name, self._system, table.order + place, self._base_s + seconds(table.time_us), fields)
 
     def _attitude(self, att: Table | None) -> Columns:
         """Angles at the stamps of ATT, rates at those of IMU."""
@@ -105,7 +115,7 @@ class _Translation:
         names = ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed")
         fields: dict[str, Any] = dict(zip(names, values, strict=True))
         fields["time_boot_ms"] = _milliseconds(time_us)
-        return message("ATTITUDE", order[by_order], self._base_s + seconds(time_us), fields)
+        return message("ATTITUDE", self._system, order[by_order], self._base_s + seconds(time_us), fields)
 
     def _highres_imu(self, imu: Table) -> Columns:
         imu = imu.first_instance()
@@ -212,7 +222,7 @@ class _Translation:
             "custom_mode": modes,
             "mavlink_version": 3,
         }
-        return message("HEARTBEAT", order, self._base_s + seconds(time_us), fields)
+        return message("HEARTBEAT", self._system, order, self._base_s + seconds(time_us), fields)
 
     def _mav_type(self) -> int:
         ver, msg = self._tables.get("VER"), self._tables.get("MSG")

@@ -15,20 +15,22 @@ from numpy.typing import ArrayLike, NDArray
 from advisor.flight.messages import Columns, FloatArray, IntArray
 from advisor.mavlink.definitions import DEFINITIONS
 
-SYSTEM, COMPONENT = 1, 1
-"""Ids of the autopilot, which its own log does not state."""
-
+AUTOPILOT_COMPONENT = 1  # MAV_COMP_ID_AUTOPILOT1
 MAV_TYPE_FIXED_WING = 1
 MAV_PARAM_TYPE_REAL32 = 9
 
 
-def message(name: str, order: IntArray, arrival_s: FloatArray, fields: Mapping[str, ArrayLike]) -> Columns:
+def message(
+    name: str, system: int, order: IntArray, arrival_s: FloatArray, fields: Mapping[str, ArrayLike]
+) -> Columns:
     """Messages of one type from the values at hand.
 
     Parameters
     ----------
     name : str
         A key of ``DEFINITIONS``.
+    system : int
+        System id of the vehicle.
     order, arrival_s : shape (n,)
     fields : mapping
         Field name to shape (n,), or a scalar for all, in the units of the definition. Integers
@@ -48,7 +50,7 @@ def message(name: str, order: IntArray, arrival_s: FloatArray, fields: Mapping[s
         if wire.base.kind in "iu" and values.dtype.kind != "f":
             values = values.astype(wire.base)
         columns[field] = np.broadcast_to(values, (n, *wire.shape))
-    return Columns(name, SYSTEM, COMPONENT, order, arrival_s, columns)
+    return Columns(name, system, AUTOPILOT_COMPONENT, order, arrival_s, columns)
 
 
 def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:

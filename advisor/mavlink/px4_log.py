@@ -111,8 +111,9 @@ def _columns(log: Any) -> list[Columns]:
     order[np.argsort(time_us, kind="stable")] = np.arange(len(time_us))
     orders = np.split(order, np.cumsum([len(m.time_us) for m in messages])[:-1])
     base_s = _unix_time_base_s(first)
+    system = int(log.initial_parameters.get("MAV_SYS_ID", 1))
     return [
-        message(m.name, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields)
+        message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields)
         for m, numbers in zip(messages, orders, strict=True)
         if len(numbers)
     ]

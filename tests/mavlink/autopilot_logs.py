@@ -69,14 +69,14 @@ def _ulog_message(kind: str, payload: bytes) -> bytes:
     return struct.pack("<HB", len(payload), ord(kind)) + payload
 
 
-def ulog_head(start_us: int = 0) -> bytes:
-    """Header, formats and subscriptions of every topic in ``TOPICS``."""
+def ulog_head(*definitions: bytes) -> bytes:
+    """Header, formats, parameters and other definitions, and subscriptions to all ``TOPICS``."""
     formats = [_ulog_message("F", f"{name}:{fields}".encode()) for name, fields in TOPICS.items()]
     subscriptions = [
         _ulog_message("A", struct.pack("<BH", 0, number) + name.encode())
         for number, name in enumerate(TOPICS)
     ]
-    return b"ULog\x01\x12\x35\x01" + struct.pack("<Q", start_us) + b"".join([*formats, *subscriptions])
+    return b"ULog\x01\x12\x35\x01" + bytes(8) + b"".join([*formats, *definitions, *subscriptions])
 
 
 def ulog_data(topic: str, *values: object) -> bytes:

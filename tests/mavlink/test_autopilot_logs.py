@@ -72,8 +72,9 @@ def dataflash_flight() -> bytes:
     return b"".join(log)
 
 
-def px4_flight() -> bytes:
-    log = [ulog_head(), ulog_release(0x010F02FF), ulog_parameter("FW_AIRSPD_TRIM", 15.0)]
+def px4_flight(**parameters: float) -> bytes:
+    definitions = [ulog_parameter(name, value) for name, value in parameters.items()]
+    log = [ulog_head(ulog_release(0x010F02FF), *definitions)]
     log.append(ulog_text(900_000, 6, "[logger] start"))
     for i in range(round(FLIGHT_S * 50)):
         us = 1_000_000 + 20_000 * i
@@ -172,6 +173,11 @@ class TestArduPilot:
         assert messages["AUTOPILOT_VERSION"].fields["flight_sw_version"].tolist() == [0x040506FF]
         assert finite(messages["GLOBAL_POSITION_INT"], "relative_alt")[0] == 100_250.0
 
+    @pytest.mark.parametrize("name", [b"SYSID_THISMAV", b"MAV_SYSID"])
+    def test_the_system_id_is_that_of_the_parameters(self, tmp_path: Path, name: bytes) -> None:
+        messages = read(tmp_path, dataflash_flight() + dataflash_record("PARM", 90_000_000, name, 7))
+        assert {columns.system for columns in messages.values()} == {7}
+
     def test_times_of_arrival_come_from_gps(self, tmp_path: Path) -> None:
         path = tmp_path / "flight.bin"
         path.write_bytes(dataflash_flight())
@@ -251,7 +257,7 @@ class TestPx4:
         assert messages["GLOBAL_POSITION_INT"].fields["relative_alt"][0] == pytest.approx(100_250.0)
 
     def test_vehicle_mode_parameters_and_texts_are_there(self, tmp_path: Path) -> None:
-        messages = read(tmp_path, px4_flight(), "flight.ulg")
+        messages = read(tmp_path, px4_flight(FW_AIRSPD_TRIM=15.0), "flight.ulg")
         heartbeat = messages["HEARTBEAT"]
         assert heartbeat.order[0] == 0
         assert set(heartbeat.fields["autopilot"].tolist()) == {12}
@@ -272,6 +278,10 @@ class TestPx4:
         assert stream.maneuvers == 1
         assert str(stream.vehicle) == "px4 1/1"
         assert stream.channels["q"].rate_hz == pytest.approx(50.0, rel=0.01)
+
+    def test_the_system_id_is_that_of_the_parameters(self, tmp_path: Path) -> None:
+        messages = read(tmp_path, px4_flight(MAV_SYS_ID=7), "flight.ulg")
+        assert {columns.system for columns in messages.values()} == {7}
 
     def test_a_log_cut_off_reads_up_to_the_cut(self, tmp_path: Path) -> None:
         content = px4_flight()
