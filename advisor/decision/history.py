@@ -7,6 +7,7 @@ so that excluding a manoeuvre by hand recomputes every decision that followed it
 from dataclasses import dataclass
 
 from advisor.decision.verdict import Reason
+from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
 
 
@@ -21,6 +22,8 @@ class Flown:
     """What does not speak against it but belongs on its verdict."""
     excluded_because: str | None = None
     """Set when an engineer took it out by hand."""
+    maneuver: Maneuver | None = None
+    """What was flown, for advice on what to fly next."""
 
     @property
     def usable(self) -> Estimate | None:

@@ -1,11 +1,13 @@
 """May we stop testing: flight-test validation under every rule, and the verdict of the one chosen."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, CampaignPlan, Rule
+from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
+from advisor.decision.advice import next_input
 from advisor.decision.history import Flown
 from advisor.decision.information import Knowledge, knowledge
 from advisor.decision.judge import accepted_estimates, rule_results
@@ -18,11 +20,14 @@ INFORMATION_LIMIT_PERCENT = 100.0
 """The rule ``information`` counts in percent of the tolerance."""
 
 
-def flight_test(history: Sequence[Flown], plan: CampaignPlan) -> FlightTestVerdict:
-    """May we stop testing, as of the last manoeuvre of ``history``.
+def flight_test(
+    history: Sequence[Flown], plan: CampaignPlan, aircraft: Aircraft | None = None
+) -> FlightTestVerdict:
+    """May we stop testing and what to fly next, as of the last manoeuvre of ``history``.
 
     The decision says whether the chosen rule's criterion holds *now*; ``stopped_at`` keeps when it
-    first held. They differ when a later manoeuvre contradicts the earlier ones.
+    first held. They differ when a later manoeuvre contradicts the earlier ones. ``aircraft`` tells the
+    limits within which the next input is sought.
     """
     by_rule: dict[str, RuleProgress] = {rule: progress(history, rule, plan) for rule in MANEUVER_RULES}
     chosen = by_rule[plan.rule]
@@ -36,6 +41,7 @@ def flight_test(history: Sequence[Flown], plan: CampaignPlan) -> FlightTestVerdi
         limit_percent=chosen.limit_percent,
         stopped_at=chosen.stopped_at,
         by_rule=by_rule,
+        next=next_input(history, replace(aircraft or Aircraft(), campaign=plan), stop),
         warnings=warnings(history, plan, chosen, stop),
     )
 

@@ -1,0 +1,76 @@
+"""What an input would teach, before it is flown: expected errors and excursions of the short-period model."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.flight.messages import FloatArray
+from advisor.model.response import LOCAL, N_LOCAL, N_PARAMETERS, SHARED, respond
+from advisor.model.short_period import ShortPeriod
+from advisor.oem.covariance import cramer_rao, influence
+from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.surface import Servo
+
+
+@dataclass(frozen=True, slots=True)
+class Instruments:
+    """How angle of attack and pitch rate are measured, and what lies between stick and surface."""
+
+    step_s: tuple[float, float]
+    """Between samples of α and of q."""
+    noise: tuple[float, float]
+    """Standard deviation of α in rad and of q in rad/s."""
+    servo: Servo
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """What a manoeuvre would give."""
+
+    std: FloatArray
+    """(8,) Cramér-Rao bounds, order of ``PARAMETERS``."""
+    alpha_excursion: float
+    """Largest deviation of α from where it began, rad."""
+
+
+def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Expectation | None:
+    """Expected errors of the eight parameters from one manoeuvre with this elevator.
+
+    Parameters
+    ----------
+    theta
+        (8,) the aircraft as believed now.
+    elevator
+        The command, trim included; the record begins in the model's equilibrium at its first value.
+
+    Returns
+    -------
+    Expectation or None
+        None when the input cannot tell the parameters apart, or the model runs away.
+    """
+    end = elevator.t[-1]
+    outputs = {
+        name: Signal(t := np.arange(0.0, end, step), np.zeros_like(t))
+        for name, step in zip(("alpha", "q"), instruments.step_s, strict=True)
+    }
+    assembly = assemble(Problem((Record(elevator, outputs),), servo=instruments.servo))
+    shared = np.array([theta[PARAMETERS.index(s)] if s in PARAMETERS else 0.0 for s in SHARED])
+    model = ShortPeriod(theta)
+    try:
+        begin = -np.linalg.solve(model.a, model.b * elevator.y[0] + model.c)
+    except np.linalg.LinAlgError:
+        return None
+    local = np.zeros((1, N_LOCAL))
+    for name, value in zip(("Z_0", "M_0", "alpha_initial", "q_initial"), (*model.c, *begin), strict=True):
+        local[0, LOCAL.index(name)] = value
+    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
+    if not respond(assembly.grid, shared, local, y, g):
+        return None
+    noise = np.array([*instruments.noise, 0.0, 0.0])
+    effect = influence(assembly, g, noise)
+    if effect is None:
+        return None
+    variance = np.diag(cramer_rao(assembly, effect.rows, noise))
+    alpha = y[assembly.rows[0]["alpha"]]
+    return Expectation(np.sqrt(variance), float(np.max(np.abs(alpha - begin[0]))))

@@ -1,0 +1,65 @@
+"""Inputs a pilot can fly: order of the steps, unit of time, amplitude, direction, and how to say it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.oem.problem import Signal
+
+ORDERS: Mapping[str, tuple[int, ...]] = {
+    "3-2-1-1": (3, 2, 1, 1),
+    "1-1-2-3": (1, 1, 2, 3),
+    "2-1-1": (2, 1, 1),
+    "doublet": (1, 1),
+}
+"""Durations of the steps in units of time; the sides alternate."""
+
+SHORTEST_UNIT_S = 0.2
+"""Shorter steps cannot be flown by hand, and a servo does not follow them."""
+EDGE_S = 0.02
+"""A step takes this long."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepInput:
+    """One test input about trim."""
+
+    order: str
+    """A key of ``ORDERS``."""
+    unit_s: float
+    amplitude_rad: float
+    """Every step's distance from trim."""
+    nose_up_first: bool
+    """The first step's direction; for the others the input is called reverse."""
+
+    @property
+    def duration_s(self) -> float:
+        """From the first step to the return to trim."""
+        return self.unit_s * sum(ORDERS[self.order])
+
+    def elevator(self, trim_rad: float, lead_s: float, length_s: float) -> Signal:
+        """Elevator in rad, trailing edge down positive; the input begins after ``lead_s``."""
+        side = -1.0 if self.nose_up_first else 1.0
+        corners, levels = [0.0], [0.0]
+        onset, level = lead_s, 0.0
+        for units in (*ORDERS[self.order], 0):
+            corners += [onset, onset + EDGE_S]
+            levels += [level, side if units else 0.0]
+            level, side, onset = levels[-1], -side, onset + units * self.unit_s
+        t = np.array([*corners, max(length_s, corners[-1] + EDGE_S)])
+        return Signal(t, trim_rad + self.amplitude_rad * np.array([*levels, 0.0]))
+
+    def spoken(self, travel_rad: float) -> str:
+        """As a pilot hears it: ``reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
+        reverse = "" if self.nose_up_first else "reverse "
+        percent = 100.0 * self.amplitude_rad / travel_rad
+        stick = 5 * round(percent / 5.0) if percent > 20.0 else max(1, round(percent))
+        return f"{reverse}{self.order}, {self.unit_s:.1f} s steps, {stick} % stick"
+
+
+def units_to_try(natural_frequency: float) -> FloatArray:
+    """Units of time around the short period's, in tenths of a second as a pilot can count them."""
+    wanted = np.array([0.5, 0.8, 1.2, 1.6, 2.0, 2.6, 3.2]) / natural_frequency
+    return np.unique(np.maximum(np.round(wanted, 1), SHORTEST_UNIT_S))

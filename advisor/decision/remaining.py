@@ -1,0 +1,89 @@
+"""How many more manoeuvres: what each rule needs when the next ones teach as expected."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import nbinom
+
+from advisor.aircraft import CampaignPlan
+from advisor.decision.history import Flown
+from advisor.decision.information import Z95, Knowledge
+from advisor.decision.pooling import Belief
+from advisor.decision.scatter import SCATTER_FACTOR
+from advisor.decision.verdict import Remaining
+from advisor.flight.messages import FloatArray
+
+MOST = 50
+"""Beyond this many there is no end in sight."""
+_DRAWS = 400
+
+
+def by_information(known: Knowledge, next_std: FloatArray, usable_share: float) -> Remaining:
+    """More manoeuvres until every interval is within its tolerance and the newest is predicted.
+
+    Parameters
+    ----------
+    known
+        What is known now.
+    next_std
+        (8,) expected errors from each further manoeuvre.
+    usable_share
+        Share of manoeuvres that turn out usable.
+    """
+    good = 1 if np.isnan(known.surprise) or not known.predicted else 0
+    while good <= MOST and np.max(share_after(known, next_std, good)) >= 1.0:
+        good += 1
+    if good > MOST:
+        return Remaining(None, None)
+    return Remaining(good, _flights_for(good, usable_share, 0.9))
+
+
+def share_after(known: Knowledge, next_std: FloatArray, more: int) -> FloatArray:
+    """(8,) half-width over tolerance of each interval after ``more`` manoeuvres with errors ``next_std``."""
+    with np.errstate(divide="ignore"):
+        information = 1.0 / known.belief.std**2 + more / next_std**2
+        return np.asarray(Z95 / np.sqrt(information) / known.tolerance)
+
+
+def by_scatter(
+    window: FloatArray, belief: Belief, next_std: FloatArray, plan: CampaignPlan, accepted_share: float
+) -> Remaining:
+    """More manoeuvres until the scatter of the last n accepted ones is below the limit, by simulation.
+
+    Parameters
+    ----------
+    window
+        (k, 8) the last accepted estimates, at most n - 1 of which stay in the next window.
+    belief
+        The values about which the next estimates scatter, with their errors.
+    next_std
+        (8,) that scatter.
+    accepted_share
+        Share of manoeuvres that the rule accepts.
+    """
+    rng = np.random.default_rng(0)
+    centre = np.where(np.isfinite(belief.theta), belief.theta, 0.0)
+    spread = np.where(np.isfinite(next_std), next_std, np.abs(centre))
+    kept = window[len(window) - min(len(window), plan.window - 1) :]
+    future = centre + spread * rng.standard_normal((_DRAWS, MOST, len(centre)))
+    series = np.concatenate([np.broadcast_to(kept, (_DRAWS, *kept.shape)), future], axis=1)
+    windows = np.lib.stride_tricks.sliding_window_view(series, plan.window, axis=1)
+    relative = SCATTER_FACTOR * windows.std(axis=-1, ddof=1) / np.abs(windows.mean(axis=-1))
+    agree = 100.0 * np.linalg.norm(relative, axis=-1) < plan.limit_percent
+    # The windows before the first full one end in manoeuvres that cannot stop the test yet.
+    accepted = np.argmax(agree, axis=1) + plan.window - len(kept)
+    flights = np.cumsum(rng.geometric(accepted_share, (_DRAWS, MOST)), axis=1)
+    needed = np.where(agree.any(axis=1), flights[np.arange(_DRAWS), accepted - 1].astype(float), np.inf)
+    median, p90 = np.quantile(needed, [0.5, 0.9], method="higher")
+    return Remaining(*(int(n) if n <= MOST else None for n in (median, p90)))
+
+
+def usable_share(history: Sequence[Flown]) -> float:
+    """Share of manoeuvres that were usable, with the experience of nine good out of ten before the first."""
+    good = sum(flown.usable is not None for flown in history)
+    return (good + 9.0) / (len(history) + 10.0)
+
+
+def _flights_for(good: int, share: float, confidence: float) -> int:
+    """Flights within which ``good`` usable ones come about with this confidence (negative binomial)."""
+    return good + int(nbinom.ppf(confidence, good, share)) if good else 0

@@ -1,0 +1,156 @@
+"""What next: how many more, what holds the stop back, which input helps most within the limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan, Elevator, Limits
+from advisor.decision.advice import next_input
+from advisor.decision.foresight import Instruments, expect
+from advisor.decision.history import Flown
+from advisor.decision.inputs import StepInput
+from advisor.decision.stopping import flight_test
+from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.record import Channel
+from advisor.oem.surface import Servo
+from tests.decision.campaigns import THETA, estimate
+
+INSTRUMENTS = Instruments((0.02, 0.02), (np.radians(0.15), np.radians(0.5)), Servo())
+AIRCRAFT = Aircraft(campaign=CampaignPlan(rule="information"))
+STANDARD = StepInput("3-2-1-1", 0.7, float(np.radians(2.0)), nose_up_first=True)
+
+
+def manoeuvre(option: StepInput = STANDARD) -> Maneuver:
+    """A manoeuvre of ten seconds, the input after one."""
+    signal = option.elevator(0.0, 1.0, 10.0)
+    t = np.arange(0.0, 10.0, 0.02)
+    first = -option.amplitude_rad if option.nose_up_first else option.amplitude_rad
+    steps = ((1.0, first), (1.0 + option.duration_s, 0.0))
+    span = Span(0.0, 1.0, 1.0 + option.duration_s, 10.0, "3-2-1-1", steps, "quiet")
+    return Maneuver(1, 0, span, {"elevator": Channel("elevator", t, signal.at(t))})
+
+
+def flown(std_percent: float = 5.0, option: StepInput = STANDARD) -> Flown:
+    """A usable manoeuvre in which angle of attack moved by three degrees."""
+    one = estimate(std_percent=std_percent)
+    t = np.arange(0.0, 10.0, 0.02)
+    alpha = np.radians(3.0) * np.sin(t)
+    fits = {
+        name: replace(fit, t=t, measured=alpha, fitted=alpha, noise=noise)
+        for (name, fit), noise in zip(one.fits[0].items(), INSTRUMENTS.noise, strict=True)
+    }
+    return Flown(replace(one, fits=(fits,)), maneuver=manoeuvre(option))
+
+
+def percent_stick(advice: str) -> float:
+    return float(advice.rsplit(", ", 1)[1].split(" %")[0])
+
+
+def test_before_the_first_manoeuvre_the_textbook_input_is_advised_gently() -> None:
+    advice = next_input([], AIRCRAFT, stopped=False)
+    assert advice.advice == "next: 3-2-1-1, 0.5 s steps, 10 % stick, to begin gently"
+    assert advice.remaining.median == 2
+    assert next_input([], replace(AIRCRAFT, campaign=CampaignPlan()), stopped=False).remaining.median == 3
+
+
+def test_a_prior_model_times_the_first_input() -> None:
+    prior = replace(AIRCRAFT, model=dict(zip(PARAMETERS, THETA.tolist(), strict=True)))
+    assert ", 0.6 s steps, " in next_input([], prior, stopped=False).advice
+
+
+def test_after_the_stop_nothing_more_is_needed() -> None:
+    advice = next_input([flown()] * 3, AIRCRAFT, stopped=True)
+    assert (advice.remaining.median, advice.remaining.p90) == (0, 0)
+    assert advice.advice == "no further manoeuvre needed"
+
+
+def test_the_advised_input_is_better_than_the_one_flown() -> None:
+    advice = next_input([flown()], AIRCRAFT, stopped=False)
+    spoken = advice.advice.removeprefix("next: ").removeprefix("reverse ")
+    order, unit, _ = spoken.split(", ")
+    option = StepInput(
+        order, float(unit.removesuffix(" s steps")), np.radians(0.25) * percent_stick(spoken), True
+    )
+    there = expect(THETA, option.elevator(0.0, 1.0, 1.0 + option.duration_s + 4.0), INSTRUMENTS)
+    here = expect(THETA, STANDARD.elevator(0.0, 1.0, 10.0), INSTRUMENTS)
+    assert there is not None
+    assert here is not None
+    assert advice.holding_back is not None
+    k = PARAMETERS.index(advice.holding_back)
+    assert there.std[k] < 0.9 * here.std[k]
+
+
+def test_the_direction_alternates() -> None:
+    assert "reverse" in next_input([flown()], AIRCRAFT, stopped=False).advice
+    other = replace(STANDARD, nose_up_first=False)
+    assert "reverse" not in next_input([flown(option=other)], AIRCRAFT, stopped=False).advice
+
+
+def test_an_angle_of_attack_limit_keeps_the_stick_small() -> None:
+    wide = next_input([flown()], replace(AIRCRAFT, limits=Limits(alpha_deg=8.0)), stopped=False)
+    narrow = next_input([flown()], replace(AIRCRAFT, limits=Limits(alpha_deg=2.0)), stopped=False)
+    assert percent_stick(narrow.advice) < percent_stick(wide.advice)
+
+
+def test_the_next_input_is_at_most_half_as_large_again_as_any_flown() -> None:
+    gentle = replace(STANDARD, amplitude_rad=float(np.radians(0.5)))
+    unlimited = replace(AIRCRAFT, limits=Limits(alpha_deg=30.0))
+    advice = next_input([flown(option=gentle)], unlimited, stopped=False)
+    assert percent_stick(advice.advice) <= round(100.0 * 0.75 / 25.0)
+
+
+def test_full_stick_is_the_travel_of_the_calibration() -> None:
+    short = replace(AIRCRAFT, elevator=Elevator(calibration=((1000, -10.0), (1500, 0.0), (2000, 10.0))))
+    assert percent_stick(next_input([flown()], short, stopped=False).advice) > percent_stick(
+        next_input([flown()], AIRCRAFT, stopped=False).advice
+    )
+
+
+def test_fewer_manoeuvres_remain_the_more_have_been_flown() -> None:
+    strict = replace(AIRCRAFT, campaign=CampaignPlan(rule="information", tolerance={"M_alpha": 0.05}))
+    remaining = []
+    for n in (1, 2, 3):
+        median = next_input([flown(2.0)] * n, strict, stopped=False).remaining.median
+        assert median is not None
+        remaining.append(median)
+    assert remaining[0] > remaining[1] > remaining[2] > 0
+
+
+def test_ninety_per_cent_need_at_least_as_many_as_the_median() -> None:
+    for rule in ("continuous", "separate", "information"):
+        aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule=rule))
+        remaining = next_input([flown(1.0)], aircraft, stopped=False).remaining
+        assert remaining.median is not None
+        assert remaining.p90 is not None
+        assert 1 <= remaining.median <= remaining.p90
+
+
+def test_no_end_in_sight_is_said_as_none() -> None:
+    aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule="continuous"))
+    assert next_input([flown(30.0)] * 3, aircraft, stopped=False).remaining.median is None
+
+
+def test_every_flight_test_verdict_comes_with_advice() -> None:
+    for history in ([], [flown()], [flown()] * 3):
+        assert flight_test(history, AIRCRAFT.campaign, AIRCRAFT).next is not None
+
+
+def test_the_expected_error_is_that_of_repeated_estimates() -> None:
+    from advisor.study.estimating import estimate_copies
+    from advisor.study.flying import Flight, Scene, respond
+
+    scene = Scene()
+    alpha, trim = scene.aircraft.trim()
+    t = np.arange(501) / 50.0
+    elevator = STANDARD.elevator(trim, 1.0, 10.0).at(t)
+    begin = np.array([alpha, 0.0])
+    flight = Flight(t, elevator, respond(scene.aircraft, elevator, begin, 0.02), begin)
+    noise = np.array(INSTRUMENTS.noise)
+    found = estimate_copies(flight, 0.1 * noise, 150, np.random.default_rng(12))
+    expected = expect(scene.theta, STANDARD.elevator(trim, 1.0, 10.0), INSTRUMENTS)
+    assert expected is not None
+    scatter = np.std([e.theta for e in found], axis=0)
+    np.testing.assert_allclose(scatter, 0.1 * expected.std, rtol=0.2)
+    deviation = np.max(np.abs(flight.response[:, 0] - alpha))
+    assert expected.alpha_excursion == pytest.approx(deviation, rel=0.01)

@@ -1,0 +1,39 @@
+"""Inputs a pilot can fly, and how they are said."""
+
+import numpy as np
+import pytest
+
+from advisor.decision.inputs import ORDERS, SHORTEST_UNIT_S, StepInput, units_to_try
+
+
+def test_an_input_is_said_as_a_pilot_hears_it() -> None:
+    spoken = StepInput("3-2-1-1", 0.4, np.radians(9.0), nose_up_first=False).spoken(np.radians(15.0))
+    assert spoken == "reverse 3-2-1-1, 0.4 s steps, 60 % stick"
+    assert (
+        StepInput("doublet", 0.5, np.radians(1.0), True).spoken(np.radians(25.0))
+        == "doublet, 0.5 s steps, 4 % stick"
+    )
+
+
+def test_a_3211_raises_the_nose_first_and_its_steps_last_three_two_one_and_one_units() -> None:
+    elevator = StepInput("3-2-1-1", 0.5, 0.1, nose_up_first=True).elevator(0.02, 1.0, 10.0)
+    middle = [0.5, 1.75, 3.0, 3.75, 4.25, 6.0]
+    expected = 0.02 + 0.1 * np.array([0.0, -1.0, 1.0, -1.0, 1.0, 0.0])
+    np.testing.assert_allclose(elevator.at(np.array(middle)), expected)
+    assert elevator.t[-1] == 10.0
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_every_input_begins_and_ends_at_trim(order: str) -> None:
+    option = StepInput(order, 0.4, 0.1, nose_up_first=False)
+    elevator = option.elevator(-0.03, 0.5, 0.5 + option.duration_s + 3.0)
+    assert elevator.y[0] == elevator.y[-1] == -0.03
+    assert np.all(np.diff(elevator.t) > 0.0)
+
+
+@pytest.mark.parametrize("frequency", [1.5, 2.5, 7.0, 12.0])
+def test_units_to_try_can_be_counted_by_hand_and_span_the_short_period(frequency: float) -> None:
+    units = units_to_try(frequency)
+    assert units[0] >= SHORTEST_UNIT_S
+    np.testing.assert_allclose(units, np.round(units, 1))
+    assert units[-1] > 2.5 / frequency
