@@ -1,0 +1,124 @@
+"""``advisor doctor``: is this telemetry good enough, before flying."""
+
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from advisor.aircraft import Aircraft
+from advisor.commands.options import (
+    UNUSABLE,
+    aircraft_option,
+    json_option,
+    read_aircraft,
+    target_system_option,
+)
+from advisor.problems import Problem, UnusableInputError
+
+if TYPE_CHECKING:
+    from advisor.doctor.examination import Examination
+
+_LOG_ENDINGS = (".tlog", ".bin", ".ulg")
+
+
+@click.command
+@click.argument("target", metavar="LOG|CONN")
+@click.option(
+    "--seconds", type=click.FloatRange(min=1.0), default=15.0, show_default=True, help="Time to listen."
+)
+@click.option(
+    "--request-rates", is_flag=True, help="Ask the vehicle for 50 Hz streams and its servo set-up first."
+)
+@aircraft_option
+@target_system_option
+@json_option
+def command(
+    target: str,
+    seconds: float,
+    request_rates: bool,
+    aircraft_file: Path | None,
+    target_system: int | None,
+    as_json: bool,
+) -> int:
+    """Is this telemetry good enough to identify the aircraft, and what to change if not.
+
+    Reads a log, or listens to a live link. Nothing is sent unless --request-rates asks for it.
+
+    \b
+    Example:
+      advisor doctor udpin:0.0.0.0:14550 --aircraft my-aircraft.yaml
+      advisor doctor flight.tlog --json
+    """
+    aircraft = read_aircraft(aircraft_file)
+    findings, problem = None, None
+    try:
+        if _is_log(target):
+            findings = _examine_log(Path(target), aircraft, target_system)
+        else:
+            findings = _examine_link(target, aircraft, target_system, seconds, request_rates)
+    except UnusableInputError as error:
+        problem = error.problem
+    if as_json:
+        from advisor.doctor.document import doctor_document
+
+        click.echo(json.dumps(doctor_document(findings, problem), allow_nan=False, indent=1))
+    elif findings is not None:
+        from rich.console import Console
+
+        from advisor.doctor.text import ExaminationText
+
+        Console(highlight=False, soft_wrap=True).print(ExaminationText(findings))
+    sentence = problem or _first_obstacle(findings)
+    if sentence is None:
+        return 0
+    click.echo(f"{target}: {sentence}", err=True)
+    return UNUSABLE
+
+
+def _is_log(target: str) -> bool:
+    """A file, or what can only be meant as one: neither a network address nor a device."""
+    if Path(target).is_file() or target.lower().endswith(_LOG_ENDINGS):
+        return True
+    return ":" not in target and "," not in target and not target.startswith("/dev/")
+
+
+def _first_obstacle(findings: "Examination | None") -> Problem | None:
+    stopping = [limit for limit in findings.limits if limit.stops] if findings else []
+    return (
+        Problem(stopping[0].code, f"{stopping[0].text}.", f"Mend: {stopping[0].fix}.") if stopping else None
+    )
+
+
+def _examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Examination":
+    from advisor.doctor.examiner import Examiner
+    from advisor.mavlink.logs import open_log
+
+    examiner = Examiner(aircraft, target_system)
+    for columns in open_log(log):
+        examiner.feed(columns)
+    return examiner.findings()
+
+
+def _examine_link(
+    connection: str, aircraft: Aircraft, target_system: int | None, seconds: float, request_rates: bool
+) -> "Examination":
+    from advisor.doctor.examiner import Examiner
+    from advisor.mavlink.inquiry import Inquiry
+    from advisor.mavlink.link import Link
+    from advisor.mavlink.outgoing import Talker
+    from advisor.mavlink.rates import STREAMS, RateRequest
+
+    talkers: list[Talker] = []
+    if request_rates:
+        talkers = [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
+    examiner = Examiner(aircraft, target_system)
+    with Link(connection, target_system=target_system, talkers=talkers) as link:
+        click.echo(f"Listening on {connection} for {seconds:g} s ...", err=True)
+        until_s = time.monotonic() + seconds
+        while time.monotonic() < until_s:
+            examiner.feed(link.read(0.1))
+        for notice in link.take_notices():
+            click.echo(notice.text, err=True)
+        return examiner.findings(lost_percent=link.statistics.lost_percent)

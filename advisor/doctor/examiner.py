@@ -1,0 +1,196 @@
+"""The examination: messages in, findings out; no input or output of its own."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.doctor.asking import how_to_ask
+from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
+from advisor.doctor.expectation import NOISE, TYPICAL, Belief, expect, frequency
+from advisor.doctor.instruments import alpha_limits, clock_limits, elevator_limits, loss_limits
+from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
+from advisor.doctor.survey import Arrival, Survey
+from advisor.flight.events import ManeuverFlown
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import Columns
+from advisor.flight.stream import FlightStream
+from advisor.flight.suitability import problems
+from advisor.flight.surfaces import Surface
+from advisor.flight.track import ChannelStatus
+from advisor.model.short_period import ShortPeriod
+from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import estimate_jointly
+from advisor.problems import Problem
+
+_PLAUSIBLE_RAD_S = (0.5, 40.0)
+_DERIVED_RENEWAL_HZ = 20.0  # ArduPilot refreshes AOA_SSA no faster; on the ground its value stands still
+
+
+class Examiner:
+    """Listens to a log or link, then gives its findings.
+
+    Parameters
+    ----------
+    aircraft
+        The aircraft file.
+    target_system
+        System id of the vehicle; None: the first one heard.
+    """
+
+    def __init__(self, aircraft: Aircraft, target_system: int | None = None) -> None:
+        self._aircraft = aircraft
+        self._stream = FlightStream(aircraft, target_system)
+        self._survey: Survey | None = None
+        self._maneuvers: list[Maneuver] = []
+
+    def feed(self, columns: Sequence[Columns]) -> None:
+        """Take the next messages."""
+        self._keep(self._stream.feed(columns))
+        vehicle = self._stream.vehicle
+        if self._survey is None and vehicle is not None:
+            self._survey = Survey(vehicle.system, vehicle.component)
+        if self._survey is not None:
+            self._survey.feed(columns)
+
+    def findings(self, lost_percent: float | None = None) -> Examination:
+        """What was found; to be called once, at the end.
+
+        Parameters
+        ----------
+        lost_percent
+            Share of packets lost, when a live link counted them.
+        """
+        self._keep(self._stream.finish())
+        vehicle = self._stream.vehicle
+        belief = self._belief()
+        arrivals = {arrival.name: arrival for arrival in self._survey.arrivals} if self._survey else {}
+        clocks = self._survey.clocks if self._survey else None
+        paced = self._paced(arrivals)
+        channels = {
+            name: status
+            for name, status in self._stream.channels.items()
+            if name in paced or name != "elevator"
+        }
+        autopilot = vehicle.autopilot if vehicle else ""
+        found = problems(vehicle, self._stream.other_systems, self._stream.elevator, channels, maneuvers=1)
+        limits = [_stopping(problem) for problem in found if problem.code != "rate"]
+        complete = {"elevator", "q", "alpha"} <= paced.keys()
+        speed = self._airspeed(paced)
+        if complete:
+            limits += rate_limits(paced, belief, autopilot, speed)
+        period_s = 2.0 * np.pi / frequency(belief.model)
+        limits += steadiness_limits(arrivals, {p.message for p in paced.values()}, period_s)
+        if vehicle is not None and complete:
+            limits += self._speed_limits(paced, belief, autopilot, speed)
+            limits += alpha_limits(self._stream.channels["alpha"], autopilot)
+        elevator = self._elevator()
+        limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
+        limits += clock_limits(clocks) if clocks else []
+        limits += loss_limits(lost_percent)
+        rates = {name: channel.renewed_hz for name, channel in paced.items()}
+        return Examination(
+            vehicle=vehicle,
+            messages=tuple(arrivals.values()),
+            clocks=clocks,
+            elevator=elevator,
+            alpha=self._alpha(paced),
+            limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
+            expectation=expect(belief, rates, speed) if complete else None,
+            belief=belief,
+        )
+
+    def _keep(self, events: Sequence[object]) -> None:
+        self._maneuvers += [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+
+    def _belief(self) -> Belief:
+        """The aircraft and its noise as far as they are known: the file's model, else what was flown."""
+        flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
+        noise, colour = dict(NOISE), np.ones(len(PARAMETERS))
+        if isinstance(flown, Estimate):
+            noise |= {name: fit.noise for name, fit in flown.fits[0].items()}
+            colour = np.maximum(1.0, flown.std / flown.std_cr)
+        if {"Z_alpha", "M_alpha", "M_q", "M_delta_e"} <= self._aircraft.model.keys():
+            model = ShortPeriod.from_mapping(self._aircraft.model)
+            return Belief(model, noise, "the model in the aircraft file", colour)
+        if isinstance(flown, Estimate):
+            model = ShortPeriod(flown.theta)
+            if _PLAUSIBLE_RAD_S[0] < frequency(model) < _PLAUSIBLE_RAD_S[1]:
+                source = f"an estimate from the {len(self._maneuvers)} manoeuvres flown"
+                return Belief(model, noise, source, colour)
+        return Belief(
+            TYPICAL, noise, "a typical aircraft of 10 kg (yours: model in the aircraft file)", colour
+        )
+
+    def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
+        """The channels that identification lives on, with the messages that pace them."""
+        paced = {}
+        for name in ("elevator", "q", "alpha", "a_z", "theta"):
+            status = self._stream.channels.get(name)
+            message = _message(status) if status else ""
+            arrival = arrivals.get(message)
+            if status is None or arrival is None or not arrival.rate_hz > 0.0:
+                continue
+            renewed_hz = arrival.rate_hz
+            if name == "alpha":
+                renewed_hz = min(renewed_hz, _renewal(arrival, status))
+            paced[name] = Paced(name, message, arrival.rate_hz, renewed_hz)
+        return paced
+
+    def _airspeed(self, paced: dict[str, Paced]) -> float | None:
+        """A speed for the specific force; None when none is measured or given."""
+        if self._aircraft.airspeed_m_s is not None:
+            return self._aircraft.airspeed_m_s
+        recent = self._stream.recent("airspeed", 60.0)
+        if recent is None or len(recent) == 0:
+            return None
+        return max(10.0, float(np.median(recent.y)))  # on the ground: a speed to fly at
+
+    def _elevator(self) -> ElevatorFound | None:
+        elevator = self._stream.elevator
+        if not isinstance(elevator, Surface):
+            return None
+        pulses = np.arange(800.0, 2201.0)
+        angle = np.degrees(elevator.deflection(np.repeat(pulses[:, None], len(elevator.outputs), axis=1)))
+        return ElevatorFound(elevator.outputs, float(np.max(np.abs(np.diff(angle)))), elevator.calibrated)
+
+    def _alpha(self, paced: dict[str, Paced]) -> AlphaFound | None:
+        status = self._stream.channels.get("alpha")
+        if status is None or "alpha" not in paced:
+            return None
+        source = status.source.removesuffix(".AOA")
+        return AlphaFound(source, status.provenance, paced["alpha"].renewed_hz)
+
+    def _speed_limits(
+        self, paced: dict[str, Paced], belief: Belief, autopilot: str, speed: float | None
+    ) -> list[Limit]:
+        """Without air speed or specific force some errors are larger."""
+        if speed is None:
+            text = "No air speed arrives: derivatives cannot be referred to one speed, nor a_z be used"
+            fix = how_to_ask("VFR_HUD", autopilot) + "; or give airspeed_m_s in the aircraft file"
+            cost = cost_of_missing("a_z", paced, belief, None)
+            return [Limit("no_airspeed", text, fix, std_ratio=cost)]
+        if "a_z" not in paced:
+            text = "No specific force arrives (RAW_IMU, SCALED_IMU or HIGHRES_IMU)"
+            fix = how_to_ask("HIGHRES_IMU" if autopilot == "px4" else "RAW_IMU", autopilot)
+            cost = cost_of_missing("a_z", paced, belief, speed)
+            return [Limit("no_accelerometer", text, fix, std_ratio=cost)]
+        return []
+
+
+def _stopping(problem: Problem) -> Limit:
+    fix = problem.fix.rstrip(".")
+    if problem.code == "no_elevator":
+        fix += "; on a live link --request-rates asks the vehicle for them"
+    return Limit(problem.code, problem.text.rstrip("."), fix, stops=True)
+
+
+def _message(status: ChannelStatus) -> str:
+    """The message that sets the pace of a channel."""
+    return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
+
+
+def _renewal(arrival: Arrival, status: ChannelStatus) -> float:
+    if np.isfinite(arrival.renewed_hz):
+        return arrival.renewed_hz
+    return _DERIVED_RENEWAL_HZ if status.provenance == "derived" else arrival.rate_hz

@@ -1,0 +1,181 @@
+"""What a standard manoeuvre would teach at these rates: expected errors, from the model's sensitivities.
+
+Nothing is simulated with noise. The information a measurement carries follows from how it
+would change with each parameter (Cramér-Rao); to that comes what a sampled command leaves
+open: where between two samples the edges of the input lay.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.flight.messages import FloatArray
+from advisor.model.response import LOCAL, N_LOCAL, N_SHARED, OUTPUTS, SHARED, respond
+from advisor.model.short_period import ShortPeriod
+from advisor.oem.covariance import cramer_rao, influence
+from advisor.oem.problem import Assembly, Problem, Record, Signal, assemble
+
+UNITS_OF_TIME = (3, 2, 1, 1)
+RESPONSE_ALPHA_DEG = 4.0
+"""The input is sized for this largest change of angle of attack: clear of noise, clear of the stall."""
+NOISE = {"alpha": np.radians(0.2), "q": np.radians(0.2), "a_z": 0.3, "theta": np.radians(0.1)}
+"""Noise assumed where none was measured, rad, rad/s, m/s², rad: small autopilots in calm air."""
+
+_LEAD_IN_S = 1.0
+_EDGES_S = (0.04, 0.05, 0.06, 0.07, 0.08)
+"""Time a hand takes for a step of the stick."""
+_SHIFT_S = 2e-3
+
+TYPICAL = ShortPeriod.from_mapping(
+    {"Z_alpha": -4.0, "Z_delta_e": -0.3, "M_alpha": -40.0, "M_q": -4.0, "M_delta_e": -45.0}
+)
+"""A fixed-wing aircraft of about 10 kg at 25 m/s, for want of a better guess: 7.5 rad/s, damping 0.5."""
+
+
+@dataclass(frozen=True, slots=True)
+class Belief:
+    """What the expected errors rest on."""
+
+    model: ShortPeriod
+    noise: Mapping[str, float]
+    """Standard deviation of each output's measurement noise, SI, keys as in ``NOISE``."""
+    source: str
+    """Where they come from, in words."""
+    colour: FloatArray = field(default_factory=lambda: np.ones(len(PARAMETERS)))
+    """Shape (8,). Corrected errors over Cramér-Rao bounds as found in flight: 1 for white residuals."""
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """Expected errors of one standard 3-2-1-1."""
+
+    std: Mapping[str, float]
+    """Parameter name to its expected standard deviation; NaN where these rates cannot tell it."""
+    unit_s: float
+    """Length of one unit of time of the manoeuvre."""
+    amplitude_deg: float
+    """Elevator amplitude on either side of trim."""
+
+
+def frequency(model: ShortPeriod) -> float:
+    """How fast the aircraft answers, rad/s: natural frequency, or its fastest mode when it has none."""
+    natural = model.natural_frequency
+    return natural if np.isfinite(natural) and natural > 0.0 else float(np.max(np.abs(model.eigenvalues)))
+
+
+def expect(belief: Belief, rates_hz: Mapping[str, float], airspeed_m_s: float | None) -> Expectation:
+    """Expected errors of a 3-2-1-1 matched to the aircraft.
+
+    Parameters
+    ----------
+    belief
+        What the aircraft and its instruments are believed to be.
+    rates_hz
+        Rates at which ``elevator``, ``alpha``, ``q`` and, when they are there, ``a_z`` and
+        ``theta`` bring new values.
+    airspeed_m_s
+        Enters the specific force; None: not measured, so that a_z cannot be used.
+    """
+    model = belief.model
+    unit_s = float(np.clip(2.0 / frequency(model), 0.1, 3.0))
+    edges = _LEAD_IN_S + unit_s * np.cumsum([0, *UNITS_OF_TIME])
+    end_s = float(edges[-1]) + max(2.0, 10.0 * unit_s)
+    outputs = [name for name in OUTPUTS if name in rates_hz and (name != "a_z" or airspeed_m_s)]
+    shape = _assembly(edges, 1.0, end_s, rates_hz, outputs, airspeed_m_s)
+    unit_response = _answer(shape, model)
+    peak = float(np.max(np.abs(unit_response[shape.rows[0]["alpha"]])))
+    amplitude = np.radians(RESPONSE_ALPHA_DEG) / peak
+    std = belief.colour * _errors(belief, edges, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
+    return Expectation(dict(zip(PARAMETERS, std.tolist(), strict=True)), unit_s, float(np.degrees(amplitude)))
+
+
+def _errors(
+    belief: Belief,
+    edges: FloatArray,
+    amplitude: float,
+    end_s: float,
+    rates_hz: Mapping[str, float],
+    outputs: list[str],
+    airspeed_m_s: float | None,
+) -> FloatArray:
+    def assembly(at: FloatArray) -> Assembly:
+        return _assembly(at, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
+
+    model = belief.model
+    manoeuvre = assembly(edges)
+    sensitivities = np.empty((len(manoeuvre.z), N_SHARED + N_LOCAL))
+    respond(manoeuvre.grid, *_parameters(model), np.empty(len(manoeuvre.z)), sensitivities)
+    noise = np.array([belief.noise.get(name, NOISE[name]) for name in OUTPUTS])
+    effect = influence(manoeuvre, sensitivities, noise)
+    if effect is None:
+        return np.full(len(PARAMETERS), np.nan)
+    covariance = cramer_rao(manoeuvre, effect.rows, noise)
+    lateness = edge_error_s(rates_hz["elevator"]) ** 2
+    for k in range(len(edges)):
+        shift = np.zeros(len(edges))
+        shift[k] = _SHIFT_S
+        slope = (_answer(assembly(edges + shift), model) - _answer(assembly(edges - shift), model)) / (
+            2.0 * _SHIFT_S
+        )
+        moved = effect.rows.T @ slope
+        covariance += np.outer(moved, moved) * lateness
+    result: FloatArray = np.sqrt(np.diag(covariance))
+    return result
+
+
+def edge_error_s(rate_hz: float) -> float:
+    """Root mean square error in time of an edge of the command, sampled and joined by straight lines.
+
+    Over edges of several lengths and all ways the samples may fall on them: the area between
+    the edge and the lines, over the edge's height.
+    """
+    interval_s = 1.0 / rate_hz
+    errors = []
+    for edge_s in _EDGES_S:
+        reach = np.ceil(edge_s / interval_s) + 1.0
+        t = np.linspace(-reach * interval_s, edge_s + reach * interval_s, 2001)
+        ramp = np.clip(t / edge_s, 0.0, 1.0)
+        for phase in (np.arange(20) + 0.5) / 20:
+            samples = (np.arange(-reach - 1.0, 2.0 * reach + 1.0) + phase) * interval_s
+            joined = np.interp(t, samples, np.clip(samples / edge_s, 0.0, 1.0))
+            errors.append(np.trapezoid(joined - ramp, t))
+    return float(np.sqrt(np.mean(np.square(errors))))
+
+
+def _answer(assembly: Assembly, model: ShortPeriod) -> FloatArray:
+    y = np.empty(len(assembly.z))
+    respond(assembly.grid, *_parameters(model), y, np.empty((0, N_SHARED + N_LOCAL)))
+    return y
+
+
+def _parameters(model: ShortPeriod) -> tuple[FloatArray, FloatArray]:
+    values = dict(zip(PARAMETERS, model.theta.tolist(), strict=True))
+    # From trim: constants and initial states are zero.
+    return np.array([values.get(name, 0.0) for name in SHARED]), np.zeros((1, len(LOCAL)))
+
+
+def _assembly(
+    edges: FloatArray,
+    amplitude: float,
+    end_s: float,
+    rates_hz: Mapping[str, float],
+    outputs: list[str],
+    airspeed_m_s: float | None,
+) -> Assembly:
+    """The manoeuvre as the estimator would see it, every output at its own stamps."""
+    levels = amplitude * np.array([0.0, -1.0, 1.0, -1.0, 1.0, 0.0])
+    half = float(np.median(_EDGES_S)) / 2.0
+    corners = np.repeat(edges, 2) + np.tile([-half, half], len(edges))
+    command = Signal(
+        np.concatenate([[0.0], corners, [end_s]]),
+        np.concatenate([[0.0], np.repeat(levels, 2)[1:-1], [0.0]]),
+    )
+    measured = {}
+    for name in outputs:
+        t = np.arange(0.0, end_s, 1.0 / rates_hz[name])
+        measured[name] = Signal(t, np.zeros(len(t)))
+    speed = None if airspeed_m_s is None else Signal(np.array([0.0, end_s]), np.full(2, airspeed_m_s))
+    record = Record(elevator=command, outputs=measured, airspeed=speed)
+    return assemble(Problem(records=(record,)))

@@ -1,0 +1,104 @@
+"""What the instruments and clocks can and cannot do, whatever their rates."""
+
+from advisor.aircraft import Elevator
+from advisor.doctor.asking import how_to_ask
+from advisor.doctor.examination import ElevatorFound, Limit
+from advisor.doctor.survey import Clocks
+from advisor.flight.track import ChannelStatus
+
+COARSE_DEG = 0.5
+"""Resolution of the command beyond which small steps are no longer steps."""
+LOSSY_PERCENT = 5.0
+DRIFTING_PERCENT = 1.0
+
+_A_VANE = "fit a vane that sends NAMED_VALUE_FLOAT (alpha.source: named_value:NAME)"
+
+
+def alpha_limits(alpha: ChannelStatus, autopilot: str) -> list[Limit]:
+    """What it means that the angle of attack is no vane's."""
+    if alpha.provenance != "derived":
+        return []
+    if alpha.source.startswith("AOA_SSA"):
+        text = "AOA_SSA is the autopilot's own estimate, not a vane: late, and blind to gusts"
+        return [Limit("alpha_derived", text, f"fly in calm air, or {_A_VANE}")]
+    text = "Angle of attack is derived from pitch, climb rate and air speed: late, and blind to gusts"
+    better = f"ask for AOA_SSA over MAVLink 2: {how_to_ask('AOA_SSA', autopilot)}; or "
+    return [Limit("alpha_derived", text, (better if autopilot == "ardupilot" else "") + _A_VANE)]
+
+
+def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
+    """Calibration, resolution and servo."""
+    limits = []
+    if not found.calibrated:
+        outputs = " and ".join(map(str, found.outputs))
+        limits.append(
+            Limit(
+                "calibration",
+                f"Output {outputs} is not calibrated: full strokes of SERVOn_MIN/TRIM/MAX count as 25 deg, "
+                "so Z_delta_e and M_delta_e have an assumed scale",
+                "measure the deflection at three pulse widths and give elevator.calibration in the aircraft "
+                "file",
+            )
+        )
+    if found.resolution_deg > COARSE_DEG:
+        limits.append(
+            Limit(
+                "resolution",
+                f"One microsecond of the elevator's pulse is {found.resolution_deg:.2f} deg "
+                f"(limit {COARSE_DEG:g})",
+                "check elevator.calibration; use more of the servo's travel",
+            )
+        )
+    if elevator.lag_s is None:
+        limits.append(
+            Limit(
+                "servo_unknown",
+                "The servo's lag and delay are not given: the surface does not move as commanded, and "
+                "M_alpha and M_delta_e come out too small (by about half for a lag of 0.14 s)",
+                "measure the servo on the ground and give elevator.lag_s and elevator.delay_s",
+            )
+        )
+    return limits
+
+
+def clock_limits(clocks: Clocks) -> list[Limit]:
+    """Reboots, stamps of another clock, drift."""
+    limits = []
+    if clocks.boots > 1:
+        limits.append(
+            Limit(
+                "reboot",
+                f"The vehicle was switched on {clocks.boots} times within the record",
+                "each power-on counts as a flight of its own; check the supply if it was not meant",
+            )
+        )
+    for name, share in clocks.strayed.items():
+        limits.append(
+            Limit(
+                "clock",
+                f"{100.0 * share:.1f} % of the stamps of {name} lie more than 5 s off the clock of ATTITUDE",
+                f"check that one vehicle alone sends {name} under this system id",
+            )
+        )
+    if abs(clocks.drift_percent) > DRIFTING_PERCENT:
+        limits.append(
+            Limit(
+                "clock_drift",
+                f"The vehicle's clock runs {clocks.drift_percent:+.1f} % against the host's",
+                "check the host's clock; estimates use the vehicle's clock alone and do not suffer",
+            )
+        )
+    return limits
+
+
+def loss_limits(lost_percent: float | None) -> list[Limit]:
+    """Packets a live link lost; None: not counted."""
+    if lost_percent is None or lost_percent <= LOSSY_PERCENT:
+        return []
+    return [
+        Limit(
+            "loss",
+            f"{lost_percent:.1f} % of the packets are lost (limit {LOSSY_PERCENT:g} %)",
+            "lower the rates of messages nobody needs, or check the radio link",
+        )
+    ]

@@ -1,0 +1,124 @@
+"""Are the rates enough for this aircraft: held against its natural frequency, cost in expected errors."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.doctor.asking import GOOD_HZ, how_to_ask
+from advisor.doctor.examination import Limit
+from advisor.doctor.expectation import Belief, Expectation, expect, frequency
+from advisor.doctor.survey import Arrival
+from advisor.flight.suitability import SLOWEST_HZ
+
+FEWEST_PER_PERIOD = 8.0
+"""Samples to one natural period below which the short period cannot be followed."""
+ENOUGH_PER_PERIOD = 20.0
+"""Samples to one natural period above which faster telemetry hardly helps."""
+GAP_INTERVALS = 3.0
+"""A gap is longer than this many intervals of its message."""
+FALLEN = 0.6
+"""Share of the usual rate below which a message counts as cut."""
+
+_PLAIN = {"elevator": "elevator command", "q": "pitch rate", "alpha": "angle of attack"}
+
+
+@dataclass(frozen=True, slots=True)
+class Paced:
+    """One channel and the message that sets its pace."""
+
+    channel: str
+    message: str
+    rate_hz: float
+    """Messages per second."""
+    renewed_hz: float
+    """New values per second, never more than ``rate_hz``."""
+
+
+def rate_limits(
+    paced: Mapping[str, Paced], belief: Belief, autopilot: str, airspeed_m_s: float | None
+) -> list[Limit]:
+    """Limits for every channel that is slow for this aircraft.
+
+    Parameters
+    ----------
+    paced
+        Elevator, q and alpha, and a_z and theta when they are there.
+    """
+    period_s = 2.0 * np.pi / frequency(belief.model)
+    fewest_hz = max(SLOWEST_HZ, FEWEST_PER_PERIOD / period_s)
+    enough_hz = max(SLOWEST_HZ, ENOUGH_PER_PERIOD / period_s)
+    rates = {name: channel.renewed_hz for name, channel in paced.items()}
+    now = expect(belief, rates, airspeed_m_s)
+    limits = []
+    for name in ("elevator", "q", "alpha"):
+        channel = paced[name]
+        if channel.renewed_hz >= enough_hz:
+            continue
+        mended = expect(belief, {**rates, name: float(GOOD_HZ)}, airspeed_m_s)
+        repeats = channel.rate_hz >= enough_hz
+        arrives = f"{channel.message} arrives at {channel.rate_hz:.1f} Hz"
+        if repeats:
+            arrives += f" but is renewed at {channel.renewed_hz:.1f} Hz"
+        limits.append(
+            Limit(
+                "renewal" if repeats else "rate",
+                f"{arrives}: {channel.renewed_hz * period_s:.1f} samples of {_PLAIN[name]} in a natural "
+                f"period of {period_s:.2f} s (at least {fewest_hz * period_s:.0f}, "
+                f"better {enough_hz * period_s:.0f})",
+                _staircase(channel) if repeats else how_to_ask(channel.message, autopilot),
+                stops=channel.renewed_hz < fewest_hz,
+                std_ratio=_ratio(now, mended),
+            )
+        )
+    return limits
+
+
+def steadiness_limits(arrivals: Mapping[str, Arrival], needed: set[str], period_s: float) -> list[Limit]:
+    """Messages that came, but not all the time."""
+    limits = []
+    for name in sorted(needed & arrivals.keys()):
+        arrival = arrivals[name]
+        if arrival.lowest_hz < FALLEN * arrival.rate_hz:
+            limits.append(
+                Limit(
+                    "rate_fell",
+                    f"{name} came at {arrival.rate_hz:.1f} Hz, but at {arrival.lowest_hz:.1f} Hz over its "
+                    "worst five seconds",
+                    "keep other ground stations from setting stream rates (MAVProxy --streamrate=-1; -1 in "
+                    "Mission Planner's telemetry rates) and check the radio link",
+                )
+            )
+        elif arrival.largest_gap_s > max(0.5 * period_s, GAP_INTERVALS / arrival.rate_hz):
+            limits.append(
+                Limit(
+                    "gap",
+                    f"{name} was missing for {arrival.largest_gap_s:.2f} s at its worst",
+                    "check the radio link and its antennas; a manoeuvre with such a gap is flown again",
+                )
+            )
+    return limits
+
+
+def cost_of_missing(
+    channel: str, paced: Mapping[str, Paced], belief: Belief, airspeed_m_s: float | None
+) -> Mapping[str, float]:
+    """What having no a_z, or no air speed to use it with, costs."""
+    rates = {name: p.renewed_hz for name, p in paced.items() if name != channel}
+    with_it = expect(belief, {**rates, channel: float(GOOD_HZ)}, airspeed_m_s or 25.0)
+    return _ratio(expect(belief, rates, airspeed_m_s), with_it)
+
+
+def _staircase(channel: Paced) -> str:
+    return (
+        f"nothing on the link: the sender itself renews {channel.message} at this pace; a vane that sends "
+        "NAMED_VALUE_FLOAT (alpha.source: named_value:NAME) can be faster"
+    )
+
+
+def _ratio(now: Expectation, mended: Expectation) -> dict[str, float]:
+    return {
+        name: float(std / mended.std[name])
+        for name, std in now.std.items()
+        if np.isfinite(std) and mended.std[name] > 0.0
+    }

@@ -1,0 +1,223 @@
+"""How every message of the vehicle arrives: counted on the vehicle's clock, message by message."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.flight.channels import stamps
+from advisor.flight.clocks import BootClock
+from advisor.flight.messages import Columns, FloatArray
+
+# The field whose change shows that a message brings news and not the last value again.
+_TELLING = {
+    "ATTITUDE": ("pitchspeed",),
+    "AOA_SSA": ("AOA",),
+    "VFR_HUD": ("airspeed",),
+    "RAW_IMU": ("xacc", "yacc", "zacc"),
+    "SCALED_IMU": ("xacc", "yacc", "zacc"),
+    "SCALED_IMU2": ("xacc", "yacc", "zacc"),
+    "SCALED_IMU3": ("xacc", "yacc", "zacc"),
+    "HIGHRES_IMU": ("xacc", "yacc", "zacc"),
+    "GLOBAL_POSITION_INT": ("relative_alt", "vx", "vy", "vz"),
+    "SERVO_OUTPUT_RAW": tuple(f"servo{n}_raw" for n in range(1, 9)),
+    "ACTUATOR_OUTPUT_STATUS": ("actuator",),
+    "NAMED_VALUE_FLOAT": ("value",),
+}
+_EVENTS = frozenset({"PARAM_VALUE", "STATUSTEXT", "COMMAND_ACK", "COMMAND_LONG", "AUTOPILOT_VERSION"})
+"""Messages that come when something happens: they have no rate."""
+_SILENCE = 5.0
+"""Intervals this many times the median are gaps of a link, not the pace of a message."""
+_LIVELY_S = 0.5
+"""A value that stands longer than this is at rest: that says nothing about its renewal."""
+_WINDOW_S = 5.0
+"""Stretch over which a rate must hold up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """How one message arrived."""
+
+    name: str
+    count: int
+    rate_hz: float
+    """Messages per second while they came; NaN with fewer than three."""
+    jitter_ms: float
+    """Standard deviation of the intervals between stamps, gaps left out."""
+    largest_gap_s: float
+    """Longest time between two messages within one boot."""
+    renewed_hz: float
+    """How often the value changes while it changes at all; NaN where nothing tells."""
+    lowest_hz: float
+    """Rate of the slowest five seconds within the stretch in which the message came."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clocks:
+    """Whether the stamps can be believed."""
+
+    boots: int
+    """How often the vehicle was switched on within the record."""
+    drift_percent: float
+    """How much faster vehicle time passes than the host's; NaN when it cannot be told."""
+    arrival_jitter_ms: float
+    """Standard deviation of arrival against the vehicle's clock: what the link adds."""
+    strayed: Mapping[str, float]
+    """Message name to the share of its stamps that fit nowhere on the vehicle's clock."""
+
+
+@dataclass(slots=True)
+class _Sender:
+    """What is kept of the messages of one type from one system: stamps and whether they brought news."""
+
+    t: list[FloatArray] = field(default_factory=list)
+    boot: list[NDArray[np.int64]] = field(default_factory=list)
+    news: list[NDArray[np.bool_]] = field(default_factory=list)
+    strayed: int = 0
+    last: FloatArray | None = None
+
+    def news_in(self, values: FloatArray) -> NDArray[np.bool_]:
+        """Which rows differ from the one before; shape (n,)."""
+        if len(values) == 0:
+            return np.zeros(0, dtype=bool)
+        before = values[:1] if self.last is None else self.last
+        self.last = values[-1:]
+        changed: NDArray[np.bool_] = np.any(np.diff(values, axis=0, prepend=before) != 0.0, axis=1)
+        return changed
+
+
+class Survey:
+    """Follows every message of one vehicle.
+
+    ATTITUDE is the clock, as everywhere in the advisor; a message without a stamp takes that
+    of the ATTITUDE before it. A stream without ATTITUDE is counted by its times of arrival.
+
+    Parameters
+    ----------
+    system, component
+        The vehicle.
+    """
+
+    def __init__(self, system: int, component: int) -> None:
+        self._who = (system, component)
+        self._clock = BootClock()
+        self._master_s = np.nan
+        self._senders: dict[str, _Sender] = {}
+        self._clock_pairs: list[FloatArray] = []
+
+    def feed(self, columns: Sequence[Columns]) -> None:
+        """Take messages in order of arrival."""
+        mine = [part for part in columns if (part.system, part.component) == self._who]
+        attitude = next((part for part in mine if part.name == "ATTITUDE"), None)
+        orders, clock, boots = self._advance(attitude)
+        for part in mine:
+            if part.name in _EVENTS:
+                continue
+            at = np.searchsorted(orders, part.order, side="right") - 1
+            self._take(part, clock[at], boots[at])
+        self._master_s = float(clock[-1])
+
+    def _advance(self, attitude: Columns | None) -> tuple[NDArray[np.int64], FloatArray, NDArray[np.int64]]:
+        """The master clock after each ATTITUDE of this batch, and before the first."""
+        order, clock, boots = [-1], [self._master_s], [self._clock.boot]
+        if attitude is not None:
+            ticks = self._clock.advance(np.asarray(attitude.fields["time_boot_ms"], dtype=np.int64))
+            believed = np.isfinite(ticks.t)
+            order += attitude.order[believed].tolist()
+            clock += ticks.t[believed].tolist()
+            boots += ticks.boot[believed].tolist()
+            pairs = np.column_stack([attitude.arrival_s, ticks.t, ticks.boot])[believed]
+            self._clock_pairs.append(pairs)
+        return np.array(order), np.array(clock), np.array(boots)
+
+    def _take(self, part: Columns, master_s: FloatArray, boot: NDArray[np.int64]) -> None:
+        sender = self._senders.setdefault(part.name, _Sender())
+        # A heartbeat before the first ATTITUDE has no vehicle time; it is counted by arrival only.
+        known = np.isfinite(master_s)
+        t = np.where(known, stamps(part, master_s), np.nan)
+        sender.strayed += int(np.count_nonzero(known & ~np.isfinite(t)))
+        telling = _telling(part)
+        # A dataflash log keeps angles and rates apart: a row without the telling field is no message.
+        filled = ~np.all(np.isnan(telling), axis=1) if telling.shape[1] else np.ones(len(part), dtype=bool)
+        sender.t.append(t[filled])
+        sender.boot.append(boot[filled])
+        sender.news.append(sender.news_in(telling[filled]))
+
+    @property
+    def clocks(self) -> Clocks:
+        """What the stamps say of each other."""
+        pairs = np.concatenate(self._clock_pairs) if self._clock_pairs else np.empty((0, 3))
+        strayed = {
+            name: sender.strayed / sum(map(len, sender.t))
+            for name, sender in self._senders.items()
+            if sender.strayed
+        }
+        drift, jitter = _against_the_host(pairs)
+        return Clocks(self._clock.boot + 1, drift, jitter, strayed)
+
+    @property
+    def arrivals(self) -> list[Arrival]:
+        """Every message that arrived, the most frequent first."""
+        found = [_arrival(name, sender) for name, sender in self._senders.items() if any(map(len, sender.t))]
+        return sorted(found, key=lambda arrival: (-arrival.count, arrival.name))
+
+
+def _telling(part: Columns) -> FloatArray:
+    """The fields that tell news from repetition, shape (n, fields)."""
+    names = [name for name in _TELLING.get(part.name, ()) if name in part.fields]
+    columns = [np.asarray(part.fields[name], dtype=np.float64).reshape(len(part), -1) for name in names]
+    return np.column_stack(columns) if columns else np.empty((len(part), 0))
+
+
+def _arrival(name: str, sender: _Sender) -> Arrival:
+    t, boot, news = np.concatenate(sender.t), np.concatenate(sender.boot), np.concatenate(sender.news)
+    order = np.lexsort((t, boot))
+    t, boot, news = t[order], boot[order], news[order]
+    fresh = np.isfinite(t) & np.concatenate([[True], (np.diff(t) != 0.0) | (np.diff(boot) != 0)])
+    steps = _intervals(t[fresh], boot[fresh])
+    if len(steps) < 2:
+        return Arrival(name, len(t), np.nan, np.nan, np.nan, np.nan, np.nan)
+    pace = steps[steps <= _SILENCE * np.median(steps)]
+    renewals = _intervals(t[fresh & news], boot[fresh & news])
+    renewals = renewals[renewals <= max(_LIVELY_S, 3.0 * float(np.median(steps)))]
+    return Arrival(
+        name=name,
+        count=len(t),
+        rate_hz=float(1.0 / np.mean(pace)),
+        jitter_ms=float(1e3 * np.std(pace)),
+        largest_gap_s=float(np.max(steps)),
+        renewed_hz=float(1.0 / np.mean(renewals)) if len(renewals) > 1 else np.nan,
+        lowest_hz=_lowest_rate(t[fresh], boot[fresh]),
+    )
+
+
+def _intervals(t: FloatArray, boot: NDArray[np.int64]) -> FloatArray:
+    """Times between neighbouring stamps of one boot."""
+    same = np.diff(boot) == 0
+    intervals: FloatArray = np.diff(t)[same]
+    return intervals
+
+
+def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
+    """Fewest messages in any stretch of ``_WINDOW_S`` that begins with one, per second."""
+    rates = []
+    for n in np.unique(boot):
+        mine = t[boot == n]
+        whole = mine[mine <= mine[-1] - _WINDOW_S]
+        counts = np.searchsorted(mine, whole + _WINDOW_S) - np.arange(len(whole))
+        rates += (counts / _WINDOW_S).tolist()
+    return float(min(rates)) if rates else np.nan
+
+
+def _against_the_host(pairs: FloatArray) -> tuple[float, float]:
+    """Drift in percent and jitter in ms of arrival against vehicle time, over the longest boot."""
+    if len(pairs) == 0:
+        return np.nan, np.nan
+    boots, counts = np.unique(pairs[:, 2], return_counts=True)
+    arrival, vehicle = pairs[pairs[:, 2] == boots[np.argmax(counts)], :2].T
+    if len(vehicle) < 10 or np.ptp(arrival) <= 0.0 or np.ptp(vehicle) <= 0.0:
+        return np.nan, np.nan
+    slope, offset = np.polyfit(vehicle - vehicle[0], arrival - arrival[0], 1)
+    residual = arrival - arrival[0] - slope * (vehicle - vehicle[0]) - offset
+    return float(100.0 * (1.0 / slope - 1.0)), float(1e3 * np.std(residual))

@@ -1,0 +1,104 @@
+"""The findings as people read them: the verdict first, then what to change, then the tables."""
+
+import math
+
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.table import Table
+from rich.text import Text
+
+from advisor.aircraft import PARAMETERS
+from advisor.doctor.examination import Examination, Limit
+from advisor.doctor.expectation import frequency
+
+_SIGNS = {"ready": "✓", "usable with limits": "!", "not usable": "✗"}
+_STYLES = {"ready": "bold green", "usable with limits": "bold yellow", "not usable": "bold red"}
+_NOTABLE_COST = 1.1
+
+
+class ExaminationText:
+    """Renders an examination with rich."""
+
+    def __init__(self, findings: Examination) -> None:
+        self._findings = findings
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        found = self._findings
+        yield Text(f"{_SIGNS[found.verdict]} {found.verdict.upper()}", style=_STYLES[found.verdict])
+        for limit in found.limits:
+            yield from _told(limit)
+        yield Text()
+        yield Text(self._who())
+        yield Text(self._elevator())
+        yield Text(self._alpha())
+        yield Text(self._clocks())
+        yield Text()
+        yield self._messages()
+        if found.expectation is not None:
+            yield Text()
+            yield Text(
+                f"Expected errors of one 3-2-1-1, steps of {found.expectation.unit_s:.2f} s and "
+                f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.belief.source}, "
+                f"natural frequency {frequency(found.belief.model):.1f} rad/s:"
+            )
+            for name in PARAMETERS:
+                yield Text(f"  {name:<10} ±{found.expectation.std[name]:.3g}")
+
+    def _who(self) -> str:
+        vehicle = self._findings.vehicle
+        if vehicle is None:
+            return "vehicle    none heard"
+        return f"vehicle    {vehicle}, firmware {vehicle.firmware or 'not told'}"
+
+    def _elevator(self) -> str:
+        elevator = self._findings.elevator
+        if elevator is None:
+            return "elevator   not found"
+        outputs = " + ".join(map(str, elevator.outputs))
+        scale = "calibrated" if elevator.calibrated else "not calibrated"
+        return f"elevator   output {outputs}, {scale}, {elevator.resolution_deg:.3f} deg per microsecond"
+
+    def _alpha(self) -> str:
+        alpha = self._findings.alpha
+        if alpha is None:
+            return "alpha      none"
+        return f"alpha      {alpha.source}, {alpha.provenance}, renewed at {alpha.renewed_hz:.1f} Hz"
+
+    def _clocks(self) -> str:
+        clocks = self._findings.clocks
+        if clocks is None or not math.isfinite(clocks.drift_percent):
+            return "clocks     cannot be compared"
+        consistent = "inconsistent" if clocks.strayed else "consistent"
+        return (
+            f"clocks     {consistent}, drift {clocks.drift_percent:+.3f} %, arrival within "
+            f"{clocks.arrival_jitter_ms:.1f} ms, {clocks.boots} power-on{'s' if clocks.boots > 1 else ''}"
+        )
+
+    def _messages(self) -> Table:
+        table = Table(box=None, pad_edge=False)
+        table.add_column("message", no_wrap=True)
+        for column in ("rate Hz", "lowest Hz", "renewed Hz", "jitter ms", "gap s"):
+            table.add_column(column, justify="right", no_wrap=True)
+        for arrival in self._findings.messages:
+            table.add_row(
+                arrival.name,
+                _digits(arrival.rate_hz, 1),
+                _digits(arrival.lowest_hz, 1),
+                _digits(arrival.renewed_hz, 1),
+                _digits(arrival.jitter_ms, 1),
+                _digits(arrival.largest_gap_s, 3),
+            )
+        return table
+
+
+def _told(limit: Limit) -> list[Text]:
+    """A limit, what to do, and what it costs."""
+    lines = [Text(f"  {'✗' if limit.stops else '!'} {limit.text}."), Text(f"    -> {limit.fix}.")]
+    worst = sorted(limit.std_ratio.items(), key=lambda item: -item[1])[:3]
+    notable = [f"{name} {ratio:.1f}" for name, ratio in worst if ratio >= _NOTABLE_COST]
+    if notable:
+        lines.append(Text(f"    costs: expected errors times {', '.join(notable)}"))
+    return lines
+
+
+def _digits(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}" if math.isfinite(value) else "-"
