@@ -100,6 +100,7 @@ class Conductor:
             if batch is None:
                 ended = True
                 campaign.finish()
+                self._arrive()
             elif batch:
                 campaign.feed(batch)
             if self._pending:

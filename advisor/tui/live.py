@@ -1,11 +1,15 @@
 """A live link as the source of a campaign."""
 
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING
 
 from advisor.flight.messages import Columns
 from advisor.mavlink.health import LinkStatistics
-from advisor.mavlink.link import Link
 from advisor.tui.source import Condition, LinkHealth
+
+if TYPE_CHECKING:
+    from advisor.mavlink.link import Link
 
 SILENT_S = 2.0
 LOSS_PERCENT = 5.0
@@ -16,16 +20,24 @@ class LinkSource:
 
     Parameters
     ----------
-    link
-        Started already.
+    opening
+        Makes the link, still closed. It is called and opened by the first ``read``, in the
+        reading thread, so that a screen is painted before the decoders are loaded.
     title
         What the status line calls it.
     over
         Says whether the far end has finished for good; a demonstration knows, a link never does.
     """
 
-    def __init__(self, link: Link, title: str, over: Callable[[], bool] = lambda: False) -> None:
-        self._link, self._title, self._over = link, title, over
+    def __init__(
+        self,
+        opening: "Callable[[], AbstractContextManager[Link]]",
+        title: str,
+        over: Callable[[], bool] = lambda: False,
+    ) -> None:
+        self._opening, self._title, self._over = opening, title, over
+        self._opened: AbstractContextManager[Link] | None = None
+        self._link: Link | None = None
 
     @property
     def title(self) -> str:
@@ -33,13 +45,25 @@ class LinkSource:
         return self._title
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """The next batch; None when the far end has finished and all of it was read."""
+        """The next batch; None when the far end has finished and all of it was read.
+
+        Raises
+        ------
+        UnusableInputError
+            When the connection cannot be opened.
+        """
+        if self._link is None:
+            opened = self._opening()
+            self._link = opened.__enter__()
+            self._opened = opened
         over = self._over()
         columns = self._link.read(timeout_s)
         return None if over and not columns else columns
 
     def health(self) -> LinkHealth:
         """How the data arrive at this moment."""
+        if self._link is None:
+            return LinkHealth("waiting", "Opening the connection.")
         statistics = self._link.statistics
         condition, sentence = _glance(statistics)
         if self._over():
@@ -48,7 +72,9 @@ class LinkSource:
 
     def close(self) -> None:
         """Stop listening; the recording is whole afterwards."""
-        self._link.stop()
+        if self._opened is not None:
+            self._opened.__exit__(None, None, None)
+            self._opened = None
 
 
 def _glance(link: LinkStatistics) -> tuple[Condition, str]:

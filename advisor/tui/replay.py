@@ -9,7 +9,7 @@ from advisor.tui.source import LinkHealth, Playback
 from advisor.tui.timeline import Timeline
 
 STEP_S = 0.1
-_FAST_SLICE_S = 1.0
+_FAST_SLICE_S = 0.5
 
 
 def _wait(changed: Event, seconds: float) -> None:
@@ -45,6 +45,7 @@ class LogPlayer:
         self._paused = False
         self._steps = 0
         self._position_s = 0.0
+        self._ended = False
         self._timeline: Timeline | None = None
         self._changed = Event()
 
@@ -57,7 +58,8 @@ class LogPlayer:
         """The next stretch of the log when its time has come, see `Source.read`."""
         if self._timeline is None:
             self._timeline = Timeline(self._load())
-        if self._position_s >= self._timeline.duration_s:
+        self._ended = self._position_s >= self._timeline.duration_s
+        if self._ended:
             return None
         self._changed.clear()
         if self._steps:
@@ -82,7 +84,7 @@ class LogPlayer:
         if timeline is None:
             return LinkHealth("waiting", f"Reading {self._title}.")
         figures = (("messages", f"{len(timeline)}"), ("length", f"{timeline.duration_s:.0f} s"))
-        if self._position_s >= timeline.duration_s:
+        if self._ended:
             return LinkHealth("ended", "The log has been played to its end.", figures)
         return LinkHealth("good", "A recorded log is being played.", figures)
 
@@ -108,7 +110,7 @@ class LogPlayer:
 
     def rewind(self) -> None:
         """Start again with the first record. Only between two reads."""
-        self._position_s = 0.0
+        self._position_s, self._ended = 0.0, False
         if self._timeline:
             self._timeline.rewind()
 

@@ -27,6 +27,11 @@ def flying_in_words(view: View) -> str:
     return f"{words}; {m_alpha.symbol} {m_alpha.with_interval(settling.value('M_alpha'), std)} {m_alpha.unit}"
 
 
+def _link_in_words(view: View) -> str:
+    """What is wrong with the link; a good one needs no moving numbers."""
+    return "good" if view.health.condition == "good" else view.health.sentence
+
+
 class CrewNotes(Lines):
     """Next input, the manoeuvre in the air, alpha's provenance, warnings."""
 
@@ -38,7 +43,7 @@ class CrewNotes(Lines):
             f"next        {next_input.removeprefix('next: ')}",
             f"in the air  {flying_in_words(view)}",
             f"α           {alpha_in_words(view)}",
-            f"link        {view.health.sentence}",
+            f"link        {_link_in_words(view)}",
             *(f"! {warning}" for warning in verdict.warnings),
         ]
         self.write("\n".join(lines))

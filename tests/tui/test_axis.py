@@ -1,0 +1,57 @@
+"""Axes hold their data and speak in round numbers."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from advisor.tui.plot.axis import Axis, round_axis
+from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
+
+values = st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=8)
+
+
+@given(values, st.integers(1, 12))
+def test_an_axis_holds_its_data_and_has_at_least_two_ticks(data: list[float], intervals: int):
+    axis = round_axis([np.array(data)], intervals)
+    slack = 1e-6 * (axis.high - axis.low)
+    assert axis.low - slack <= min(data)
+    assert max(data) <= axis.high + slack
+    assert 2 <= len(axis.ticks) <= intervals + 3
+
+
+@pytest.mark.parametrize("empty", [[], [np.array([])], [np.array([np.nan, np.inf])]])
+def test_without_finite_data_the_axis_goes_from_0_to_1(empty: list[np.ndarray]):
+    axis = round_axis(empty, 4)
+    assert (axis.low, axis.high) == (0.0, 1.0)
+
+
+def test_a_constant_gets_room_around_it():
+    axis = round_axis([np.full(5, -9.81)], 3)
+    assert axis.low < -9.81 < axis.high
+
+
+def test_labels_have_the_decimals_of_the_step():
+    assert Axis(0.0, 1.0, 0.5).labels == ["0.0", "0.5", "1.0"]
+    assert Axis(-20.0, 20.0, 20.0).labels == ["-20", "0", "20"]
+
+
+def test_growing_data_do_not_move_the_axis_until_they_need_to():
+    axes = {round_axis([np.linspace(0.0, end, 50)], 4) for end in np.linspace(5.0, 10.0, 100)}
+    assert len(axes) <= 7
+
+
+def test_counts_have_ticks_at_whole_numbers():
+    axis = whole(round_axis([np.array([1.0, 2.0, 3.0])], 12))
+    assert all(tick == int(tick) for tick in axis.ticks)
+
+
+def test_the_side_names_each_tick_at_its_height():
+    assert down_the_side(Axis(0.0, 10.0, 5.0), 3, 4) == [" 10 ", "  5 ", "  0 "]
+
+
+@given(st.integers(16, 200))
+def test_the_foot_keeps_to_its_width_and_ends_with_the_unit(width: int):
+    foot = along_the_foot(Axis(0.0, 100.0, 5.0), "t [s]", 4, width)
+    assert len(foot) == width
+    assert foot.endswith("t [s]")

@@ -1,0 +1,62 @@
+"""Numbers as people read them, and letters at arm's length."""
+
+from typing import get_args
+
+import pytest
+
+from advisor.aircraft import PARAMETERS as NAMES
+from advisor.tui.advice import Word
+from advisor.tui.letters import block_letters
+from advisor.tui.panes.gauge import bar
+from advisor.tui.words import PARAMETERS, channel, clock, percent
+
+
+def test_every_parameter_has_a_symbol_and_a_unit():
+    assert set(PARAMETERS) == set(NAMES)
+
+
+def test_the_interval_decides_how_many_digits_a_value_has():
+    assert PARAMETERS["M_alpha"].with_interval(-48.3217, 1.07) == "−48.3 ± 2.1"
+    assert PARAMETERS["Z_alpha"].with_interval(-3.21987, 0.0041) == "−3.2199 ± 0.0080"
+
+
+def test_people_read_degrees():
+    assert channel("q").label == "q [deg/s]"
+    assert PARAMETERS["Z_0"].with_interval(0.1, 0.01) == "5.7 ± 1.1"
+
+
+def test_a_channel_nobody_named_keeps_its_name():
+    assert channel("flap").symbol == "flap"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(None, "-"), (float("inf"), "-"), (3.14, "3.1 %"), (131.2, "131 %")]
+)
+def test_percentages_are_short(value: float | None, text: str):
+    assert percent(value) == text
+
+
+def test_vehicle_time_reads_as_minutes_and_seconds():
+    assert clock(187.4) == "3:07"
+
+
+@pytest.mark.parametrize("word", get_args(Word))
+@pytest.mark.parametrize("size", [(76, 5), (116, 15), (196, 30), (20, 5)])
+def test_every_word_fits_its_space(word: str, size: tuple[int, int]):
+    lines = block_letters(word, *size).split("\n")
+    assert len(lines) <= size[1]
+    assert max(len(line) for line in lines) <= max(size[0], len(word))
+
+
+@pytest.mark.parametrize("word", get_args(Word))
+def test_eighty_columns_suffice_for_block_letters(word: str):
+    assert "█" in block_letters(word, 76, 5)
+
+
+@pytest.mark.parametrize(("value", "filled"), [(0.0, 0), (25.0, 12), (50.0, 24), (500.0, 24)])
+def test_the_bar_is_half_full_at_the_limit(value: float, filled: int):
+    cells = bar(value, 25.0, 24)
+    assert len(cells) == 24
+    assert cells[12] == "┃"
+    assert abs(cells.count("█") - filled) <= 2
+    assert cells.endswith("►") == (value > 50.0)
