@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan
+from advisor.decision.choice import Choice, best_input
 from advisor.decision.conditions import Conditions, find_conditions
-from advisor.decision.foresight import Expectation, expect
 from advisor.decision.history import Flown
 from advisor.decision.information import Knowledge, knowledge
-from advisor.decision.inputs import ORDERS, StepInput, units_to_try
+from advisor.decision.inputs import StepInput
 from advisor.decision.judge import accepted_estimates
 from advisor.decision.remaining import by_information, by_scatter, share_after, usable_share
 from advisor.decision.scatter import scatter_by_parameter, window
@@ -26,28 +26,31 @@ def next_input(history: Sequence[Flown], aircraft: Aircraft, stopped: bool) -> N
     plan = aircraft.campaign
     if stopped:
         return NextInput("no further manoeuvre needed", Remaining(0, 0))
-    usable = [e for flown in history if (e := flown.usable)]
     conditions = find_conditions(history, aircraft)
     if conditions is None:
         return NextInput(_first_input(aircraft), _without_a_model(history, plan))
-    known = knowledge(usable, plan)
-    repeated = expect(conditions.theta, conditions.flown, conditions.instruments)
-    measured = np.sqrt(np.mean([np.diag(e.covariance) for e in usable], axis=0))
-    options = _options(conditions)
-    if repeated is None or not options:
-        spoken = "the same again"
-        return NextInput(
-            f"next: {spoken}", _remaining(history, plan, known, measured), _held_by(history, plan, known)
-        )
-    # What the present record says of errors (colour of the residuals, further outputs) holds for the
-    # next one too; the prediction supplies the ratio between inputs.
-    expected = [(option, measured * e.std / repeated.std) for option, e in options]
-    best, std = min(expected, key=lambda pair: _unrest(pair[1], plan, known))
-    return NextInput(
-        f"next: {best.spoken(conditions.travel_rad)}",
-        _remaining(history, plan, known, std),
-        _held_by(history, plan, known),
-    )
+    known = knowledge([e for flown in history if (e := flown.usable)], plan)
+    choice = _choose(conditions, known, plan)
+    if choice is None:
+        spoken, std = "the same again", conditions.last_std
+    else:
+        spoken, std = choice[0].spoken(conditions.travel_rad), choice[1]
+    return NextInput(f"next: {spoken}", _remaining(history, plan, known, std), _held_by(history, plan, known))
+
+
+def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | None:
+    """The input that helps most now; None before the first usable manoeuvre."""
+    conditions = find_conditions(history, aircraft)
+    if conditions is None:
+        return None
+    known = knowledge([e for flown in history if (e := flown.usable)], aircraft.campaign)
+    choice = _choose(conditions, known, aircraft.campaign)
+    return choice[0] if choice else None
+
+
+def _choose(conditions: Conditions, known: Knowledge, plan: CampaignPlan) -> Choice | None:
+    std = conditions.last_std * np.sqrt(known.widening)
+    return best_input(conditions, std, lambda expected: _unrest(expected, plan, known))
 
 
 def _unrest(std: FloatArray, plan: CampaignPlan, known: Knowledge) -> float:
@@ -74,39 +77,6 @@ def _held_by(history: Sequence[Flown], plan: CampaignPlan, known: Knowledge) -> 
         if members is not None:
             return PARAMETERS[int(np.nanargmax(scatter_by_parameter(members, plan.criterion)))]
     return known.holding_back
-
-
-def _options(conditions: Conditions) -> list[tuple[StepInput, Expectation]]:
-    """Every input worth trying, as large as the limits allow, in the direction not flown last."""
-    model = ShortPeriod(conditions.theta)
-    frequency = model.natural_frequency
-    if not np.isfinite(frequency) or frequency <= 0.0:
-        return []
-    nose_up_first = conditions.last.span.steps[0][1] > 0.0
-    found = []
-    for order in ORDERS:
-        for unit in units_to_try(frequency):
-            option = _as_large_as_allowed(
-                StepInput(order, float(unit), conditions.largest_rad, nose_up_first), conditions
-            )
-            if option is not None:
-                found.append(option)
-    return found
-
-
-def _as_large_as_allowed(option: StepInput, conditions: Conditions) -> tuple[StepInput, Expectation] | None:
-    """The input scaled so that α stays within its limit; the model is linear, so scaling is exact."""
-    length = conditions.lead_s + option.duration_s + conditions.free_s
-    full = expect(
-        conditions.theta,
-        option.elevator(conditions.trim_rad, conditions.lead_s, length),
-        conditions.instruments,
-    )
-    if full is None:
-        return None
-    scale = min(1.0, conditions.alpha_rad / full.alpha_excursion)
-    scaled = StepInput(option.order, option.unit_s, scale * option.amplitude_rad, option.nose_up_first)
-    return scaled, Expectation(full.std / scale, scale * full.alpha_excursion)
 
 
 def _first_input(aircraft: Aircraft) -> str:

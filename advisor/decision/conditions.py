@@ -43,6 +43,8 @@ class Conditions:
     travel_rad: float
     """Elevator travel from trim to the nearer stop: what 100 % stick means."""
     last: Maneuver
+    last_std: FloatArray
+    """(8,) errors of the last manoeuvre's estimate."""
 
 
 def find_conditions(history: Sequence[Flown], aircraft: Aircraft) -> Conditions | None:
@@ -78,6 +80,7 @@ def find_conditions(history: Sequence[Flown], aircraft: Aircraft) -> Conditions 
         alpha_rad=float(alpha),
         travel_rad=travel,
         last=last,
+        last_std=estimate.std,
     )
 
 

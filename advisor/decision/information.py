@@ -38,6 +38,8 @@ class Knowledge:
     """Whether the manoeuvres before the newest predicted it; False while there is only one."""
     surprise: float
     """Distance of the newest from its prediction, as a share of the 99 % limit; NaN without one."""
+    widening: float
+    """Variance ratio by which contradictions between manoeuvres have widened ``belief``, at least 1."""
     left_out: tuple[int, ...]
     """Indices of manoeuvres that contradict all the others."""
 
@@ -66,7 +68,7 @@ class Knowledge:
 def knowledge(estimates: Sequence[Estimate], plan: CampaignPlan) -> Knowledge:
     """What is known after the usable manoeuvres ``estimates`` (at least one), in the order flown."""
     beliefs = beliefs_at_one_speed(estimates)
-    belief, _, left_out = consensus(beliefs)
+    belief, widening, left_out = consensus(beliefs)
     predicted, surprise = False, float("nan")
     if len(beliefs) > 1:
         before, excess, _ = consensus(beliefs[:-1])
@@ -74,4 +76,6 @@ def knowledge(estimates: Sequence[Estimate], plan: CampaignPlan) -> Knowledge:
         surprise = distance / float(chi2.isf(SURPRISING, dof)) if dof else float("nan")
         predicted = surprise < 1.0
     agreeing = [e for i, e in enumerate(estimates) if i not in left_out]
-    return Knowledge(belief, tolerances(belief.theta, agreeing, plan), predicted, surprise, left_out)
+    return Knowledge(
+        belief, tolerances(belief.theta, agreeing, plan), predicted, surprise, widening, left_out
+    )

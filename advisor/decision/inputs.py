@@ -1,7 +1,7 @@
 """Inputs a pilot can fly: order of the steps, unit of time, amplitude, direction, and how to say it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,9 +54,16 @@ class StepInput:
     def spoken(self, travel_rad: float) -> str:
         """As a pilot hears it: ``reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
         reverse = "" if self.nose_up_first else "reverse "
-        percent = 100.0 * self.amplitude_rad / travel_rad
-        stick = 5 * round(percent / 5.0) if percent > 20.0 else max(1, round(percent))
-        return f"{reverse}{self.order}, {self.unit_s:.1f} s steps, {stick} % stick"
+        return f"{reverse}{self.order}, {self.unit_s:.1f} s steps, {self._stick(travel_rad)} % stick"
+
+    def rounded(self, travel_rad: float) -> "StepInput":
+        """The same with an amplitude that can be said, never a larger one unless it were nothing."""
+        return replace(self, amplitude_rad=0.01 * self._stick(travel_rad) * travel_rad)
+
+    def _stick(self, travel_rad: float) -> int:
+        """Amplitude in percent of the travel: in fives above 20 %."""
+        percent = 100.0 * self.amplitude_rad / travel_rad + 1e-9
+        return 5 * int(percent / 5.0) if percent > 20.0 else max(1, int(percent))
 
 
 def units_to_try(natural_frequency: float) -> FloatArray:

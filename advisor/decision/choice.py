@@ -1,0 +1,62 @@
+"""Which input to fly: every one worth trying, as large as the limits allow, by what it would teach."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from advisor.decision.conditions import Conditions
+from advisor.decision.foresight import expect
+from advisor.decision.inputs import ORDERS, StepInput, units_to_try
+from advisor.flight.messages import FloatArray
+from advisor.model.short_period import ShortPeriod
+
+Choice = tuple[StepInput, FloatArray]
+"""An input and the (8,) errors to expect from it."""
+
+
+def best_input(
+    conditions: Conditions, measured_std: FloatArray, unrest: Callable[[FloatArray], float]
+) -> Choice | None:
+    """The input with the least ``unrest`` of its expected errors; None when the model allows no prediction.
+
+    Parameters
+    ----------
+    measured_std
+        (8,) errors of the last manoeuvre as estimated. Whatever made them (colour of the residuals,
+        further outputs) holds for the next one too; the prediction supplies the ratio between inputs.
+    unrest
+        What errors of the next manoeuvre leave in the way of the stop.
+    """
+    repeated = expect(conditions.theta, conditions.flown, conditions.instruments)
+    if repeated is None:
+        return None
+    expected = [(option, measured_std * std / repeated.std) for option, std in _options(conditions)]
+    return min(expected, key=lambda choice: unrest(choice[1])) if expected else None
+
+
+def _options(conditions: Conditions) -> Iterator[Choice]:
+    """Inputs in the direction not flown last."""
+    frequency = ShortPeriod(conditions.theta).natural_frequency
+    if not np.isfinite(frequency) or frequency <= 0.0:
+        return
+    nose_up_first = conditions.last.span.steps[0][1] > 0.0
+    for order in ORDERS:
+        for unit in units_to_try(frequency):
+            option = StepInput(order, float(unit), conditions.largest_rad, nose_up_first)
+            choice = _as_large_as_allowed(option, conditions)
+            if choice is not None:
+                yield choice
+
+
+def _as_large_as_allowed(option: StepInput, conditions: Conditions) -> Choice | None:
+    """The input scaled so that α stays within its limit; the model is linear, so scaling is exact."""
+    length = conditions.lead_s + option.duration_s + conditions.free_s
+    elevator = option.elevator(conditions.trim_rad, conditions.lead_s, length)
+    full = expect(conditions.theta, elevator, conditions.instruments)
+    if full is None:
+        return None
+    amplitude = min(1.0, conditions.alpha_rad / full.alpha_excursion) * option.amplitude_rad
+    allowed = StepInput(option.order, option.unit_s, amplitude, option.nose_up_first).rounded(
+        conditions.travel_rad
+    )
+    return allowed, full.std * option.amplitude_rad / allowed.amplitude_rad
