@@ -8,10 +8,12 @@ import subprocess
 import sys
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING
 
-from advisor.mavlink.link import Link
 from advisor.problems import UnusableInputError
+
+if TYPE_CHECKING:
+    from advisor.mavlink.link import Link
 
 LANDING_S = 2.0
 """How long the link may be silent after the aircraft's process has ended, before the flight is over."""
@@ -34,24 +36,29 @@ class Demonstration:
 
     def __init__(self, aircraft: str, speed: float, seed: int, record_to: Path | None = None) -> None:
         self._options = ["--aircraft", aircraft, "--speed", f"{speed:g}", "--seed", str(seed)]
-        self.link = Link("udpin:127.0.0.1:0", record_to=record_to)
+        self._record_to = record_to
+        self._link: Link | None = None
         self._process: subprocess.Popen[bytes] | None = None
 
-    def __enter__(self) -> Self:
-        self.link.start()
-        command = [sys.executable, "-m", "sim", "fly", "--master", f"udpout:127.0.0.1:{self.link.port}"]
+    def __enter__(self) -> "Link":
+        # The decoders behind a link take longer to load than the first screen to paint.
+        from advisor.mavlink.link import Link
+
+        self._link = Link("udpin:127.0.0.1:0", record_to=self._record_to).start()
+        command = [sys.executable, "-m", "sim", "fly", "--master", f"udpout:127.0.0.1:{self._link.port}"]
         self._process = subprocess.Popen(
             [*command, *self._options],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
         )
-        return self
+        return self._link
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.link.stop()
+        if self._link is not None:
+            self._link.stop()
         if self._process is not None:
             self._process.terminate()
             self._process.communicate()
@@ -64,7 +71,8 @@ class Demonstration:
         UnusableInputError
             When the aircraft could not fly.
         """
-        assert self._process is not None
+        if self._link is None or self._process is None:
+            return False
         code = self._process.poll()
         if code:
             said = self._process.stderr.read().decode(errors="replace") if self._process.stderr else ""
@@ -73,4 +81,4 @@ class Demonstration:
                 f"The bundled aircraft ended with exit code {code}: {said.strip()}",
                 "Try: python -m sim fly --master udpout:127.0.0.1:14550",
             )
-        return code == 0 and self.link.statistics.silent_s > LANDING_S
+        return code == 0 and self._link.statistics.silent_s > LANDING_S

@@ -39,10 +39,11 @@ def replayed(log: Path) -> CampaignState:
 def test_a_flight_followed_live_and_its_own_recording_give_identical_verdicts(tmp_path: Path) -> None:
     recording = tmp_path / "live.tlog"
     campaign = Campaign(Aircraft(), settle=True)
-    with Demonstration("linear", 30.0, 5, recording) as flight:
+    flight = Demonstration("linear", 30.0, 5, recording)
+    with flight as link:
         while not flight.over():
-            campaign.feed(flight.link.read(0.05))
-        while columns := flight.link.read(0.05):
+            campaign.feed(link.read(0.05))
+        while columns := link.read(0.05):
             campaign.feed(columns)
     campaign.finish()
     assert len(campaign.state.maneuvers) == 7

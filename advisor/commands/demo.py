@@ -52,6 +52,5 @@ def command(
 
     if speed is None:
         speed = HEADLESS_SPEED if headless() else 1.0
-    with Demonstration(flown, speed, seed, record_to) as flight:
-        source = LinkSource(flight.link, f"demonstration: {flown} aircraft", flight.over)
-        advise(source, aircraft)
+    flight = Demonstration(flown, speed, seed, record_to)
+    advise(LinkSource(lambda: flight, f"demonstration: {flown} aircraft", flight.over), aircraft)

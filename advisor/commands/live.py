@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -9,6 +10,9 @@ from advisor.aircraft import Rule
 from advisor.commands.options import aircraft_option, read_aircraft, rule_option, target_system_option
 from advisor.commands.screen import Listener, advise
 from advisor.problems import ConfigurationError
+
+if TYPE_CHECKING:
+    from advisor.mavlink.link import Link
 
 
 @click.command
@@ -63,31 +67,35 @@ def command(
         raise ConfigurationError("--record and --no-record contradict each other; give one of them.")
     aircraft = read_aircraft(aircraft_file, rule)
     from advisor.mavlink.announce import Announcer
-    from advisor.mavlink.inquiry import Inquiry
-    from advisor.mavlink.link import Link
-    from advisor.mavlink.outgoing import Talker
-    from advisor.mavlink.rates import STREAMS, RateRequest
-    from advisor.mavlink.recorder import default_recording
+    from advisor.mavlink.connection import parse_connection
     from advisor.mavlink.signing import read_key
     from advisor.tui.live import LinkSource
 
-    talkers: list[Talker] = []
-    if request_rates:
-        talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
+    parse_connection(master)
+    key = read_key(signing_key) if signing_key else None
     announcer = Announcer() if announce else None
-    if announcer is not None:
-        talkers.append(announcer)
-    link = Link(
-        master,
-        source_system=source_system,
-        target_system=target_system,
-        record_to=None if no_record else record_to or default_recording(),
-        key=read_key(signing_key) if signing_key else None,
-        talkers=talkers,
-    )
-    tell = _announcing(announcer.judged) if announcer is not None else None
-    with link:
-        advise(LinkSource(link, master), aircraft, target_system, tell)
+
+    def opening() -> "Link":
+        from advisor.mavlink.inquiry import Inquiry
+        from advisor.mavlink.link import Link
+        from advisor.mavlink.outgoing import Talker
+        from advisor.mavlink.rates import STREAMS, RateRequest
+        from advisor.mavlink.recorder import default_recording
+
+        talkers: list[Talker] = [announcer] if announcer else []
+        if request_rates:
+            talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
+        return Link(
+            master,
+            source_system=source_system,
+            target_system=target_system,
+            record_to=None if no_record else record_to or default_recording(),
+            key=key,
+            talkers=talkers,
+        )
+
+    tell = _announcing(announcer.judged) if announcer else None
+    advise(LinkSource(opening, master), aircraft, target_system, tell)
 
 
 def _announcing(judged: Callable[[int, str, str | None], object]) -> Listener:

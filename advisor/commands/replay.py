@@ -8,6 +8,7 @@ import click
 from advisor.aircraft import Rule
 from advisor.commands.options import aircraft_option, read_aircraft, rule_option, target_system_option
 from advisor.commands.screen import advise
+from advisor.flight.messages import Columns
 
 
 def _speed(ctx: click.Context, parameter: click.Parameter, text: str) -> float:
@@ -42,9 +43,13 @@ def command(
       advisor replay logs/arduplane-calm.tlog --speed 10
     """
     aircraft = read_aircraft(aircraft_file, rule)
-    from advisor.mavlink.logs import open_log
     from advisor.tui.replay import LogPlayer
 
-    batches = open_log(log)
-    source = LogPlayer(log.name, lambda: [columns for batch in batches for columns in batch], speed)
-    advise(source, aircraft, target_system)
+    advise(LogPlayer(log.name, lambda: _columns(log), speed), aircraft, target_system)
+
+
+def _columns(log: Path) -> list[Columns]:
+    # The log reader takes longer to load than the first screen to paint.
+    from advisor.mavlink.logs import open_log
+
+    return [columns for batch in open_log(log) for columns in batch]
