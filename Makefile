@@ -15,16 +15,22 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, this is " + sys.version.split()[0] + ": make PYTHON=python3.12")'
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable .
+	touch $@
+
+# A compiled kernel outlives a change of the function that it calls: compile all of them anew when one changes.
+KERNELS := $(shell grep -rl --include='*.py' njit advisor sim)
+.venv/.compiled: $(STAMP) $(KERNELS)
+	find advisor sim -name '*.nb[ic]' -delete
 	$(BIN)/python -m advisor.mavlink.warm
 	$(BIN)/python -m advisor.oem.warm
 	touch $@
 
 # What tests, checks and benchmarks need beyond running: installed only for them.
-.venv/.developed: $(STAMP)
+.venv/.developed: .venv/.compiled
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev,report,logs,jsbsim,bench]'
 	touch $@
 
-setup: $(STAMP) ## build .venv with the advisor in it
+setup: .venv/.compiled ## build .venv with the advisor in it
 
 run: setup ## the bundled aircraft flies, the advisor advises (HEADLESS=1: as text)
 	@$(BIN)/advisor demo
