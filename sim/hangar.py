@@ -3,13 +3,14 @@
 from dataclasses import dataclass, replace
 
 from sim.airframe import LIGHT_AIRCRAFT, UAV, Airframe
+from sim.jsbsim_aircraft import JsbsimAircraft
 from sim.linear import RESEARCH_JET
 from sim.linear_aircraft import LinearAircraft
 from sim.loading import ScenarioError
 from sim.nonlinear_aircraft import NonlinearAircraft
 from sim.scenario import Scenario
 
-Aircraft = LinearAircraft | NonlinearAircraft
+Aircraft = LinearAircraft | NonlinearAircraft | JsbsimAircraft
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,10 @@ AIRFRAMES: dict[str, tuple[Airframe, Habits]] = {
 }
 """Nonlinear aircraft by name."""
 
+JSBSIM_HABITS = {"c172p": Habits(53.0, 2.5, 0.4)}
+OTHER_HABITS = Habits(55.0, 2.0, 0.5)
+"""Of a JSBSim aircraft nobody has flown here yet."""
+
 LINEAR_HABITS = Habits(100.0, 2.0, 0.8)
 NAMES = (*AIRFRAMES, "linear")
 
@@ -38,6 +43,8 @@ def unit_for(frequency_rad_s: float) -> float:
 
 def habits(scenario: Scenario) -> Habits:
     """Return the usual inputs of the scenario's aircraft."""
+    if scenario.engine == "jsbsim":
+        return JSBSIM_HABITS.get(scenario.aircraft, OTHER_HABITS)
     if scenario.aircraft in AIRFRAMES:
         return AIRFRAMES[scenario.aircraft][1]
     return LINEAR_HABITS
@@ -46,6 +53,8 @@ def habits(scenario: Scenario) -> Habits:
 def build(scenario: Scenario, **changes: float) -> Aircraft:
     """Return the scenario's aircraft, trimmed; ``changes`` replace fields of a nonlinear airframe."""
     airspeed = scenario.airspeed_m_s or habits(scenario).airspeed_m_s
+    if scenario.engine == "jsbsim":
+        return JsbsimAircraft(scenario.aircraft, airspeed, scenario.height_m, scenario.step_s)
     if scenario.aircraft not in NAMES:
         raise ScenarioError([f"aircraft: '{scenario.aircraft}' is none of {', '.join(NAMES)} and no file"])
     if scenario.aircraft == "linear":

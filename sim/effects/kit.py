@@ -44,4 +44,4 @@ class Kind:
     airframe: Callable[[Sizes], dict[str, float]] | None = None
     """Fields of the nonlinear airframe that express it; trimmed with them in place."""
     nonlinear_only: bool = False
-    """Its component changes the nonlinear airframe's own fields in flight."""
+    """Its component changes the nonlinear airframe's own fields in flight, or adds to its coefficients."""

@@ -233,10 +233,16 @@ OUTSIDE: dict[str, Kind] = {
     "gyro_g_sensitivity": Kind("pitch_rate_sensor", {"per_m_s2": 0.002}, _gyro_feels_g),
     "accelerometer_saturation": Kind("accelerometer", {"above_1g_m_s2": 2.0}, _accelerometer_clips),
     "accelerometer_rectification": Kind("accelerometer", {"per_m_s2": 0.03}, _accelerometer_rectifies),
-    "fuel_slosh": Kind("moment_equation", {"cm": 0.15, "frequency_hz": 1.0, "damping": 0.03}, _slosh),
-    "asymmetric_damping": Kind("moment_equation", {"cm_per_rad_s": 0.06}, _asymmetric),
-    "stall_hysteresis": Kind("force_equation", {"cl_loss": 0.06, "band_rad": 0.025}, _hysteresis),
-    "propeller_buzz": Kind("moment_equation", {"cm": 0.004, "frequency_hz": 1.3}, _buzz),
-    "slipstream_beat": Kind("moment_equation", {"share": 0.4, "frequency_hz": 0.9}, _slipstream),
+    "fuel_slosh": Kind(
+        "moment_equation", {"cm": 0.15, "frequency_hz": 1.0, "damping": 0.03}, _slosh, nonlinear_only=True
+    ),
+    "asymmetric_damping": Kind("moment_equation", {"cm_per_rad_s": 0.06}, _asymmetric, nonlinear_only=True),
+    "stall_hysteresis": Kind(
+        "force_equation", {"cl_loss": 0.06, "band_rad": 0.025}, _hysteresis, nonlinear_only=True
+    ),
+    "propeller_buzz": Kind("moment_equation", {"cm": 0.004, "frequency_hz": 1.3}, _buzz, nonlinear_only=True),
+    "slipstream_beat": Kind(
+        "moment_equation", {"share": 0.4, "frequency_hz": 0.9}, _slipstream, nonlinear_only=True
+    ),
 }
 """Name to component; none of these names means anything to the diagnosis."""
