@@ -215,10 +215,12 @@ def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape) -> bool:
     old = 0.0
     for onset, new in shape.steps:
         near = np.abs(t - onset) <= shortest
-        side = np.sign(new - old)
-        left = t[near & (side * (d - old) <= 0.2 * abs(new - old)) & (t <= onset)]
-        arrived = t[near & (side * (d - old) >= 0.8 * abs(new - old)) & (t >= onset)]
-        if len(left) == 0 or len(arrived) == 0 or arrived[0] - left[-1] > longest:
+        done = np.sign(new - old) * (d - old) / max(abs(new - old), 1e-12)
+        left = np.flatnonzero(near & (done <= 0.2) & (t <= onset))
+        arrived = np.flatnonzero(near & (done >= 0.8) & (t >= onset))
+        if len(left) == 0 or len(arrived) == 0:
+            return False
+        if arrived[0] > left[-1] + 1 and t[arrived[0]] - t[left[-1]] > longest:
             return False
         old = new
     return True

@@ -1,0 +1,181 @@
+"""Was the manoeuvre flown whole and within what the model covers? Looks at the data only.
+
+The model knows one input, a constant speed and wings level; each check here is one of its
+assumptions, with the number beside the limit.
+"""
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.decision.verdict import Reason
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+from advisor.flight.record import Channel
+
+NEEDED = ("elevator", "q", "alpha")
+SAMPLES_PER_PERIOD = 8.0
+"""Fewest samples to one natural period: an aircraft of 2 rad/s needs 2.6 Hz, one of 9 rad/s 11 Hz."""
+_LONGEST_GAP = (0.3, 0.2, 1.0)
+"""Longest gap: this share of the natural period, but within these, s."""
+_SHORTEST_FREE = 0.75
+"""Least free response, in natural periods: most of a swing, from which damping is read."""
+_SHORTEST_STEP = 0.15
+"""Least length of the shortest step, in natural periods; shorter ones the servo smears."""
+_OTHER_CONTROLS_DEG = 5.0
+_THROTTLE_PERCENT = 15.0
+_ASSUMED_STROKE_DEG = 25.0
+"""Full travel where the aircraft file has no calibration."""
+
+
+def incomplete(maneuver: Maneuver, period_s: float) -> list[Reason]:
+    """Missing channels, slow ones, gaps, a free response cut short.
+
+    Parameters
+    ----------
+    maneuver
+        As cut from the stream.
+    period_s
+        Natural period of the short period, as far as it is known.
+    """
+    missing = [name for name in NEEDED if name not in maneuver.channels]
+    if missing:
+        text = f"no {' and no '.join(missing)} during the manoeuvre; check the link and fly it again"
+        return [Reason("missing", text, float(len(missing)), 0.0)]
+    channels = [maneuver.channels[name] for name in NEEDED]
+    return [
+        *_rate(channels, period_s),
+        *_gap(channels, maneuver, period_s),
+        *_free_response(maneuver, period_s),
+    ]
+
+
+def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
+    """Bank, saturation, angle of attack, throttle, other controls; last air speed, which follows from them."""
+    return [
+        *_bank(maneuver, aircraft.limits.bank_deg),
+        *_saturation(maneuver, aircraft),
+        *_alpha(maneuver, aircraft.limits.alpha_deg),
+        *_throttle(maneuver),
+        *_other_controls(maneuver),
+        *_airspeed(maneuver, aircraft.limits.airspeed_change_percent),
+    ]
+
+
+def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:
+    """Steps so short that neither servo nor aircraft follows them."""
+    onsets = [onset for onset, _ in maneuver.span.steps]
+    if len(onsets) < 2:
+        return []
+    shortest, least = float(np.min(np.diff(onsets))), _SHORTEST_STEP * period_s
+    if shortest >= least:
+        return []
+    text = f"steps too short, {shortest:.2f} s (at least {least:.2f}); hold each about {0.4 * period_s:.1f} s"
+    return [Reason("steps", text, shortest, least)]
+
+
+def flown(maneuver: Maneuver, name: str) -> FloatArray:
+    """Values of a channel from the first step to the end; empty when it is not there."""
+    channel = maneuver.channels.get(name)
+    if channel is None:
+        return np.empty(0)
+    return channel.cut(maneuver.span.start_s, maneuver.span.end_s).y
+
+
+def _rate(channels: list[Channel], period_s: float) -> list[Reason]:
+    needed_hz = SAMPLES_PER_PERIOD / period_s
+    slow = [c for c in channels if not c.rate_hz >= needed_hz]
+    return [
+        Reason(
+            "rate",
+            f"{c.name} arrived at {c.rate_hz:.1f} Hz (this aircraft needs {needed_hz:.0f}); "
+            f"ask for more of {c.source.partition('.')[0]}",
+            c.rate_hz,
+            needed_hz,
+        )
+        for c in slow
+    ]
+
+
+def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[Reason]:
+    share, least, most = _LONGEST_GAP
+    reasons = []
+    for c in channels:
+        limit = max(float(np.clip(share * period_s, least, most)), 3.5 / c.rate_hz if c.rate_hz > 0 else 0.0)
+        edges = (maneuver.span.record_from_s, *c.t.tolist(), maneuver.span.end_s)
+        gap = float(np.max(np.diff(edges)))
+        if gap > limit:
+            text = f"{gap:.1f} s of {c.name} are missing (limit {limit:.2f}); check the link, fly it again"
+            reasons.append(Reason("gap", text, gap, limit))
+    return sorted(reasons, key=lambda reason: -reason.value)[:1]
+
+
+def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
+    free, least = maneuver.span.end_s - maneuver.span.last_step_s, _SHORTEST_FREE * period_s
+    if free >= least:
+        return []
+    text = f"free response too short, {free:.1f} s (at least {least:.1f}); hands still after the last step"
+    return [Reason("free_response", text, free, least)]
+
+
+def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:
+    bank = float(np.degrees(np.max(np.abs(flown(maneuver, "bank")), initial=0.0)))
+    if bank <= limit:
+        return []
+    return [
+        Reason("bank", f"bank reached {bank:.0f} deg (limit {limit:.0f}); fly it wings level", bank, limit)
+    ]
+
+
+def _airspeed(maneuver: Maneuver, limit: float) -> list[Reason]:
+    channel = maneuver.channels.get("airspeed")
+    if channel is None or len(channel) < 2 or not np.median(channel.y) > 0.0:
+        return []
+    before = channel.cut(maneuver.span.record_from_s, maneuver.span.start_s).y
+    trim = float(np.median(before if len(before) else channel.y[:1]))
+    # The second largest: one wild reading of the air speed is no change of speed.
+    change = 100.0 * float(np.sort(np.abs(flown(maneuver, "airspeed") / trim - 1.0))[-2:][0])
+    if change <= limit:
+        return []
+    text = f"air speed changed by {change:.0f} % (limit {limit:.0f}); smaller steps, from steady speed"
+    return [Reason("airspeed", text, change, limit)]
+
+
+def _alpha(maneuver: Maneuver, limit: float | None) -> list[Reason]:
+    alpha = float(np.degrees(np.max(np.abs(flown(maneuver, "alpha")), initial=0.0)))
+    if limit is None or alpha <= limit:
+        return []
+    text = f"angle of attack reached {alpha:.1f} deg (limit {limit:.1f}); use less stick"
+    return [Reason("alpha", text, alpha, limit)]
+
+
+def _saturation(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
+    pairs = aircraft.elevator.calibration
+    ends = [deg for _, deg in pairs] if pairs else [-_ASSUMED_STROKE_DEG, _ASSUMED_STROKE_DEG]
+    elevator = np.degrees(flown(maneuver, "elevator"))
+    stuck = (elevator <= min(ends) + 1e-6) | (elevator >= max(ends) - 1e-6)
+    share = 100.0 * float(np.mean(stuck)) if len(stuck) else 0.0
+    if np.count_nonzero(stuck) < 2:
+        return []
+    text = f"elevator at the end of its travel for {share:.0f} % of the time (limit 0); use less stick"
+    return [Reason("saturation", text, share, 0.0)]
+
+
+def _other_controls(maneuver: Maneuver) -> list[Reason]:
+    reasons = []
+    for name in ("aileron", "rudder"):
+        moved = float(np.degrees(np.ptp(flown(maneuver, name)))) / 2.0 if len(flown(maneuver, name)) else 0.0
+        if moved > _OTHER_CONTROLS_DEG:
+            text = (
+                f"{name} moved by {moved:.0f} deg (limit {_OTHER_CONTROLS_DEG:.0f}); use the elevator alone"
+            )
+            reasons.append(Reason(name, text, moved, _OTHER_CONTROLS_DEG))
+    return reasons
+
+
+def _throttle(maneuver: Maneuver) -> list[Reason]:
+    throttle = flown(maneuver, "throttle")
+    change = 100.0 * float(np.ptp(throttle)) if len(throttle) else 0.0
+    if change <= _THROTTLE_PERCENT:
+        return []
+    text = f"throttle moved by {change:.0f} % (limit {_THROTTLE_PERCENT:.0f}); leave it where it is"
+    return [Reason("throttle", text, change, _THROTTLE_PERCENT)]
