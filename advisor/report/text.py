@@ -1,7 +1,7 @@
 """The analysis as text for people: degrees, a sentence a verdict, stop or continue last."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
@@ -47,6 +47,20 @@ def maneuver_line(judged: JudgedManeuver) -> str:
     return f"{judged.maneuver.number:2d}  {span.start_s:8.2f} s  {span.kind:<15}  {mark} {verdict.sentence}"
 
 
+def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
+    """Each caution once, with the numbers of the manoeuvres it stands on."""
+    numbers: dict[str, list[int]] = {}
+    for judged in maneuvers:
+        for caution in judged.verdict.cautions:
+            numbers.setdefault(caution, []).append(judged.maneuver.number)
+    return [f"[{_listed(on)}] {caution}" for caution, on in numbers.items()]
+
+
+def _listed(numbers: Sequence[int]) -> str:
+    whole = len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1
+    return f"{numbers[0]}-{numbers[-1]}" if whole else ", ".join(map(str, numbers))
+
+
 def stop_line(verdict: FlightTestVerdict) -> str:
     """Stop or continue, with the criterion beside its limit."""
     mark = "■" if verdict.decision == "stop" else "▶"
@@ -68,7 +82,8 @@ class AnalysisText:
         yield Text()
         for judged in self.state.maneuvers:
             yield Text(maneuver_line(judged), style="green" if judged.verdict.accepted else "red")
-            yield from (Text(f"      {caution}", style="dim") for caution in judged.verdict.cautions)
+        yield Text()
+        yield from (Text(line, style="dim") for line in caution_lines(self.state.maneuvers))
         yield Text()
         if self.state.model is not None:
             yield self._parameters(self.state.model)
