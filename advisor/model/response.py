@@ -21,6 +21,7 @@ with k the scale error of the air speed (a_z: specific force along body z; Klein
 *Aircraft System Identification*, Ch. 3).
 """
 
+import math
 from typing import NamedTuple
 
 import numba
@@ -37,6 +38,8 @@ SHARED = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e", "airspee
 LOCAL = ("Z_0", "M_0", "alpha_initial", "q_initial", "theta_initial", "q_bias", "a_z_bias")
 N_SHARED, N_LOCAL = len(SHARED), len(LOCAL)
 N_PARAMETERS = N_SHARED + N_LOCAL
+N_MOVING = N_SHARED + 4
+"""Parameters up to here move α and q; the rest only enter the outputs."""
 
 
 class Grid(NamedTuple):
@@ -106,6 +109,10 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
         fill(table[i], a11, a12, a21, a22, grid.step_s[i] / parts[i])
 
     state = np.empty((3, N_PARAMETERS))
+    nothing = np.empty(0)
+    rows, kind, start, slope = grid.row, grid.kind, grid.start, grid.slope
+    vane, known = grid.vane, grid.known
+    attitude = rows[3].max() >= 0
     for m in range(len(grid.first) - 1):
         begin, end = grid.first[m], grid.first[m + 1]
         z_0, m_0 = local[m, 0], local[m, 1]
@@ -113,19 +120,52 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
         state[:] = 0.0
         state[0, 9] = state[1, 10] = state[2, 11] = 1.0
         for e in range(begin, end):
-            _read(grid, e, shared, local[m], alpha, q, theta, state, y, g, wanted)
+            row = rows[0, e]
+            if row >= 0:
+                y[row] = alpha + vane[e] * q
+                if wanted:
+                    for j in range(N_PARAMETERS):
+                        g[row, j] = state[0, j] + vane[e] * state[1, j]
+            row = rows[1, e]
+            if row >= 0:
+                y[row] = q + local[m, 5]
+                if wanted:
+                    g[row] = state[1]
+                    g[row, 12] += 1.0
+            row = rows[3, e]
+            if row >= 0:
+                y[row] = theta
+                if wanted:
+                    g[row] = state[2]
+            row = rows[2, e]
+            if row >= 0:
+                force = _specific_force(
+                    grid.ratio[kind[e]],
+                    grid.elevator[e],
+                    known[e],
+                    grid.airspeed[e],
+                    grid.acceleration[e],
+                    grid.arm,
+                    shared,
+                    local[m],
+                    alpha,
+                    q,
+                    state,
+                    g[row] if wanted else nothing,
+                )
+                y[row] = force - grid.gravity[e] + local[m, 6]
             if e + 1 == end:
                 break
-            i = grid.kind[e]
+            i = kind[e]
             s = grid.ratio[i]
             h = grid.step_s[i] / parts[i]
             for part in range(parts[i]):
-                delta = grid.start[e] + part * h * grid.slope[e]
-                u1 = s * (z_0 + z_delta * delta) + grid.known[e]
+                delta = start[e] + part * h * slope[e]
+                u1 = s * (z_0 + z_delta * delta) + known[e]
                 u2 = s * s * (m_0 + m_delta * delta)
-                v1, v2 = s * z_delta * grid.slope[e], s * s * m_delta * grid.slope[e]
+                v1, v2 = s * z_delta * slope[e], s * s * m_delta * slope[e]
                 if wanted:
-                    _carry(table[i], s, shared, alpha, q, u1, u2, v1, v2, delta, grid.slope[e], state)
+                    _carry(table[i], s, shared, alpha, q, u1, u2, v1, v2, delta, slope[e], state, attitude)
                 t = table[i]
                 theta += t[15] * alpha + t[16] * q + t[28] * u1 + t[29] * u2 + t[41] * v1 + t[42] * v2
                 alpha, q = (
@@ -151,12 +191,14 @@ def _carry(
     delta: float,
     slope: float,
     state: FloatArray,
+    attitude: bool,
 ) -> None:
-    """Carry the sensitivities ``state`` (3, 14) of α, q, θ over one step that starts at (α, q)."""
+    """Carry the sensitivities ``state`` (3, 14) of α, q and, if asked, θ over one step from (α, q)."""
     a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
-    for j in range(N_PARAMETERS):
+    for j in range(N_MOVING):
         f, k = state[0, j], state[1, j]
-        state[2, j] += t[15] * f + t[16] * k
+        if attitude:
+            state[2, j] += t[15] * f + t[16] * k
         state[0, j] = t[0] * f + t[1] * k
         state[1, j] = t[2] * f + t[3] * k
     # by the trace (p), by the determinant (d), by A itself (w); for α, q and then for θ
@@ -198,85 +240,42 @@ def _carry(
 
 
 @numba.njit(cache=True)
-def _read(
-    grid: Grid,
-    e: int,
-    shared: FloatArray,
-    local: FloatArray,
-    alpha: float,
-    q: float,
-    theta: float,
-    state: FloatArray,
-    y: FloatArray,
-    g: FloatArray,
-    wanted: bool,
-) -> None:
-    """Write the outputs that are measured at event ``e``."""
-    row = grid.row[0, e]
-    if row >= 0:
-        y[row] = alpha + grid.vane[e] * q
-        if wanted:
-            for j in range(N_PARAMETERS):
-                g[row, j] = state[0, j] + grid.vane[e] * state[1, j]
-    row = grid.row[1, e]
-    if row >= 0:
-        y[row] = q + local[5]
-        if wanted:
-            g[row] = state[1]
-            g[row, 12] += 1.0
-    row = grid.row[3, e]
-    if row >= 0:
-        y[row] = theta
-        if wanted:
-            g[row] = state[2]
-    row = grid.row[2, e]
-    if row >= 0:
-        _specific_force(grid, e, row, shared, local, alpha, q, state, y, g, wanted)
-
-
-@numba.njit(cache=True)
 def _specific_force(
-    grid: Grid,
-    e: int,
-    row: int,
+    s: float,
+    delta: float,
+    known: float,
+    airspeed: float,
+    acceleration: float,
+    arm: float,
     shared: FloatArray,
     local: FloatArray,
     alpha: float,
     q: float,
     state: FloatArray,
-    y: FloatArray,
-    g: FloatArray,
-    wanted: bool,
-) -> None:
-    """Write a_z at event ``e`` from α̇ and q̇ of the model."""
-    s = grid.ratio[grid.kind[e]]
-    delta = grid.elevator[e]
+    row: FloatArray,
+) -> float:
+    """a_z without gravity and bias, from α̇ and q̇ of the model; derivatives into ``row`` (14,) or (0,)."""
     a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
-    alpha_dot = a11 * alpha + a12 * q + s * (shared[2] * delta + local[0]) + grid.known[e]
+    alpha_dot = a11 * alpha + a12 * q + s * (shared[2] * delta + local[0]) + known
     q_dot = a21 * alpha + a22 * q + s * s * (shared[5] * delta + local[1])
-    cosine, sine = np.cos(alpha), np.sin(alpha)
-    speed, arm = (1.0 + shared[6]) * grid.airspeed[e], grid.arm
-    y[row] = (
-        speed * cosine * (alpha_dot - q)
-        + grid.acceleration[e] * sine
-        - grid.gravity[e]
-        - arm * q_dot
-        + local[6]
-    )
-    if not wanted:
-        return
+    cosine, sine = math.cos(alpha), math.sin(alpha)
+    speed = (1.0 + shared[6]) * airspeed
+    force: float = speed * cosine * (alpha_dot - q) + acceleration * sine - arm * q_dot
+    if len(row) == 0:
+        return force
     lift = speed * cosine
-    by_alpha = lift * a11 - speed * sine * (alpha_dot - q) + grid.acceleration[e] * cosine - arm * a21
+    by_alpha = lift * a11 - speed * sine * (alpha_dot - q) + acceleration * cosine - arm * a21
     by_q = lift * (a12 - 1.0) - arm * a22
     for j in range(N_PARAMETERS):
-        g[row, j] = by_alpha * state[0, j] + by_q * state[1, j]
-    g[row, 0] += lift * s * alpha
-    g[row, 1] += lift * q
-    g[row, 2] += lift * s * delta
-    g[row, 3] -= arm * s * s * alpha
-    g[row, 4] -= arm * s * q
-    g[row, 5] -= arm * s * s * delta
-    g[row, 6] += grid.airspeed[e] * cosine * (alpha_dot - q)
-    g[row, 7] += lift * s
-    g[row, 8] -= arm * s * s
-    g[row, 13] += 1.0
+        row[j] = by_alpha * state[0, j] + by_q * state[1, j]
+    row[0] += lift * s * alpha
+    row[1] += lift * q
+    row[2] += lift * s * delta
+    row[3] -= arm * s * s * alpha
+    row[4] -= arm * s * q
+    row[5] -= arm * s * s * delta
+    row[6] += airspeed * cosine * (alpha_dot - q)
+    row[7] += lift * s
+    row[8] -= arm * s * s
+    row[13] += 1.0
+    return force

@@ -19,8 +19,10 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, Index, respond
 
-FLAT = 1e-13
-"""Converged when a step promises less than this change of log J a sample."""
+FLAT = 1e-11
+"""Converged when the last step promised less than this change of log J; what is left after it is far less."""
+BLOCK = 64
+"""Rows whose products are summed at once."""
 MOST_ITERATIONS = 60
 LEAST_NOISE = 1e-10
 """Floor of σ relative to the spread of the channel: data without noise have no other."""
@@ -61,6 +63,22 @@ def weigh(z: FloatArray, y: FloatArray, channel: Index, floor: FloatArray) -> tu
     return noise, cost
 
 
+@numba.njit(cache=True, fastmath={"reassoc", "contract"})
+def _add_products(block: FloatArray, information: FloatArray, gradient: FloatArray) -> None:
+    """Add the products of the rows of ``block`` (n + 1, BLOCK); sums may be reordered to run in parallel."""
+    n = len(gradient)
+    for j in range(n):
+        for k in range(j + 1):
+            total = 0.0
+            for i in range(BLOCK):
+                total += block[j, i] * block[k, i]
+            information[j, k] += total
+        total = 0.0
+        for i in range(BLOCK):
+            total += block[j, i] * block[n, i]
+        gradient[j] += total
+
+
 @numba.njit(cache=True)
 def normal_equations(
     grid: Grid,
@@ -69,27 +87,37 @@ def normal_equations(
     g: FloatArray,
     channel: Index,
     owner: Index,
+    free: Index,
     noise: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Information matrix (m, 14, 14) and gradient (m, 14) of each manoeuvre, lower triangles."""
+    """Information matrix (m, n, n) and gradient (m, n) of each manoeuvre by the n free parameters.
+
+    Only the lower triangles are filled.
+    """
     m = len(grid.first) - 1
-    information = np.zeros((m, N_PARAMETERS, N_PARAMETERS))
-    gradient = np.zeros((m, N_PARAMETERS))
+    n = len(free)
+    information = np.zeros((m, n, n))
+    gradient = np.zeros((m, n))
+    weight = np.zeros(len(noise))
+    for c in range(len(noise)):
+        weight[c] = 1.0 / noise[c] if noise[c] > 0.0 else 0.0
+    block = np.zeros((n + 1, BLOCK))
+    filled = 0
     for i in range(len(z)):
-        weight = 1.0 / noise[channel[i]] ** 2
-        residual = z[i] - y[i]
-        h, d = information[owner[i]], gradient[owner[i]]
-        for j in range(N_PARAMETERS):
-            scaled = weight * g[i, j]
-            if scaled != 0.0:
-                d[j] += scaled * residual
-                for k in range(j + 1):
-                    h[j, k] += scaled * g[i, k]
+        w = weight[channel[i]]
+        for j in range(n):
+            block[j, filled] = w * g[i, free[j]]
+        block[n, filled] = w * (z[i] - y[i])
+        filled += 1
+        if filled == BLOCK or i + 1 == len(z) or owner[i + 1] != owner[i]:
+            block[:, filled:] = 0.0
+            _add_products(block, information[owner[i]], gradient[owner[i]])
+            filled = 0
     return information, gradient
 
 
 @numba.njit(cache=True)
-def _cholesky(a: FloatArray) -> bool:
+def cholesky(a: FloatArray) -> bool:
     """Lower factor in place; False when ``a`` is not positive definite to working precision."""
     n = a.shape[0]
     for j in range(n):
@@ -109,7 +137,7 @@ def _cholesky(a: FloatArray) -> bool:
 
 
 @numba.njit(cache=True)
-def _solve_lower(a: FloatArray, b: FloatArray) -> None:
+def solve_lower(a: FloatArray, b: FloatArray) -> None:
     """b ← L⁻¹·b for the columns of ``b`` (n, k)."""
     for i in range(a.shape[0]):
         for c in range(b.shape[1]):
@@ -119,7 +147,7 @@ def _solve_lower(a: FloatArray, b: FloatArray) -> None:
 
 
 @numba.njit(cache=True)
-def _solve_upper(a: FloatArray, b: FloatArray) -> None:
+def solve_upper(a: FloatArray, b: FloatArray) -> None:
     """b ← L⁻ᵀ·b for the columns of ``b`` (n, k)."""
     for i in range(a.shape[0] - 1, -1, -1):
         for c in range(b.shape[1]):
@@ -140,8 +168,8 @@ def arrow_step(
     the promised decrease gradientᵀ·step of the weighted sum of squares.
     """
     maneuvers = len(information)
-    common, own = free[free < N_SHARED], free[free >= N_SHARED]
-    width, n = len(common), len(own)
+    width = int(np.sum(free < N_SHARED))
+    n = len(free) - width
     shared_step, local_step = np.zeros(N_SHARED), np.zeros((maneuvers, N_LOCAL))
     top = np.zeros((width, width))
     right = np.zeros((width, 1))
@@ -149,34 +177,34 @@ def arrow_step(
     carried = np.zeros((maneuvers, n, width + 1))
     for m in range(maneuvers):
         for j in range(width):
-            right[j, 0] += gradient[m, common[j]]
+            right[j, 0] += gradient[m, j]
             for k in range(j + 1):
-                top[j, k] += information[m, common[j], common[k]]
-            top[j, j] += damping * information[m, common[j], common[j]]
+                top[j, k] += information[m, j, k]
+            top[j, j] += damping * information[m, j, j]
         for j in range(n):
             for k in range(j + 1):
-                factors[m, j, k] = information[m, own[j], own[k]]
+                factors[m, j, k] = information[m, width + j, width + k]
             factors[m, j, j] *= 1.0 + damping
             for k in range(width):
-                carried[m, j, k] = information[m, own[j], common[k]]
-            carried[m, j, width] = gradient[m, own[j]]
-        if not _cholesky(factors[m]):
+                carried[m, j, k] = information[m, width + j, k]
+            carried[m, j, width] = gradient[m, width + j]
+        if not cholesky(factors[m]):
             return False, shared_step, local_step, 0.0
-        _solve_lower(factors[m], carried[m])
+        solve_lower(factors[m], carried[m])
         for j in range(width):
             for i in range(n):
                 right[j, 0] -= carried[m, i, j] * carried[m, i, width]
                 for k in range(j + 1):
                     top[j, k] -= carried[m, i, j] * carried[m, i, k]
-    if not _cholesky(top):
+    if not cholesky(top):
         return False, shared_step, local_step, 0.0
-    _solve_lower(top, right)
+    solve_lower(top, right)
     promise = 0.0
     for j in range(width):
         promise += right[j, 0] ** 2
-    _solve_upper(top, right)
+    solve_upper(top, right)
     for j in range(width):
-        shared_step[common[j]] = right[j, 0]
+        shared_step[free[j]] = right[j, 0]
     for m in range(maneuvers):
         rest = np.empty((n, 1))
         for i in range(n):
@@ -184,9 +212,9 @@ def arrow_step(
             rest[i, 0] = carried[m, i, width]
             for j in range(width):
                 rest[i, 0] -= carried[m, i, j] * right[j, 0]
-        _solve_upper(factors[m], rest)
+        solve_upper(factors[m], rest)
         for i in range(n):
-            local_step[m, own[i] - N_SHARED] = rest[i, 0]
+            local_step[m, free[width + i] - N_SHARED] = rest[i, 0]
     return True, shared_step, local_step, promise
 
 
@@ -213,7 +241,7 @@ def descend(
     iteration = 0
     while iteration < MOST_ITERATIONS:
         iteration += 1
-        information, gradient = normal_equations(grid, z, y, g, channel, owner, noise)
+        information, gradient = normal_equations(grid, z, y, g, channel, owner, free, noise)
         accepted = False
         for _ in range(16):
             fine, shared_step, local_step, promise = arrow_step(information, gradient, free, damping)

@@ -1,0 +1,128 @@
+"""Thousands of simulated manoeuvres on one grid: for studies of what an input can teach.
+
+All share input and stamps and differ in their measurements only, so the grid is laid out once
+and everything after that is compiled.
+"""
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.flight.messages import FloatArray
+from advisor.model.response import N_PARAMETERS, N_SHARED, Grid, Index, respond
+from advisor.oem.covariance import REPORTED
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.gauss_newton import CONVERGED, cholesky, descend, normal_equations, solve_lower, weigh
+from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.solution import noise_floor, solve
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """One row a manoeuvre. A row that could not be estimated is NaN."""
+
+    theta: FloatArray
+    """(n, 8), order of ``PARAMETERS``."""
+    std_cr: FloatArray
+    """(n, 8) Cramér-Rao standard deviations."""
+    noise: FloatArray
+    """(n, 2) σ of alpha and q."""
+    iterations: Index
+    """(n,)."""
+
+    @property
+    def cost(self) -> FloatArray:
+        """(n,) J = σ_α²·σ_q², Eq. (7)."""
+        product: FloatArray = np.prod(self.noise**2, axis=1)
+        return product
+
+    @property
+    def failed(self) -> int:
+        """How many rows could not be estimated."""
+        return int(np.count_nonzero(np.isnan(self.theta[:, 0])))
+
+
+def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray) -> Batch:
+    """Estimate every row on its own.
+
+    Parameters
+    ----------
+    elevator : the input all rows share.
+    t : (k,) stamps of both outputs.
+    alpha, q : (n, k) measurements.
+
+    Every search begins at the estimate of the rows' mean; where that leads nowhere, at the row's own
+    regression.
+    """
+
+    def problem(a: FloatArray, b: FloatArray) -> Problem:
+        return Problem((Record(elevator, {"alpha": Signal(t, a), "q": Signal(t, b)}),))
+
+    mean = solve(problem(alpha.mean(axis=0), q.mean(axis=0)))
+    first = solve(problem(alpha[0], q[0])) if isinstance(mean, NoEstimate) else mean
+    if isinstance(first, NoEstimate):
+        nothing = np.full((len(alpha), len(PARAMETERS)), np.nan)
+        return Batch(nothing, nothing, nothing[:, :2], np.zeros(len(alpha), np.int64))
+    assembly = assemble(problem(alpha[0], q[0]))
+    z = np.ascontiguousarray(np.concatenate([alpha, q], axis=1))
+    found, bounds, noise, iterations = _each(
+        assembly.grid,
+        z,
+        assembly.channel,
+        assembly.owner,
+        assembly.free,
+        noise_floor(assembly),
+        first.optimum.shared,
+        first.optimum.local,
+    )
+    for i in np.flatnonzero(iterations < 0):
+        again = solve(problem(alpha[i], q[i]))
+        if not isinstance(again, NoEstimate):
+            found[i] = again.theta
+            bounds[i] = np.sqrt(np.diag(again.covariance_cr))
+            noise[i] = again.optimum.noise[:2]
+        iterations[i] = 0 if isinstance(again, NoEstimate) else again.optimum.iterations
+    return Batch(found, bounds, noise, iterations)
+
+
+_POSITION = np.array([index if is_shared else N_SHARED + index for is_shared, index in REPORTED])
+"""Where the eight stand among all parameters."""
+
+
+@numba.njit(cache=True)
+def _each(
+    grid: Grid,
+    z: FloatArray,
+    channel: Index,
+    owner: Index,
+    free: Index,
+    floor: FloatArray,
+    shared: FloatArray,
+    local: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray, Index]:
+    """Solve every row of ``z`` (n, N); iterations are -1 where the search did not converge."""
+    rows = len(z)
+    found = np.full((rows, 8), np.nan)
+    bounds = np.full((rows, 8), np.nan)
+    noise = np.full((rows, 2), np.nan)
+    iterations = np.full(rows, -1)
+    y, g = np.empty(z.shape[1]), np.empty((z.shape[1], N_PARAMETERS))
+    for i in range(rows):
+        optimum = descend(grid, z[i], channel, owner, free, floor, shared, local)
+        if optimum.status != CONVERGED or not respond(grid, optimum.shared, optimum.local, y, g):
+            continue
+        sigma, _ = weigh(z[i], y, channel, floor)
+        information, _ = normal_equations(grid, z[i], y, g, channel, owner, free, sigma)
+        if not cholesky(information[0]):
+            continue
+        inverse = np.eye(len(free))
+        solve_lower(information[0], inverse)
+        for j in range(8):
+            at = np.searchsorted(free, _POSITION[j])
+            bounds[i, j] = np.sqrt(np.sum(inverse[:, at] ** 2))
+            found[i, j] = optimum.shared[_POSITION[j]] if j % 4 else optimum.local[0, j // 4]
+        noise[i] = sigma[:2]
+        iterations[i] = optimum.iterations
+    return found, bounds, noise, iterations
