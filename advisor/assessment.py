@@ -2,6 +2,7 @@
 
 from advisor.aircraft import Aircraft
 from advisor.decision.history import Flown
+from advisor.decision.quality import judge_quality
 from advisor.flight.kinematics import check_alpha
 from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimator import estimate
@@ -15,6 +16,7 @@ def assess(maneuver: Maneuver, aircraft: Aircraft) -> Flown:
     if alpha is not None:
         cautions.append(f"angle of attack: {alpha.provenance}, from {alpha.source}")
     check = check_alpha(maneuver, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m)
-    if check.finding not in ("consistent",):
+    if check.finding != "consistent":
         cautions.append(check.sentence)
-    return Flown(estimated, (), tuple(cautions))
+    reasons = judge_quality(maneuver, estimated, aircraft)
+    return Flown(estimated, reasons, tuple(cautions), maneuver=maneuver)

@@ -62,7 +62,7 @@ class Campaign:
         self._notes: dict[int, tuple[str, ...]] = {}
         self._notices: list[str] = []
         self._judged: tuple[JudgedManeuver, ...] = ()
-        self._flight_test = flight_test((), aircraft.campaign)
+        self._flight_test = flight_test((), aircraft.campaign, aircraft)
         self._model: Estimate | None = None
         self._settling = Settling(aircraft) if settle else None
 
@@ -153,7 +153,7 @@ class Campaign:
             )
             for maneuver, flown, verdict in zip(self._maneuvers, self._history, verdicts, strict=True)
         )
-        self._flight_test = flight_test(self._history, plan)
+        self._flight_test = flight_test(self._history, plan, self._aircraft)
         model = estimate_jointly([j.maneuver for j in self._judged if j.verdict.accepted], self._aircraft)
         self._model = model if isinstance(model, Estimate) else None
 
