@@ -17,7 +17,6 @@ from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.conductor import Conductor, Report
 from advisor.tui.explaining import explanation, keys_at_hand
 from advisor.tui.hand import HandDecision
-from advisor.tui.screens.ask import Ask
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pilot import PilotScreen
@@ -139,12 +138,11 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
 
     def action_mark(self) -> None:
         """Mark this moment in the event log."""
+        if isinstance(self.screen, Face):
+            self.screen.ask("Mark this moment as:", self._mark)
 
-        def mark(text: str | None) -> None:
-            if text is not None:
-                self.conductor.decide(HandDecision("mark", text))
-
-        self.push_screen(Ask("Mark this moment as:"), mark)
+    def _mark(self, text: str) -> None:
+        self.conductor.decide(HandDecision("mark", text))
 
     def action_leave(self) -> None:
         """Quit; on a live link only when asked twice."""

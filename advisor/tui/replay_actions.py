@@ -4,7 +4,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from advisor.tui.conductor import Conductor
-from advisor.tui.screens.ask import Ask
+from advisor.tui.screens.face import Face
 from advisor.tui.source import Playable, Source
 from advisor.tui.view import View
 
@@ -51,13 +51,13 @@ class ReplayActions(Base):
 
     def action_jump(self) -> None:
         """Ask for a manoeuvre and go to where it begins."""
-        self.push_screen(Ask("Jump to manoeuvre number:", integer=True), self._jump_to)
+        if isinstance(self.screen, Face):
+            self.screen.ask("Jump to manoeuvre number:", self._jump_to, integer=True)
 
     def action_jump_by(self, step: int) -> None:
         """Go to the next manoeuvre, or back to where the last one began."""
         flown = len(self.view.state.maneuvers)
         self.conductor.jump(max(1, flown + step if step > 0 else flown))
 
-    def _jump_to(self, answer: str | None) -> None:
-        if answer is not None and int(answer) > 0:
-            self.conductor.jump(int(answer))
+    def _jump_to(self, answer: str) -> None:
+        self.conductor.jump(max(1, int(answer)))

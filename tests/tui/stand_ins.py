@@ -6,7 +6,7 @@ from queue import Empty, SimpleQueue
 
 import numpy as np
 
-from advisor.campaign_state import CampaignState
+from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.flight.messages import Columns
 from advisor.tui.source import LinkHealth
 from tests.tui import flights
@@ -28,14 +28,21 @@ class StagedCampaign:
         self.fed: list[int] = []
         self.calls: list[tuple[object, ...]] = []
         self._excluded: dict[int, str] = {}
+        self._known: dict[object, tuple[JudgedManeuver, ...]] = {}
 
     @property
     def state(self) -> CampaignState:
+        # As with the real campaign, what did not change stays the same object.
         now = self._states[min(self._stage, len(self._states) - 1)]
-        maneuvers = tuple(
-            replace(j, excluded_because=self._excluded.get(j.maneuver.number)) for j in now.maneuvers
-        )
-        return replace(now, maneuvers=maneuvers)
+        return replace(now, maneuvers=self._maneuvers(now))
+
+    def _maneuvers(self, now: CampaignState) -> tuple[JudgedManeuver, ...]:
+        key = (id(now), tuple(self._excluded.items()))
+        if key not in self._known:
+            self._known[key] = tuple(
+                replace(j, excluded_because=self._excluded.get(j.maneuver.number)) for j in now.maneuvers
+            )
+        return self._known[key]
 
     def feed(self, batch: Sequence[Columns]) -> list[object]:
         self._on_feed()

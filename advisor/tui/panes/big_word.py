@@ -2,22 +2,25 @@
 
 from textual.events import Resize
 
-from advisor.tui.advice import Advice
+from advisor.tui.advice import advise
 from advisor.tui.letters import block_letters
 from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.part import Part
+from advisor.tui.view import View
 
 TONES = ("good", "warn", "bad", "quiet")
 
 
-class BigWord(Lines):
-    """One word in block letters; plain text is kept as its tooltip."""
+class BigWord(Part, Lines):
+    """One word in block letters."""
 
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__("", id=id)
+    def __init__(self) -> None:
+        super().__init__()
         self.word = ""
 
-    def show(self, advice: Advice) -> None:
+    def show(self, view: View) -> None:
         """Write the advice's word in its tone."""
+        advice = advise(view)
         if advice.word == self.word:
             return
         self.word = advice.word
@@ -32,3 +35,11 @@ class BigWord(Lines):
     def _write(self) -> None:
         if self.word and self.size.width:
             self.write(block_letters(self.word, self.size.width, self.size.height))
+
+
+class Why(Part, Lines):
+    """The sentence under the word."""
+
+    def show(self, view: View) -> None:
+        """Write the advice's sentence."""
+        self.write(advise(view).sentence)

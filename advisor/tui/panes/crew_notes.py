@@ -2,6 +2,7 @@
 
 from advisor.aircraft import PARAMETERS as NAMES
 from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
@@ -32,7 +33,7 @@ def _link_in_words(view: View) -> str:
     return "good" if view.health.condition == "good" else view.health.sentence
 
 
-class CrewNotes(Lines):
+class CrewNotes(Part, Lines):
     """Next input, the manoeuvre in the air, alpha's provenance, warnings."""
 
     def show(self, view: View) -> None:

@@ -13,7 +13,7 @@ from advisor.tui.words import percent
 
 RULE_INKS: dict[str, Ink] = {"continuous": "measured", "separate": "residual", "information": "input"}
 
-_Y, _X = "criterion [%]", "manoeuvre"
+_Y, _X = "criterion [% of its limit]", "manoeuvre"
 
 
 class Criterion(Pane):
@@ -23,8 +23,9 @@ class Criterion(Pane):
     HELP = """\
 # Criterion
 
-The stop criterion after each manoeuvre for the three rules side by side; the test may stop below the
-dashed limit. The rule that decides is marked **►**; what the others would have said is never hidden.
+The stop criterion after each manoeuvre for the three rules side by side, each as a share of its own
+limit: the test may stop below the dashed line. The rule that decides is marked **►**; what the others
+would have said is never hidden.
 """
 
     def compose(self) -> ComposeResult:
@@ -53,7 +54,8 @@ def _rule_lines(verdict: FlightTestVerdict) -> list[str]:
         known = [value for value in progress.history_percent if value is not None]
         now = percent(known[-1]) if known else "too few manoeuvres"
         says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
-        lines.append(f"{'►' if rule == verdict.rule else ' '} {rule:<12} {now:>8}  {says}")
+        mark, limit = "►" if rule == verdict.rule else " ", percent(progress.limit_percent)
+        lines.append(f"{mark} {rule:<12} {now:>8}  (limit {limit})  {says}")
     return lines
 
 
@@ -63,8 +65,8 @@ def _chart(verdict: FlightTestVerdict | None) -> Chart:
         history = np.array([np.nan if v is None else v for v in progress.history_percent], dtype=np.float64)
         if np.isfinite(history).any():
             numbers = np.arange(1.0, len(history) + 1.0)
-            series.append(Series(rule, numbers, history, RULE_INKS.get(rule, "prior")))
+            share = history / progress.limit_percent * 100.0
+            series.append(Series(rule, numbers, share, RULE_INKS.get(rule, "prior")))
     if verdict is None or not series:
         return Chart(_Y, _X, why_empty="too few accepted manoeuvres for any rule yet.")
-    limit = Level("limit", verdict.limit_percent)
-    return Chart(_Y, _X, series=tuple(series), levels=(limit,), whole_x=True)
+    return Chart(_Y, _X, series=tuple(series), levels=(Level("limit", 100.0),), whole_x=True)

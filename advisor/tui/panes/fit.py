@@ -55,7 +55,7 @@ A residual without pattern is noise; one with a pattern is something the model d
                 _residual_chart(fit, start_s) if fit else missing
             )
         if judged:
-            self.border_subtitle = f"manoeuvre {judged.maneuver.number}"
+            self.subtitle(f"manoeuvre {judged.maneuver.number}")
         self._make_room()
 
     def next_output(self) -> None:

@@ -3,6 +3,7 @@
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 from advisor.tui.words import percent
 
@@ -20,7 +21,7 @@ def bar(value: float, limit: float, width: int) -> str:
     return "".join(cells)
 
 
-class Gauge(Lines):
+class Gauge(Part, Lines):
     """Criterion, manoeuvres so far, and what is still expected."""
 
     def show(self, view: View) -> None:

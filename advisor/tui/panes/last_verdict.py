@@ -5,6 +5,7 @@ from textual.containers import Vertical
 
 from advisor.campaign_state import JudgedManeuver
 from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 
 
@@ -15,7 +16,7 @@ def symbol_and_word(judged: JudgedManeuver) -> tuple[str, str]:
     return ("✓", "GOOD") if judged.verdict.accepted else ("✗", "REPEAT")
 
 
-class LastVerdict(Vertical):
+class LastVerdict(Part, Vertical):
     """The newest manoeuvre's verdict."""
 
     def compose(self) -> ComposeResult:

@@ -42,9 +42,9 @@ adds nothing, it says so: recover. Between manoeuvres nothing moves here; the la
         """Draw what is in the air; without anything, keep the last trace."""
         flying, settling = view.state.flying, view.state.settling
         if flying is None:
-            self.border_subtitle = ""
+            self.subtitle("")
             return
-        self.border_subtitle = f"in the air: manoeuvre {flying.number}"
+        self.subtitle(f"in the air: manoeuvre {flying.number}")
         self.query_one("#settling", Lines).write(view.state.enough or _settling_in_words(settling))
         for name, ink in TRACES.items():
             self.query_one(f"#live-{name}", Plot).chart = _trace(flying, settling, name, ink)

@@ -50,7 +50,7 @@ of Eq. (7).
         """Say why the table is empty."""
         super().on_mount()
         self._shown: tuple[JudgedManeuver, ...] | None = None
-        self.border_subtitle = "none yet: a row appears when a manoeuvre has ended"
+        self.subtitle("none yet: a row appears when a manoeuvre has ended")
 
     def show(self, view: View) -> None:
         """Fill the table anew when a verdict changed."""
@@ -66,7 +66,7 @@ of Eq. (7).
             if view.judged is not None:
                 table.move_cursor(row=maneuvers.index(view.judged), scroll=True)
         taken_out = sum(j.excluded_because is not None for j in maneuvers)
-        self.border_subtitle = f"{len(maneuvers)} flown" + (f", {taken_out} excluded" if taken_out else "")
+        self.subtitle(f"{len(maneuvers)} flown" + (f", {taken_out} excluded" if taken_out else ""))
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
         """Tell the screen which manoeuvre the engineer looks at."""

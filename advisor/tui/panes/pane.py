@@ -4,10 +4,10 @@ from typing import ClassVar
 
 from textual.containers import Vertical
 
-from advisor.tui.view import View
+from advisor.tui.panes.part import Part
 
 
-class Pane(Vertical):
+class Pane(Part, Vertical):
     """A framed part of a screen that can be focused, explained and shown a `View`."""
 
     TITLE: ClassVar[str] = ""
@@ -19,6 +19,12 @@ class Pane(Vertical):
         """Write the title into the frame."""
         self.border_title = self.TITLE
 
-    def show(self, view: View) -> None:
-        """Update to a new moment; cheap when nothing of the pane's own changed."""
-        raise NotImplementedError
+    @property
+    def wants_showing(self) -> bool:
+        """Only panes in sight are updated."""
+        return bool(self.display)
+
+    def subtitle(self, text: str) -> None:
+        """Write into the lower edge of the frame; the same text costs nothing."""
+        if text != self.border_subtitle:
+            self.border_subtitle = text

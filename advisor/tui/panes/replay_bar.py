@@ -3,19 +3,20 @@
 from math import isinf
 
 from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 from advisor.tui.words import clock
 
 _WIDTH = 24
 
 
-class ReplayBar(Lines):
+class ReplayBar(Part, Lines):
     """Playing or paused, speed, and the place in the log."""
 
     def show(self, view: View) -> None:
         """Write the line when the source is a replay."""
         playback = view.playback
-        self.display = playback is not None
+        self.set_class(playback is not None, "-playing")
         if playback is None:
             return
         speed = "max" if isinf(playback.speed) else f"{playback.speed:g} ×"

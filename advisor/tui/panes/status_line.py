@@ -1,6 +1,7 @@
 """The first line of every screen: which aircraft, in which mode, heard how."""
 
 from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 
 CONDITIONS = {
@@ -12,7 +13,7 @@ CONDITIONS = {
 }
 
 
-class StatusLine(Lines):
+class StatusLine(Part, Lines):
     """Aircraft, vehicle, mode and source at the left; the link's condition by symbol and word."""
 
     def show(self, view: View) -> None:

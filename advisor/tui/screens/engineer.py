@@ -21,7 +21,6 @@ from advisor.tui.panes.parameters import Parameters
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.panes.verdict import Verdict
-from advisor.tui.screens.ask import Ask
 from advisor.tui.screens.face import Face
 from advisor.tui.view import View
 
@@ -80,14 +79,8 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         self._refresh_panes()
 
     def _refresh_panes(self) -> None:
-        view = self._view
-        if view is None:
-            return
-        self.query_one(StatusLine).show(view)
-        self.query_one(ReplayBar).show(view)
-        for pane in self.query(Pane):
-            if pane.display:
-                pane.show(view)
+        if self._view is not None:
+            super().show(self._view)
 
     def on_maneuvers_selected(self, event: Maneuvers.Selected) -> None:
         """Show another manoeuvre in every pane."""
@@ -97,10 +90,10 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
 
     def action_choose(self, number: int) -> None:
         """Show a pane and give it the focus."""
-        chosen = self.query_one(PANES[number - 1])
+        chosen = self.query_one(PANES[number - 1].__name__)
         if number > 1:
-            for pane in self.query(Pane):
-                pane.set_class(pane is chosen, "-chosen")
+            for node in self.query("*"):
+                node.set_class(node is chosen, "-chosen")
         self.query_one(PaneTabs).choose(number)
         inner = chosen.query("DataTable")
         (inner.first() if inner else chosen).focus()
@@ -128,8 +121,4 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         self._ask("note", judged.maneuver.number, f"Note on manoeuvre {judged.maneuver.number}:")
 
     def _ask(self, verb: Verb, number: int, question: str) -> None:
-        def decide(text: str | None) -> None:
-            if text is not None:
-                self.post_message(self.Decided(HandDecision(verb, text, number)))
-
-        self.app.push_screen(Ask(question), decide)
+        self.ask(question, lambda text: self.post_message(self.Decided(HandDecision(verb, text, number))))

@@ -12,7 +12,7 @@ from textual.widgets import Markdown
 class Explain(ModalScreen[None]):
     """Shows Markdown; any of escape, q and ? closes it."""
 
-    CSS_PATH = "../styles/dialogs.tcss"
+    CSS_PATH = "../styles/explain.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,question_mark", "dismiss", "Close")]
 
     def __init__(self, markdown: str) -> None:

@@ -1,9 +1,13 @@
 """What both faces have in common."""
 
+from collections.abc import Callable
+
 from textual.message import Message
 from textual.screen import Screen
 
 from advisor.tui.hand import HandDecision
+from advisor.tui.panes.ask import Ask
+from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 
 
@@ -17,6 +21,13 @@ class Face(Screen[None]):
             super().__init__()
             self.decision = decision
 
+    def ask(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
+        """Ask for one line at the foot of the screen; a question still open is replaced."""
+        self.query(Ask).remove()
+        self.mount(Ask(question, answered, integer=integer))
+
     def show(self, view: View) -> None:
-        """Update every part to a new moment."""
-        raise NotImplementedError
+        """Update every part that wants to be to a new moment."""
+        for node in self.query("*"):
+            if isinstance(node, Part) and node.wants_showing:
+                node.show(view)

@@ -3,16 +3,13 @@
 from textual.app import ComposeResult
 from textual.widgets import Footer
 
-from advisor.tui.advice import advise
-from advisor.tui.panes.big_word import BigWord
+from advisor.tui.panes.big_word import BigWord, Why
 from advisor.tui.panes.crew_notes import CrewNotes
 from advisor.tui.panes.gauge import Gauge
 from advisor.tui.panes.last_verdict import LastVerdict
-from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.screens.face import Face
-from advisor.tui.view import View
 
 
 class PilotScreen(Face):
@@ -36,21 +33,10 @@ The large word is what to do now:
     def compose(self) -> ComposeResult:
         """From top to bottom in the order of urgency."""
         yield StatusLine()
-        yield BigWord(id="word")
-        yield Lines(id="word-sentence")
+        yield BigWord()
+        yield Why()
         yield LastVerdict()
         yield Gauge()
         yield CrewNotes()
         yield ReplayBar()
         yield Footer(compact=True)
-
-    def show(self, view: View) -> None:
-        """Update every part."""
-        advice = advise(view)
-        self.query_one(BigWord).show(advice)
-        self.query_one("#word-sentence", Lines).write(advice.sentence)
-        self.query_one(StatusLine).show(view)
-        self.query_one(LastVerdict).show(view)
-        self.query_one(Gauge).show(view)
-        self.query_one(CrewNotes).show(view)
-        self.query_one(ReplayBar).show(view)

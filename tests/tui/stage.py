@@ -1,0 +1,68 @@
+"""Runs the real application headless over a campaign and a source under the test's control."""
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+
+from textual.pilot import Pilot
+from textual.widget import Widget
+
+from advisor.campaign_state import CampaignState
+from advisor.tui.app import AdvisorApp
+from advisor.tui.panes.lines import Lines
+from advisor.tui.settings import Settings
+from advisor.tui.source import Source
+from tests.tui import flights
+from tests.tui.stand_ins import HandFedSource, StagedCampaign
+
+_PATIENCE = 200
+
+
+@dataclass
+class Stage:
+    """The running application and what it runs on."""
+
+    app: AdvisorApp
+    pilot: Pilot[None]
+    campaign: StagedCampaign
+    source: Source
+
+    async def until(self, condition: Callable[[], bool]) -> None:
+        """Let the application work until something is so; at most a few seconds."""
+        for _ in range(_PATIENCE):
+            if condition():
+                await self.pilot.pause()
+                return
+            await self.pilot.pause(0.02)
+        raise AssertionError("It did not come to that.")
+
+    async def press(self, *keys: str) -> None:
+        """Press keys and let their effects happen."""
+        await self.pilot.press(*keys)
+        await self.pilot.pause()
+
+    def words(self, selector: str = "Lines") -> str:
+        """Everything that a part of the screen says."""
+        return "\n".join(str(w.render()) for w in self.app.screen.query(selector).results(Lines) if shown(w))
+
+
+def shown(widget: Widget) -> bool:
+    """Whether a widget and everything around it is displayed."""
+    return all(node.display for node in widget.ancestors_with_self if isinstance(node, Widget))
+
+
+@asynccontextmanager
+async def stage(
+    *states: CampaignState,
+    size: tuple[int, int] = (120, 40),
+    settings: Settings | None = None,
+    source: Source | None = None,
+) -> AsyncIterator[Stage]:
+    """The application over a campaign that goes through ``states``, shown the first of them."""
+    campaign = StagedCampaign(states or (flights.state(),))
+    source = source or HandFedSource()
+    app = AdvisorApp(source, lambda: campaign, flights.AIRCRAFT, settings)
+    async with app.run_test(size=size) as pilot:
+        here = Stage(app, pilot, campaign, source)
+        await here.until(lambda: app.view.state.vehicle == campaign.state.vehicle and app.is_attached)
+        yield here

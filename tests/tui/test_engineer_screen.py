@@ -1,0 +1,149 @@
+"""Every number behind the word, and what an engineer does by hand."""
+
+from textual.widgets import DataTable, Input
+
+from advisor.tui.panes.criterion import Criterion
+from advisor.tui.panes.fit import Fit
+from advisor.tui.panes.live import Live
+from advisor.tui.panes.parameters import Parameters
+from advisor.tui.plot.widget import Plot
+from advisor.tui.settings import Settings
+from tests.tui import flights
+from tests.tui.stage import Stage, stage
+from tests.tui.stand_ins import HandFedSource
+
+ENGINEER = Settings(screen="engineer")
+WIDE = (200, 60)
+
+
+def table(here: Stage, pane: str) -> list[list[str]]:
+    """The cells of a pane's table."""
+    rows = here.app.screen.query_one(f"{pane} DataTable", DataTable)
+    return [[str(cell) for cell in rows.get_row_at(k)] for k in range(rows.row_count)]
+
+
+async def filled(here: Stage, count: int) -> None:
+    await here.until(lambda: len(table(here, "Maneuvers")) == count)
+
+
+async def test_the_table_shows_each_manoeuvre_with_what_every_rule_says():
+    async with stage(flights.state(4), settings=ENGINEER, size=WIDE) as here:
+        await filled(here, 4)
+        rows = table(here, "Maneuvers")
+        assert rows[0][:4] == ["1", "1:45", "3-2-1-1", "✓ GOOD"]
+        assert rows[1][3:5] == ["✗ REPEAT", "amplitude; bank"]
+        assert rows[3][5:8] == ["✓", "✗", "✓"]
+
+
+async def test_the_eight_parameters_stand_with_intervals_beside_the_prior_model():
+    async with stage(flights.state(4), settings=ENGINEER, size=WIDE) as here:
+        await here.until(lambda: len(table(here, "Parameters")) == 8)
+        rows = {row[0].split()[0]: row[1:] for row in table(here, "Parameters")}
+        assert set(rows) == {"Z_0", "Z_α", "Z_q", "Z_δe", "M_0", "M_α", "M_q", "M_δe"}
+        assert rows["M_α"][0].startswith("−4")
+        assert " ± 3.7" in rows["M_α"][0]
+        assert rows["M_α"][2] == "−52.800"
+        assert rows["M_α"][3].endswith("σ")
+
+
+async def test_a_parameter_that_cannot_be_told_has_no_number():
+    async with stage(flights.state(4), settings=ENGINEER, size=WIDE) as here:
+        await here.until(lambda: len(table(here, "Parameters")) == 8)
+        assert table(here, "Parameters")[2][1:3] == ["not identifiable", "not identifiable"]
+
+
+async def test_selecting_a_manoeuvre_shows_its_fit_and_new_ones_do_not_take_it_away():
+    source = HandFedSource()
+    async with stage(flights.state(3), flights.state(4), settings=ENGINEER, size=WIDE, source=source) as here:
+        await filled(here, 3)
+        await here.press("up", "up")
+        fit = here.app.screen.query_one(Fit)
+        assert fit.border_subtitle == "manoeuvre 1"
+        source.deliver()
+        await filled(here, 4)
+        assert fit.border_subtitle == "manoeuvre 1"
+
+
+async def test_the_last_row_follows_the_newest_manoeuvre():
+    source = HandFedSource()
+    async with stage(flights.state(3), flights.state(4), settings=ENGINEER, size=WIDE, source=source) as here:
+        await filled(here, 3)
+        source.deliver()
+        await filled(here, 4)
+        assert here.app.screen.query_one(Fit).border_subtitle == "manoeuvre 4"
+
+
+async def test_every_output_is_plotted_in_its_unit_with_its_residual():
+    async with stage(flights.state(2), settings=ENGINEER, size=WIDE) as here:
+        await filled(here, 2)
+        charts = [plot.chart for plot in here.app.screen.query_one(Fit).query(Plot)]
+        assert [c.y_label for c in charts[::2]] == ["α [deg]", "q [deg/s]", "a_z [m/s²]", "θ [deg]"]
+        assert all([s.name for s in c.series] == ["measured", "fitted"] for c in charts[::2])
+        assert all([s.name for s in c.series] == ["residual"] for c in charts[1::2])
+
+
+async def test_the_manoeuvre_in_the_air_is_traced_with_the_estimate_so_far():
+    async with stage(flights.state(2, in_the_air=True), settings=ENGINEER, size=WIDE) as here:
+        live = here.app.screen.query_one(Live)
+        await here.until(lambda: live.border_subtitle == "in the air: manoeuvre 3")
+        assert "M_α −" in here.words("#settling")
+        assert [s.name for s in live.query_one("#live-q", Plot).chart.series] == ["measured", "fitted so far"]
+
+
+async def test_all_rules_are_plotted_each_as_a_share_of_its_limit():
+    async with stage(flights.state(7), settings=ENGINEER, size=WIDE) as here:
+        await filled(here, 7)
+        chart = here.app.screen.query_one(Criterion).query_one(Plot).chart
+        assert [s.name for s in chart.series] == ["continuous", "separate", "information"]
+        assert chart.levels[0].y == 100.0
+        assert "► continuous" in here.words("Criterion Lines")
+
+
+async def test_excluding_asks_for_a_reason_and_records_it():
+    async with stage(flights.state(3), settings=ENGINEER, size=WIDE) as here:
+        await filled(here, 3)
+        await here.press("up", "x")
+        assert isinstance(here.app.focused, Input)
+        await here.press(*"gust", "enter")
+        await here.until(lambda: ("exclude", 2, "gust") in here.campaign.calls)
+        await here.until(lambda: table(here, "Maneuvers")[1][3:5] == ["∅ EXCLUDED", "gust"])
+        await here.press("x", *"fine", "enter")
+        await here.until(lambda: ("include", 2) in here.campaign.calls)
+        await here.until(lambda: ("note", 2, "included again: fine") in here.campaign.calls)
+
+
+async def test_an_exclusion_without_a_reason_is_not_made():
+    async with stage(flights.state(3), settings=ENGINEER, size=WIDE) as here:
+        await filled(here, 3)
+        await here.press("x", "enter")
+        assert isinstance(here.app.focused, Input)
+        await here.press("escape")
+        assert here.campaign.calls == []
+
+
+async def test_notes_and_marks_reach_the_campaign():
+    async with stage(flights.state(3), settings=ENGINEER, size=WIDE) as here:
+        await filled(here, 3)
+        await here.press("n", *"hm", "enter", "m", *"flaps", "enter")
+        await here.until(lambda: ("note", 3, "hm") in here.campaign.calls)
+        await here.until(lambda: ("mark", "flaps") in here.campaign.calls)
+
+
+async def test_the_parameter_under_the_cursor_has_its_history_drawn():
+    async with stage(flights.state(5), settings=ENGINEER, size=WIDE) as here:
+        await filled(here, 5)
+        await here.press("3", "down", "down", "down", "down", "down")
+        chart = here.app.screen.query_one(Parameters).query_one(Plot).chart
+        assert chart.y_label == "M_α [1/s²]"
+        assert [level.name for level in chart.levels] == ["model", "prior"]
+
+
+async def test_a_manoeuvre_without_an_estimate_says_why():
+    state = flights.state(2)
+    failed = (*state.maneuvers, flights.without_estimate(3))
+    from dataclasses import replace
+
+    async with stage(replace(state, maneuvers=failed), settings=ENGINEER, size=WIDE) as here:
+        await filled(here, 3)
+        assert "no estimate: The input did not move the aircraft." in here.words("Verdict Lines")
+        assert "The input did not move" in here.app.screen.query_one("#fit-q", Plot).chart.why_empty
