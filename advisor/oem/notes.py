@@ -62,7 +62,7 @@ def _airspeed(prepared: Prepared) -> str:
 
 def _scale(solution: Solution) -> str:
     scale = float(solution.optimum.shared[6])
-    if abs(scale) < NOTED_SCALE:
+    if abs(scale) < NOTED_SCALE or len(solution.problem.records) == 1:
         return ""
     return (
         f"Accelerations agree with angle of attack if the true air speed is {100.0 * scale:+.1f} % from the"

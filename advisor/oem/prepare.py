@@ -75,7 +75,7 @@ def prepare(
             vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
             accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
         ),
-        renewed_hz=min(1.0 / float(np.median(np.diff(alpha.t))) for alpha, _ in alphas),
+        renewed_hz=min((len(alpha.t) - 1) / float(alpha.t[-1] - alpha.t[0]) for alpha, _ in alphas),
         alpha_held=any(held for _, held in alphas),
         missing=tuple(name for name in outputs if name not in usable),
         airspeed_lag_s=float(np.mean([speed.lag_s for speed in measured])) if measured else 0.0,

@@ -15,6 +15,8 @@ from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
 
 Method = Literal["gauss-newton", "nelder-mead"]
+HEALTHY_ITERATIONS = 12
+"""A search that takes longer may be creeping along the valley of a second minimum: begin elsewhere, too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,11 +64,25 @@ def solve(
     """
     assembly = assemble(problem)
     floor = noise_floor(assembly)
-    shared, local = start(problem) if begin is None else begin
     search = descend if method == "gauss-newton" else descend_by_simplex
-    optimum = search(
-        assembly.grid, assembly.z, assembly.channel, assembly.owner, assembly.free, floor, shared, local
-    )
+
+    def from_(shared: FloatArray, local: FloatArray) -> Optimum:
+        return search(
+            assembly.grid,
+            assembly.z,
+            assembly.channel,
+            assembly.owner,
+            assembly.free,
+            floor,
+            shared,
+            local,
+        )
+
+    optimum = from_(*(start(problem) if begin is None else begin))
+    if begin is None and (optimum.status != CONVERGED or optimum.iterations > HEALTHY_ITERATIONS):
+        other = from_(*start(problem, lift_from_alpha_only=True))
+        if other.log_likelihood_cost < optimum.log_likelihood_cost:
+            optimum = other
     if optimum.status == OVERFLOW:
         return NoEstimate(
             "diverged", "The model runs away from its first guess: the record is too long or too noisy."

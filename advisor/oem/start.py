@@ -18,8 +18,14 @@ from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.surface import Servo
 
 
-def start(problem: Problem) -> tuple[FloatArray, FloatArray]:
+def start(problem: Problem, *, lift_from_alpha_only: bool = False) -> tuple[FloatArray, FloatArray]:
     """Shared (7,) and local (m, 7) parameters to begin with.
+
+    Parameters
+    ----------
+    lift_from_alpha_only : regress Eq. (1) with Z_q = Z_δe = 0. These two are small and trade with
+        Z_α; where the model does not quite hold (an angle of attack that is late, a servo unknown) the
+        free regression can begin in the valley of another minimum.
 
     Always returns finite numbers; a record that teaches nothing yields a least-norm solution.
     """
@@ -31,13 +37,18 @@ def start(problem: Problem) -> tuple[FloatArray, FloatArray]:
         for record in problem.records:
             side = _usable(record.outputs[output])
             common, constants = _regressors(record, problem, side.t, moment)
+            known = np.zeros(len(side.t))
+            if lift_from_alpha_only and not moment:
+                common, known = common[:, :1], common[:, 1]
             gain = np.linalg.pinv(constants)
             stacks.append(common - constants @ (gain @ common))
-            sides.append(side.y - constants @ (gain @ side.y))
-            own.append((gain, common, side.y))
+            sides.append(side.y - known - constants @ (gain @ (side.y - known)))
+            own.append((gain, common, side.y - known))
         found = np.linalg.lstsq(np.concatenate(stacks), np.concatenate(sides), rcond=1e-12)[0]
         if moment:
             shared[3:6] = found
+        elif lift_from_alpha_only:
+            shared[0] = found[0]
         else:
             shared[0:3] = found
             shared[1] -= 1.0
