@@ -50,7 +50,7 @@ def incomplete(maneuver: Maneuver, period_s: float) -> list[Reason]:
 
 
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    """Bank, saturation, angle of attack, throttle, other controls; last air speed, which follows from them."""
+    """Bank, saturation, angle of attack, throttle, other controls; then air speed, which follows."""
     return [
         *_bank(maneuver, aircraft.limits.bank_deg),
         *_saturation(maneuver, aircraft),

@@ -5,7 +5,7 @@ stretch itself: trim is the level at which it rests now, the amplitude is its la
 deviation from that, the quiet level is what the elevator does at trim before the first step.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -105,12 +105,13 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
     if abs(float(np.mean(d[before:first]))) > 0.5 * _BAND * amplitude:
         return None
     shape = _classify(t, d, first, last, trim, amplitude, quiet)
-    if shape is None or not _is_sharp(t, d, shape):
+    if shape is None or shape.is_3211:
+        return shape if shape is not None and _is_sharp(t, d, shape) else None
+    if t[first] - t[before] < _QUIET_S[shape.kind] or amplitude < 8.0 * quiet:
         return None
-    if shape.is_3211:
+    if shape.kind != "multisine" and _is_sharp(t, d, shape):
         return shape
-    steady = t[first] - t[before] >= _QUIET_S[shape.kind] and amplitude >= 8.0 * quiet
-    return shape if steady else None
+    return replace(shape, kind="multisine") if _is_multisine(shape) else None
 
 
 def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, int] | None:
@@ -203,9 +204,7 @@ def _squareness(t: FloatArray, d: FloatArray, levels: FloatArray, onsets: FloatA
 
 
 def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape) -> bool:
-    """Whether the elevator steps from level to level rather than swings (multisines swing)."""
-    if shape.kind == "multisine":
-        return True
+    """Whether the elevator steps from level to level rather than swings."""
     shortest = float(np.min(np.diff([onset for onset, _ in shape.steps])))
     least, most = _HAND_S
     longest = (
@@ -241,15 +240,15 @@ def _kind(levels: FloatArray, durations: FloatArray, square: float, step_s: floa
         kind = "doublet"
     if square >= _SQUARE[kind] and (kind != "other" or len(levels) > 1):
         return kind
-    return "multisine" if _is_multisine(levels, durations) else None
+    return "multisine" if len(levels) > 1 else None
 
 
-def _is_multisine(levels: FloatArray, durations: FloatArray) -> bool:
+def _is_multisine(shape: Shape) -> bool:
     """Many reversals, quick ones, and no dying away."""
-    if len(levels) < 6 or np.median(durations) > 1.5:
+    levels = np.abs([level for _, level in shape.steps[:-1]])
+    if len(levels) < 6 or np.median(np.diff([onset for onset, _ in shape.steps])) > 1.5:
         return False
-    half = len(levels) // 2
-    early, late = np.max(np.abs(levels[:half])), np.max(np.abs(levels[half:]))
+    early, late = np.max(levels[: len(levels) // 2]), np.max(levels[len(levels) // 2 :])
     return bool(late > 0.6 * early and early > 0.4 * late)
 
 
