@@ -1,6 +1,7 @@
 """The terminal application: one source, one campaign, two screens."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from math import inf
 from time import monotonic
 from typing import Any, ClassVar
@@ -23,7 +24,7 @@ from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
 from advisor.tui.source import Playable, Source
 from advisor.tui.themes import NAMES, THEMES
-from advisor.tui.view import View, view_before_first
+from advisor.tui.view import view_before_first
 
 _TWICE_WITHIN_S = 3.0
 
@@ -90,7 +91,9 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
     def on_advisor_app_told(self, event: Told) -> None:
         """Show the newest report."""
         report = event.report
-        self.view = View(report.state, report.health, report.playback, self.view.aircraft, self.view.title)
+        self.view = replace(
+            self.view, state=report.state, health=report.health, playback=report.playback, log=report.log
+        )
         self._show()
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:

@@ -14,6 +14,7 @@ from time import monotonic
 
 from advisor.campaign_state import CampaignState
 from advisor.tui.campaign_like import CampaignLike
+from advisor.tui.chronicle import Chronicle
 from advisor.tui.goal import Goal
 from advisor.tui.hand import HandDecision
 from advisor.tui.source import LinkHealth, Playable, Playback, Source
@@ -29,6 +30,8 @@ class Report:
     state: CampaignState
     health: LinkHealth
     playback: Playback | None
+    log: tuple[str, ...]
+    """What happened so far, oldest first."""
 
 
 class Conductor:
@@ -55,6 +58,7 @@ class Conductor:
         self._by_hand: list[HandDecision] = []
         self._pending: list[HandDecision] = []
         self._goal: Goal | None = None
+        self._chronicle = Chronicle()
         self._stopped = Event()
         self._rewound = False
         self._told_s = -inf
@@ -70,6 +74,7 @@ class Conductor:
         try:
             while not self._stopped.is_set():
                 self._rewound = False
+                self._chronicle.start_again()
                 self._play(self._make_campaign())
         finally:
             self._source.close()
@@ -119,8 +124,11 @@ class Conductor:
         self._report(campaign)
 
     def _report(self, campaign: CampaignLike) -> None:
+        state = campaign.state
+        self._chronicle.follow(state.notices)
+        self._chronicle.hear(self._source.take_notices())
         playback = self._source.playback() if isinstance(self._source, Playable) else None
-        self._tell(Report(campaign.state, self._source.health(), playback))
+        self._tell(Report(state, self._source.health(), playback, self._chronicle.lines))
         self._told_s = monotonic()
 
     def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:

@@ -70,6 +70,10 @@ class LinkSource:
             condition, sentence = "ended", "The flight is over."
         return LinkHealth(condition, sentence, _figures(statistics))
 
+    def take_notices(self) -> Sequence[str]:
+        """What the link has to report since the last call."""
+        return [notice.text for notice in self._link.take_notices()] if self._link is not None else ()
+
     def close(self) -> None:
         """Stop listening; the recording is whole afterwards."""
         if self._opened is not None:

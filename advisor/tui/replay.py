@@ -114,5 +114,9 @@ class LogPlayer:
         if self._timeline:
             self._timeline.rewind()
 
+    def take_notices(self) -> Sequence[str]:
+        """Nothing happens on the way from a file."""
+        return ()
+
     def close(self) -> None:
         """A log holds nothing open."""

@@ -39,6 +39,9 @@ class Source(Protocol):
     def health(self) -> LinkHealth:
         """How the data arrive at this moment; any thread may ask."""
 
+    def take_notices(self) -> Sequence[str]:
+        """What happened on the way since the last call: reconnected, rates granted, a second vehicle."""
+
     def close(self) -> None:
         """Release sockets and files."""
 

@@ -18,6 +18,8 @@ class View:
     aircraft: Aircraft
     title: str
     """What the source is called."""
+    log: tuple[str, ...] = ()
+    """What happened so far, oldest first."""
     selected: int | None = None
     """Number of the manoeuvre chosen by hand; None: always the newest."""
 

@@ -79,6 +79,7 @@ class HandFedSource:
         self.condition = LinkHealth(
             "good", "412 messages/s, none lost.", (("messages", "412 /s"), ("lost", "0.0 %"))
         )
+        self.notices: list[str] = []
         self.closed = False
 
     def deliver(self, count: int = 1) -> None:
@@ -97,6 +98,10 @@ class HandFedSource:
 
     def health(self) -> LinkHealth:
         return self.condition
+
+    def take_notices(self) -> Sequence[str]:
+        taken, self.notices = self.notices, []
+        return taken
 
     def close(self) -> None:
         self.closed = True

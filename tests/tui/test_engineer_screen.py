@@ -1,5 +1,7 @@
 """Every number behind the word, and what an engineer does by hand."""
 
+from dataclasses import replace
+
 from textual.widgets import DataTable, Input
 
 from advisor.tui.panes.criterion import Criterion
@@ -141,9 +143,19 @@ async def test_the_parameter_under_the_cursor_has_its_history_drawn():
 async def test_a_manoeuvre_without_an_estimate_says_why():
     state = flights.state(2)
     failed = (*state.maneuvers, flights.without_estimate(3))
-    from dataclasses import replace
-
     async with stage(replace(state, maneuvers=failed), settings=ENGINEER, size=WIDE) as here:
         await filled(here, 3)
         assert "no estimate: The input did not move the aircraft." in here.words("Verdict Lines")
         assert "The input did not move" in here.app.screen.query_one("#fit-q", Plot).chart.why_empty
+
+
+async def test_the_log_tells_of_the_campaign_and_of_the_link_in_order():
+    source = HandFedSource()
+    async with stage(flights.state(1), flights.state(2), settings=ENGINEER, size=WIDE, source=source) as here:
+        await here.until(lambda: "manoeuvre 1 judged" in here.words("EventLog Lines"))
+        source.notices.append("reconnected after 3 s")
+        await here.until(lambda: "link: reconnected" in here.words("EventLog Lines"))
+        source.deliver()
+        await here.until(lambda: "manoeuvre 2 judged" in here.words("EventLog Lines"))
+        lines = here.words("EventLog Lines").split("\n")
+        assert [line.split()[0] for line in lines] == ["ardupilot", "113", "link:", "138"]

@@ -32,9 +32,8 @@ mark at this moment.
         self._shown: tuple[str, ...] = ()
 
     def show(self, view: View) -> None:
-        """Write the newest notices."""
-        newest = view.state.notices[-_KEPT:]
-        if newest and newest != self._shown:
-            self._shown = newest
-            self.query_one(Lines).write("\n".join(newest))
+        """Write the newest lines."""
+        if view.log and view.log is not self._shown:
+            self._shown = view.log
+            self.query_one(Lines).write("\n".join(view.log[-_KEPT:]))
             self.query_one(VerticalScroll).scroll_end(animate=False)
