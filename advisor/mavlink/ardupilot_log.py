@@ -9,27 +9,29 @@ from numpy.typing import ArrayLike, NDArray
 
 from advisor.flight.messages import Columns
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
-from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message
+from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message, system_id
 from advisor.problems import UnusableInputError
 
-_RECORDS = [
-    "AOA",
-    "ARSP",
-    "ATT",
-    "BARO",
-    "CTUN",
-    "GPS",
-    "IMU",
-    "MODE",
-    "MSG",
-    "PARM",
-    "POS",
-    "RCOU",
-    "RCO2",
-    "RCO3",
-    "VER",
-    "XKF1",
-]
+_RECORDS: dict[str, set[str]] = {
+    "AOA": {"AOA", "SSA"},
+    "ARSP": {"Airspeed"},
+    "ATT": {"Roll", "Pitch", "Yaw"},
+    "BARO": {"CRt"},
+    "CTUN": {"As"},
+    "GPS": {"GWk", "GMS"},
+    "IMU": {"GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ"},
+    "MODE": {"ModeNum"},
+    "MSG": {"Message"},
+    "PARM": {"Name", "Value"},
+    "POS": {"Lat", "Lng", "Alt", "RelHomeAlt"},
+    "RCOU": {"C1"},
+    "RCO2": set(),
+    "RCO3": set(),
+    "VER": {"Maj", "Min", "Pat", "FWT"},
+    "XKF1": {"VD"},
+}
+"""Records, and the fields needed of each: without them (another kind of vehicle, an older version)
+a record counts as missing."""
 _ARDUPILOTMEGA = 3  # MAV_AUTOPILOT
 _BUILD_TO_MAV_TYPE = {1: 10, 2: 2, 3: MAV_TYPE_FIXED_WING, 4: 5, 7: 12, 12: 7, 13: 4}
 """VER.BU: rover, copter, plane, antenna tracker, submarine, airship, helicopter."""
@@ -45,7 +47,11 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
     UnusableInputError
         When it holds neither attitude, inertial sensors, nor servo outputs.
     """
-    tables = read_tables(path, _RECORDS)
+    tables = {
+        name: table
+        for name, table in read_tables(path, _RECORDS).items()
+        if _RECORDS[name] <= table.fields.keys()
+    }
     if not tables.keys() & {"ATT", "IMU", "RCOU"}:
         raise UnusableInputError(
             "no_messages",
@@ -53,7 +59,9 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
             "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
         )
     names = None if wanted is None else set(wanted)
-    columns = [c for c in _Translation(tables).columns() if len(c) and (names is None or c.name in names)]
+    with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
+        columns = list(_Translation(tables).columns())
+    columns = [c for c in columns if len(c) and (names is None or c.name in names)]
     if columns:
         yield columns
 
@@ -91,8 +99,8 @@ class _Translation:
         if parm is not None:
             for name, value in zip(parm.fields["Name"].tolist(), parm.fields["Value"].tolist(), strict=True):
                 if name in (b"SYSID_THISMAV", b"MAV_SYSID"):
-                    return int(value)
-        return 1
+                    return system_id(value)
+        return system_id(None)
 
     def _message(self, name: str, table: Table, fields: dict[str, ArrayLike], place: int = 0) -> Columns:
         """A message made of each record; ``place`` keeps several made of one record in order."""
@@ -109,13 +117,12 @@ class _Translation:
             rates = np.array([imu.fields[axis] for axis in ("GyrX", "GyrY", "GyrZ")], dtype=np.float64)
             rows.append((imu, np.vstack([np.full_like(rates, np.nan), rates])))
         order = np.concatenate([table.order for table, _ in rows])
-        by_order = np.argsort(order)
-        time_us = np.concatenate([table.time_us for table, _ in rows])[by_order]
-        values = np.hstack([values for _, values in rows])[:, by_order]
+        time_us = np.concatenate([table.time_us for table, _ in rows])
+        values = np.hstack([values for _, values in rows])
         names = ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed")
         fields: dict[str, Any] = dict(zip(names, values, strict=True))
         fields["time_boot_ms"] = _milliseconds(time_us)
-        return message("ATTITUDE", self._system, order[by_order], self._base_s + seconds(time_us), fields)
+        return message("ATTITUDE", self._system, order, self._base_s + seconds(time_us), fields)
 
     def _highres_imu(self, imu: Table) -> Columns:
         imu = imu.first_instance()
@@ -211,7 +218,7 @@ class _Translation:
         order, modes, time_us = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(1, np.int64)
         if "MODE" in self._tables:
             mode = self._tables["MODE"]
-            numbers = mode.fields["ModeNum" if "ModeNum" in mode.fields else "Mode"].astype(np.int64)
+            numbers = mode.fields["ModeNum"].astype(np.int64)
             order = np.concatenate([order, mode.order])
             modes = np.concatenate([numbers[:1], numbers])
             time_us = np.concatenate([mode.time_us[:1], mode.time_us])

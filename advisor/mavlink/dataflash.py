@@ -106,7 +106,7 @@ def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
 
 def gps_time_base_s(gps: Table | None) -> float:
     """Seconds since 1970 at boot, from the first fix with a GPS week; 0 when there is none."""
-    if gps is None or not {"GWk", "GMS"} <= gps.fields.keys():
+    if gps is None:
         return 0.0
     known = np.flatnonzero(gps.fields["GWk"] > 0)
     if not len(known):
@@ -133,7 +133,7 @@ def _layout(definition: Any) -> tuple["np.dtype[np.void] | None", list[float | N
         for name, (kind, _) in zip(names, specifications, strict=True)
     ]
     layout = np.dtype(columns)
-    if layout.itemsize != definition["length"] - 3:
+    if layout.itemsize + 3 != definition["length"]:
         return None, []
     return layout, [divisor for _, divisor in specifications]
 

@@ -23,7 +23,7 @@ MAV_PARAM_TYPE_REAL32 = 9
 def message(
     name: str, system: int, order: IntArray, arrival_s: FloatArray, fields: Mapping[str, ArrayLike]
 ) -> Columns:
-    """Messages of one type from the values at hand.
+    """Messages of one type from the values at hand, put into their order.
 
     Parameters
     ----------
@@ -32,6 +32,7 @@ def message(
     system : int
         System id of the vehicle.
     order, arrival_s : shape (n,)
+        In any order, as the fields.
     fields : mapping
         Field name to shape (n,), or a scalar for all, in the units of the definition. Integers
         are cut to the size of the field, as a vehicle's counters wrap; texts and floating-point
@@ -39,6 +40,7 @@ def message(
     """
     n = len(order)
     layout = DEFINITIONS[name].layout
+    rows = np.argsort(order)
     columns: dict[str, NDArray[Any]] = {}
     for field in layout.names or ():
         wire = layout[field]
@@ -49,8 +51,13 @@ def message(
         values = np.asarray(fields[field])
         if wire.base.kind in "iu" and values.dtype.kind != "f":
             values = values.astype(wire.base)
-        columns[field] = np.broadcast_to(values, (n, *wire.shape))
-    return Columns(name, system, AUTOPILOT_COMPONENT, order, arrival_s, columns)
+        columns[field] = np.broadcast_to(values, (n, *wire.shape))[rows]
+    return Columns(name, system, AUTOPILOT_COMPONENT, order[rows], arrival_s[rows], columns)
+
+
+def system_id(parameter: object) -> int:
+    """The system id that a parameter states; 1 when it is none."""
+    return int(parameter) if isinstance(parameter, int | float) and 1 <= parameter <= 255 else 1
 
 
 def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from advisor.flight.messages import Columns
-from advisor.mavlink import ardupilot_log, dataflash, px4_log
+from advisor.mavlink import ardupilot_log, dataflash, ulog
 from advisor.mavlink.tlog import read_tlog
 from advisor.problems import UnusableInputError
 
@@ -32,8 +32,8 @@ def open_log(
         no messages.
     """
     beginning = _beginning(path)
-    if beginning.startswith(px4_log.MAGIC):
-        return px4_log.read_ulog(path, wanted)
+    if beginning.startswith(ulog.MAGIC):
+        return ulog.read_ulog(path, wanted)
     if beginning.startswith(dataflash.HEADER):
         return ardupilot_log.read_dataflash(path, wanted)
     return read_tlog(path, wanted, key)

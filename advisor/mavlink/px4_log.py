@@ -1,38 +1,34 @@
-"""What a PX4 log (``.ulg``) says, as the messages its telemetry would have carried.
+"""What a PX4 log says, as the messages its telemetry would have carried.
 
-Read by pyulog, an extra; topics and fields are those of PX4's message definitions (msg/*.msg).
+Topics and fields are those of PX4's message definitions (msg/*.msg).
 """
 
-import contextlib
-import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from advisor.flight.messages import Columns, FloatArray, IntArray
-from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message
-from advisor.problems import UnusableInputError
+from advisor.flight.messages import FloatArray, IntArray
+from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest
 
-MAGIC = b"ULog\x01\x12\x35"
+TOPICS: dict[str, set[str]] = {
+    "actuator_controls_0": {"control[3]"},
+    "actuator_outputs": {"output[15]"},
+    "airspeed": {"indicated_airspeed_m_s"},
+    "airspeed_validated": {"calibrated_airspeed_m_s"},
+    "debug_key_value": {"key[9]", "value"},
+    "sensor_combined": {"gyro_rad[2]", "accelerometer_m_s2[2]"},
+    "vehicle_angular_velocity": {"xyz[2]"},
+    "vehicle_attitude": {"q[3]"},
+    "vehicle_gps_position": {"time_utc_usec"},
+    "vehicle_local_position": {"z", "vz"},
+    "vehicle_status": {"nav_state"},
+    "vehicle_thrust_setpoint": {"xyz[0]"},
+}
+"""Topics, and the fields needed of each: without them (another version) a topic counts as missing."""
 
-_TOPICS = [
-    "actuator_controls_0",
-    "actuator_outputs",
-    "airspeed",
-    "airspeed_validated",
-    "debug_key_value",
-    "sensor_combined",
-    "vehicle_angular_velocity",
-    "vehicle_attitude",
-    "vehicle_gps_position",
-    "vehicle_local_position",
-    "vehicle_status",
-    "vehicle_thrust_setpoint",
-]
 _PX4 = 12  # MAV_AUTOPILOT
 _MAV_TYPES = {1: 2, 2: MAV_TYPE_FIXED_WING}
 """vehicle_status.vehicle_type: rotary wing, fixed wing."""
@@ -44,56 +40,19 @@ _AUTO = 4
 Topic = Mapping[str, NDArray[Any]]
 
 
-@dataclass(frozen=True)
-class _Messages:
+@dataclass(frozen=True, slots=True)
+class TimedMessages:
+    """Messages of one type, by the autopilot's clock."""
+
     name: str
     time_us: IntArray
+    """Shape (n,), microseconds since boot, in any order, as the fields."""
     fields: Mapping[str, ArrayLike]
 
 
-def read_ulog(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
-    """The messages of a ``.ulg``, in one batch, ordered by time.
-
-    Raises
-    ------
-    UnusableInputError
-        When pyulog is not installed, or the file holds neither attitude, sensors, nor outputs.
-    """
-    try:
-        from pyulog import ULog
-    except ImportError:
-        raise UnusableInputError(
-            "no_pyulog",
-            f"{path.name} is a PX4 log, and pyulog, which reads them, is not installed.",
-            "Install it with: pip install 'inflight-advisor[logs]'.",
-        ) from None
-    try:
-        # pyulog prints its warnings; standard output belongs to the result.
-        with path.open("rb") as file, contextlib.redirect_stdout(sys.stderr):
-            log = ULog(file, _TOPICS)
-    except Exception as error:  # whatever pyulog meets in damaged bytes
-        raise _nothing_in(path) from error
-    columns = _columns(log)
-    if not {c.name for c in columns} & {"ATTITUDE", "HIGHRES_IMU", "SERVO_OUTPUT_RAW"}:
-        raise _nothing_in(path)
-    names = None if wanted is None else set(wanted)
-    yield [c for c in columns if names is None or c.name in names]
-
-
-def _nothing_in(path: Path) -> UnusableInputError:
-    return UnusableInputError(
-        "no_messages",
-        f"{path.name} holds no attitude, sensor or actuator topics of PX4.",
-        "Set SDLOG_PROFILE so that they are logged, or give a .tlog.",
-    )
-
-
-def _columns(log: Any) -> list[Columns]:
-    """Every message the topics give, numbered by time."""
-    topics: dict[str, list[Topic]] = {}
-    for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
-        by_time = np.argsort(data.data["timestamp"], kind="stable")
-        topics.setdefault(data.name, []).append({name: v[by_time] for name, v in data.data.items()})
+def translate(log: Any) -> list[TimedMessages]:
+    """Every message that the topics of a `pyulog.ULog` give."""
+    topics = _topics(log)
     first = {name: instances[0] for name, instances in topics.items()}
     messages = [
         *_attitude(first),
@@ -104,19 +63,27 @@ def _columns(log: Any) -> list[Columns]:
         *(_outputs(port, topic) for port, topic in enumerate(topics.get("actuator_outputs", []))),
         *_texts(log),
     ]
-    start_us = min((int(m.time_us[0]) for m in messages if len(m.time_us)), default=log.start_timestamp)
-    messages = [_heartbeat(first, start_us), *_version(log, start_us), _parameters(log, start_us), *messages]
-    time_us = np.concatenate([m.time_us for m in messages])
-    order = np.empty(len(time_us), dtype=np.int64)
-    order[np.argsort(time_us, kind="stable")] = np.arange(len(time_us))
-    orders = np.split(order, np.cumsum([len(m.time_us) for m in messages])[:-1])
-    base_s = _unix_time_base_s(first)
-    system = int(log.initial_parameters.get("MAV_SYS_ID", 1))
-    return [
-        message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields)
-        for m, numbers in zip(messages, orders, strict=True)
-        if len(numbers)
-    ]
+    start_us = min((int(np.min(m.time_us)) for m in messages), default=0)
+    return [_heartbeat(first, start_us), *_version(log, start_us), *_parameters(log, start_us), *messages]
+
+
+def unix_time_base_s(log: Any) -> float:
+    """Seconds since 1970 at boot, from the first fix that has a date; 0 when there is none."""
+    for fixes in _topics(log).get("vehicle_gps_position", []):
+        for utc_us, boot_us in zip(fixes["time_utc_usec"].tolist(), fixes["timestamp"].tolist(), strict=True):
+            if utc_us > 0:
+                return float(utc_us - boot_us) * 1e-6
+    return 0.0
+
+
+def _topics(log: Any) -> dict[str, list[Topic]]:
+    """The instances of each topic that have the fields needed, in the order of their time."""
+    topics: dict[str, list[Topic]] = {}
+    for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
+        if {"timestamp"} | TOPICS[data.name] <= data.data.keys():
+            by_time = np.argsort(data.data["timestamp"], kind="stable")
+            topics.setdefault(data.name, []).append({name: v[by_time] for name, v in data.data.items()})
+    return topics
 
 
 def _time_us(topic: Topic, field: str = "timestamp") -> IntArray:
@@ -132,7 +99,7 @@ def _sampled_us(topic: Topic) -> IntArray:
     return np.where(sampled > 0, sampled, published)
 
 
-def _attitude(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+def _attitude(topics: Mapping[str, Topic]) -> Iterator[TimedMessages]:
     """Angles at the stamps of the attitude, rates at those of the angular velocity."""
     blocks: list[tuple[IntArray, NDArray[np.float64]]] = []
     attitude = topics.get("vehicle_attitude")
@@ -150,11 +117,10 @@ def _attitude(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
     if not blocks:
         return
     time_us = np.concatenate([time_us for time_us, _ in blocks])
-    by_time = np.argsort(time_us, kind="stable")
-    values = np.hstack([values for _, values in blocks])[:, by_time]
+    values = np.hstack([values for _, values in blocks])
     names = ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed")
-    fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(time_us[by_time])}
-    yield _Messages("ATTITUDE", time_us[by_time], fields | dict(zip(names, values, strict=True)))
+    fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(time_us)}
+    yield TimedMessages("ATTITUDE", time_us, fields | dict(zip(names, values, strict=True)))
 
 
 def _euler(w: FloatArray, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
@@ -165,33 +131,30 @@ def _euler(w: FloatArray, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatA
     return np.array([roll, pitch, yaw])
 
 
-def _highres_imu(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+def _highres_imu(topics: Mapping[str, Topic]) -> Iterator[TimedMessages]:
     if "sensor_combined" in topics:
         sensors = topics["sensor_combined"]
         fields: dict[str, ArrayLike] = {"time_usec": _time_us(sensors)}
         for i, axis in enumerate("xyz"):
             fields[f"{axis}acc"] = sensors[f"accelerometer_m_s2[{i}]"]
             fields[f"{axis}gyro"] = sensors[f"gyro_rad[{i}]"]
-        yield _Messages("HIGHRES_IMU", _time_us(sensors), fields)
+        yield TimedMessages("HIGHRES_IMU", _time_us(sensors), fields)
 
 
-def _vfr_hud(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+def _vfr_hud(topics: Mapping[str, Topic]) -> Iterator[TimedMessages]:
     air = topics.get("airspeed_validated", topics.get("airspeed"))
     if air is None:
         return
-    speeds = [name for name in ("calibrated_airspeed_m_s", "indicated_airspeed_m_s") if name in air]
-    if not speeds:
-        return
     at = _time_us(air)
     fields: dict[str, ArrayLike] = {
-        "airspeed": air[speeds[0]],
+        "airspeed": air.get("calibrated_airspeed_m_s", air.get("indicated_airspeed_m_s", np.nan)),
         "climb": -_known(at, topics.get("vehicle_local_position"), "vz"),
         "alt": -_known(at, topics.get("vehicle_local_position"), "z"),
     }
     thrust = _known(at, topics.get("vehicle_thrust_setpoint"), "xyz[0]")
     lever = _known(at, topics.get("actuator_controls_0"), "control[3]")
     fields["throttle"] = 100.0 * np.where(np.isnan(thrust), lever, thrust)
-    yield _Messages("VFR_HUD", at, fields)
+    yield TimedMessages("VFR_HUD", at, fields)
 
 
 def _known(at_us: IntArray, topic: Topic | None, field: str) -> FloatArray:
@@ -200,35 +163,35 @@ def _known(at_us: IntArray, topic: Topic | None, field: str) -> FloatArray:
     return latest(at_us, _time_us(topic), topic[field])
 
 
-def _heights(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+def _heights(topics: Mapping[str, Topic]) -> Iterator[TimedMessages]:
     position = topics.get("vehicle_local_position")
     if position is not None:
         at = _sampled_us(position)
         fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(at)}
         fields["relative_alt"] = -1e3 * position["z"].astype(np.float64)
-        yield _Messages("GLOBAL_POSITION_INT", at, fields)
+        yield TimedMessages("GLOBAL_POSITION_INT", at, fields)
 
 
-def _named_values(topics: Mapping[str, Topic]) -> Iterator[_Messages]:
+def _named_values(topics: Mapping[str, Topic]) -> Iterator[TimedMessages]:
     values = topics.get("debug_key_value")
     if values is not None:
         letters = np.stack([values[f"key[{i}]"].astype(np.uint8) for i in range(10)], axis=1)
         names = [row.tobytes().partition(b"\0")[0] for row in letters]
         at = _time_us(values)
-        yield _Messages(
+        yield TimedMessages(
             "NAMED_VALUE_FLOAT",
             at,
             {"time_boot_ms": _milliseconds(at), "name": np.array(names, "S10"), "value": values["value"]},
         )
 
 
-def _outputs(port: int, topic: Topic) -> _Messages:
+def _outputs(port: int, topic: Topic) -> TimedMessages:
     at = _time_us(topic)
     pulses: dict[str, ArrayLike] = {f"servo{i + 1}_raw": topic[f"output[{i}]"] for i in range(16)}
-    return _Messages("SERVO_OUTPUT_RAW", at, {"time_usec": at, "port": port, **pulses})
+    return TimedMessages("SERVO_OUTPUT_RAW", at, {"time_usec": at, "port": port, **pulses})
 
 
-def _heartbeat(topics: Mapping[str, Topic], start_us: int) -> _Messages:
+def _heartbeat(topics: Mapping[str, Topic], start_us: int) -> TimedMessages:
     """One before everything else, so that the vehicle is known, then as the mode may change."""
     status = topics.get("vehicle_status")
     at, states, kinds = np.array([start_us]), np.zeros(1, np.int64), np.array([MAV_TYPE_FIXED_WING])
@@ -246,47 +209,43 @@ def _heartbeat(topics: Mapping[str, Topic], start_us: int) -> _Messages:
         "base_mode": 1,
         "custom_mode": mains << 16,
     }
-    return _Messages("HEARTBEAT", at, fields)
+    return TimedMessages("HEARTBEAT", at, fields)
 
 
-def _parameters(log: Any, start_us: int) -> _Messages:
+def _parameters(log: Any, start_us: int) -> Iterator[TimedMessages]:
     rows = [(start_us, name, value) for name, value in log.initial_parameters.items()]
     rows += [(max(at, start_us), name, value) for at, name, value in log.changed_parameters]
+    rows = [row for row in rows if isinstance(row[2], int | float)]
+    if not rows:
+        return
     fields: dict[str, ArrayLike] = {
         "param_id": np.array([name.encode() for _, name, _ in rows], "S16"),
         "param_value": np.array([value for *_, value in rows], np.float64),
         "param_type": MAV_PARAM_TYPE_REAL32,
         "param_count": len(log.initial_parameters),
     }
-    return _Messages("PARAM_VALUE", np.array([at for at, *_ in rows], np.int64), fields)
+    yield TimedMessages("PARAM_VALUE", _stamps(at for at, *_ in rows), fields)
 
 
-def _texts(log: Any) -> Iterator[_Messages]:
+def _texts(log: Any) -> Iterator[TimedMessages]:
     texts = log.logged_messages
     if texts:
         fields: dict[str, ArrayLike] = {
             "severity": np.array([text.log_level - ord("0") for text in texts]),
             "text": np.array([text.message.encode() for text in texts]),
         }
-        yield _Messages("STATUSTEXT", np.array([text.timestamp for text in texts], np.int64), fields)
+        yield TimedMessages("STATUSTEXT", _stamps(text.timestamp for text in texts), fields)
 
 
-def _version(log: Any, start_us: int) -> Iterator[_Messages]:
+def _version(log: Any, start_us: int) -> Iterator[TimedMessages]:
     release = log.msg_info_dict.get("ver_sw_release")
     if isinstance(release, int):
-        yield _Messages("AUTOPILOT_VERSION", np.array([start_us]), {"flight_sw_version": release})
+        yield TimedMessages("AUTOPILOT_VERSION", np.array([start_us]), {"flight_sw_version": release})
 
 
-def _unix_time_base_s(topics: Mapping[str, Topic]) -> float:
-    """Seconds since 1970 at boot, from the first fix that has a date; 0 when there is none."""
-    gps = topics.get("vehicle_gps_position")
-    if gps is None or "time_utc_usec" not in gps:
-        return 0.0
-    known = np.flatnonzero(gps["time_utc_usec"] > 0)
-    if not len(known):
-        return 0.0
-    i = known[0]
-    return (int(gps["time_utc_usec"][i]) - int(gps["timestamp"][i])) * 1e-6
+def _stamps(times_us: Iterable[int]) -> IntArray:
+    """As an array; the 64th bit, which only a damaged stamp can have, is dropped."""
+    return np.array([time_us & (1 << 63) - 1 for time_us in times_us], dtype=np.int64)
 
 
 def _milliseconds(time_us: IntArray) -> IntArray:

@@ -1,11 +1,16 @@
 """The autopilots' own logs: ArduPilot's .bin against pymavlink, PX4's .ulg by hand, both as flights."""
 
+import contextlib
 import math
 import sys
+import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from pymavlink import DFReader
 
 from advisor.aircraft import Aircraft, Elevator
@@ -44,14 +49,14 @@ def motion(t: float) -> tuple[float, float]:
     return 0.05 + 0.01 * math.sin(t), 0.01 * math.cos(t)
 
 
-def dataflash_flight() -> bytes:
+def dataflash_flight(seconds: float = FLIGHT_S) -> bytes:
     log = [dataflash_head()]
     log.append(dataflash_record("VER", 900, 0, 0, 4, 5, 6, 255, 0, b"ArduPlane V4.5.6", 0, 3, 0))
     log.append(dataflash_record("MSG", 1000, b"ArduPlane V4.5.6 (0123abcd)"))
     parameters = {"SERVO2_FUNCTION": 19, "SERVO2_MIN": 1100, "SERVO2_TRIM": 1500, "SERVO2_MAX": 1900}
     log += [dataflash_record("PARM", 2000, name.encode(), value) for name, value in parameters.items()]
     log.append(dataflash_record("MODE", 3000, 0, 0, 1))
-    for i in range(round(FLIGHT_S * 50)):
+    for i in range(round(seconds * 50)):
         us = 1_000_000 + 20_000 * i
         t = us * 1e-6
         theta, q = motion(t)
@@ -72,11 +77,11 @@ def dataflash_flight() -> bytes:
     return b"".join(log)
 
 
-def px4_flight(**parameters: float) -> bytes:
+def px4_flight(seconds: float = FLIGHT_S, **parameters: float) -> bytes:
     definitions = [ulog_parameter(name, value) for name, value in parameters.items()]
     log = [ulog_head(ulog_release(0x010F02FF), *definitions)]
     log.append(ulog_text(900_000, 6, "[logger] start"))
-    for i in range(round(FLIGHT_S * 50)):
+    for i in range(round(seconds * 50)):
         us = 1_000_000 + 20_000 * i
         t = us * 1e-6
         theta, q = motion(t)
@@ -215,6 +220,14 @@ class TestArduPilot:
         assert set(damaged.fields["AOA"].tolist()) == {3.5}
         assert np.all(np.isin(damaged.fields["time_usec"], whole.fields["time_usec"]))
 
+    def test_records_of_another_kind_of_vehicle_count_as_missing(self, tmp_path: Path) -> None:
+        content = dataflash_flight(seconds=2.0)
+        copter = content.replace(b"ThD,As,SAs", b"ThD,Xs,SAs").replace(
+            b"TimeUS,I,Airspeed", b"TimeUS,I,Other_one"
+        )
+        assert "VFR_HUD" not in read(tmp_path, copter)
+        assert "VFR_HUD" in read(tmp_path, content)
+
     def test_the_manoeuvre_in_it_is_found(self, tmp_path: Path) -> None:
         stream = FlightStream(Aircraft())
         path = tmp_path / "flight.bin"
@@ -283,6 +296,12 @@ class TestPx4:
         messages = read(tmp_path, px4_flight(MAV_SYS_ID=7), "flight.ulg")
         assert {columns.system for columns in messages.values()} == {7}
 
+    def test_topics_of_another_version_count_as_missing(self, tmp_path: Path) -> None:
+        content = px4_flight(seconds=2.0).replace(b"float vz;", b"float wz;")
+        messages = read(tmp_path, content, "flight.ulg")
+        assert "GLOBAL_POSITION_INT" not in messages
+        assert not len(finite(messages["VFR_HUD"], "climb"))
+
     def test_a_log_cut_off_reads_up_to_the_cut(self, tmp_path: Path) -> None:
         content = px4_flight()
         whole = read(tmp_path, content, "flight.ulg")["HIGHRES_IMU"]
@@ -316,3 +335,24 @@ class TestPx4:
         path.write_bytes(px4_flight())
         with pytest.raises(UnusableInputError, match="pip install 'inflight-advisor"):
             list(open_log(path))
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(
+    flight=st.sampled_from([dataflash_flight, px4_flight]),
+    damages=st.lists(st.tuples(st.floats(0, 1), st.binary(min_size=1, max_size=40)), min_size=1, max_size=5),
+    kept=st.floats(0.3, 1.0),
+)
+def test_damage_never_crashes_a_reader(
+    flight: Callable[[float], bytes], damages: list[tuple[float, bytes]], kept: float
+) -> None:
+    content = bytearray(flight(1.0))
+    for place, garbage in damages:
+        at = 16 + int(place * (len(content) - 64))
+        content[at : at + len(garbage)] = garbage
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "damaged.log"
+        path.write_bytes(content[: int(kept * len(content))])
+        with contextlib.suppress(UnusableInputError):
+            for batch in open_log(path):
+                assert all(len(c) == len(values) for c in batch for values in c.fields.values())

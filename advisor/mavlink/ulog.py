@@ -1,0 +1,70 @@
+"""PX4's own log (``.ulg``), read by pyulog, an extra."""
+
+import contextlib
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from advisor.flight.messages import Columns
+from advisor.mavlink.equivalent import message, system_id
+from advisor.mavlink.px4_log import TOPICS, translate, unix_time_base_s
+from advisor.problems import UnusableInputError
+
+MAGIC = b"ULog\x01\x12\x35"
+
+
+def read_ulog(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
+    """The messages of a ``.ulg``, in one batch, ordered by time.
+
+    Raises
+    ------
+    UnusableInputError
+        When pyulog is not installed, or the file holds neither attitude, sensors, nor outputs.
+    """
+    try:
+        from pyulog import ULog
+    except ImportError:
+        raise UnusableInputError(
+            "no_pyulog",
+            f"{path.name} is a PX4 log, and pyulog, which reads them, is not installed.",
+            "Install it with: pip install 'inflight-advisor[logs]'.",
+        ) from None
+    try:
+        # pyulog prints its warnings; standard output belongs to the result.
+        with path.open("rb") as file, contextlib.redirect_stdout(sys.stderr):
+            log = ULog(file, list(TOPICS))
+    except Exception as error:  # whatever pyulog meets in damaged bytes
+        raise _nothing_in(path) from error
+    with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
+        columns = _columns(log)
+    if not {c.name for c in columns} & {"ATTITUDE", "HIGHRES_IMU", "SERVO_OUTPUT_RAW"}:
+        raise _nothing_in(path)
+    names = None if wanted is None else set(wanted)
+    yield [c for c in columns if names is None or c.name in names]
+
+
+def _nothing_in(path: Path) -> UnusableInputError:
+    return UnusableInputError(
+        "no_messages",
+        f"{path.name} holds no attitude, sensor or actuator topics of PX4.",
+        "Set SDLOG_PROFILE so that they are logged, or give a .tlog.",
+    )
+
+
+def _columns(log: Any) -> list[Columns]:
+    """Every message the topics give, numbered by time."""
+    messages = translate(log)
+    time_us = np.concatenate([m.time_us for m in messages])
+    order = np.empty(len(time_us), dtype=np.int64)
+    order[np.argsort(time_us, kind="stable")] = np.arange(len(time_us))
+    orders = np.split(order, np.cumsum([len(m.time_us) for m in messages])[:-1])
+    base_s = unix_time_base_s(log)
+    system = system_id(log.initial_parameters.get("MAV_SYS_ID"))
+    return [
+        message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields)
+        for m, numbers in zip(messages, orders, strict=True)
+        if len(numbers)
+    ]
