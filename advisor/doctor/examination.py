@@ -24,7 +24,7 @@ class Limit:
     stops: bool = False
     """Nothing can be identified before it is mended."""
     std_ratio: Mapping[str, float] = field(default_factory=dict)
-    """What it costs: parameter name to its expected error over the one after mending this."""
+    """What it costs by itself: parameter name to its expected error over the one without this limit."""
 
 
 @dataclass(frozen=True, slots=True)

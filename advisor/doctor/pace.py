@@ -48,14 +48,14 @@ def rate_limits(
     period_s = 2.0 * np.pi / frequency(belief.model)
     fewest_hz = max(SLOWEST_HZ, FEWEST_PER_PERIOD / period_s)
     enough_hz = max(SLOWEST_HZ, ENOUGH_PER_PERIOD / period_s)
-    rates = {name: channel.renewed_hz for name, channel in paced.items()}
-    now = expect(belief, rates, airspeed_m_s)
+    good = {name: max(float(GOOD_HZ), channel.renewed_hz) for name, channel in paced.items()}
+    best = expect(belief, good, airspeed_m_s)
     limits = []
     for name in ("elevator", "q", "alpha"):
         channel = paced[name]
         if channel.renewed_hz >= enough_hz:
             continue
-        mended = expect(belief, {**rates, name: float(GOOD_HZ)}, airspeed_m_s)
+        alone = expect(belief, {**good, name: channel.renewed_hz}, airspeed_m_s)
         repeats = channel.rate_hz >= enough_hz
         arrives = f"{channel.message} arrives at {channel.rate_hz:.1f} Hz"
         if repeats:
@@ -68,7 +68,7 @@ def rate_limits(
                 f"better {enough_hz * period_s:.0f})",
                 _staircase(channel) if repeats else how_to_ask(channel.message, autopilot),
                 stops=channel.renewed_hz < fewest_hz,
-                std_ratio=_ratio(now, mended),
+                std_ratio=_ratio(alone, best),
             )
         )
     return limits

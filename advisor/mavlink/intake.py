@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from advisor.flight.vehicle import is_aircraft
 from advisor.mavlink.framing import Frame, FrameCutter
 from advisor.mavlink.health import LinkCounters
 from advisor.mavlink.signing import RADIO_STATUS, SignatureCheck
@@ -9,10 +10,6 @@ from advisor.mavlink.transports import Peer
 
 HEARTBEAT = 0
 MOST_PEERS = 64
-
-_AUTOPILOT_INVALID = 8
-_NOT_VEHICLES = frozenset({5, 6, 18, 26, 27, 30})
-"""MAV_TYPE of antenna trackers, ground stations, onboard computers, gimbals, ADS-B, cameras."""
 
 
 class Intake:
@@ -94,7 +91,7 @@ class Intake:
     def _meet(self, heartbeat: Frame) -> None:
         payload = heartbeat.payload.ljust(9, b"\0")
         kind, autopilot = payload[4], payload[5]
-        if autopilot == _AUTOPILOT_INVALID or kind in _NOT_VEHICLES:
+        if not is_aircraft(autopilot, kind):
             return
         if self._target_system is not None and heartbeat.system != self._target_system:
             return

@@ -234,8 +234,9 @@ class Link:
         try:
             pieces = self._transport.receive() if self._transport.wait(wait_s) else []
         except ConnectionCutError as cut:
-            self._transport.close()
-            self._transport = None
+            if not cut.listening:
+                self._transport.close()
+                self._transport = None
             self._intake.forget_pieces()
             self._say([self._watch.cut(str(cut), time.monotonic())], time.monotonic())
             return []

@@ -20,7 +20,19 @@ Peer = tuple[Any, ...]
 
 
 class ConnectionCutError(Exception):
-    """The far end or the cable went away; opening again may help."""
+    """The far end or the cable went away.
+
+    Parameters
+    ----------
+    why
+        In words.
+    listening
+        The transport waits for the next caller by itself; otherwise it is to be opened again.
+    """
+
+    def __init__(self, why: str, listening: bool = False) -> None:
+        super().__init__(why)
+        self.listening = listening
 
 
 class Transport(ABC):
@@ -147,7 +159,7 @@ class TcpTransport(Transport):
         if self._stream is not None:
             self._stream.close()
             self._stream = None
-        return ConnectionCutError(why)
+        return ConnectionCutError(why, listening=self._listener is not None)
 
     def send(self, data: bytes, to: Peer | None) -> bool:
         """Send; False when nobody is there to send to."""

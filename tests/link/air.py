@@ -1,6 +1,7 @@
 """What the air does to a recorded flight: loss, delay, duplicates, strangers."""
 
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,6 +9,9 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.campaign import Campaign, ManeuverJudged
+from advisor.flight.events import ManeuverFlown
+from advisor.flight.messages import Columns
+from advisor.flight.stream import FlightStream
 from advisor.mavlink.frames import FrameScanner
 
 
@@ -46,12 +50,30 @@ def through_a_poor_radio(
     return sorted(delivered, key=lambda record: record.stamp_us)
 
 
-def judged(records: list[Record], batch: int = 10, key: bytes | None = None) -> list[ManeuverJudged]:
-    """Every verdict on these records, fed as a live link feeds them."""
-    scanner, campaign = FrameScanner(key=key), Campaign(Aircraft())
-    events = []
-    for i in range(0, len(records), batch):
-        data = b"".join(struct.pack(">Q", r.stamp_us) + r.frame for r in records[i : i + batch])
-        events += campaign.feed(scanner.feed(data))
-    events += campaign.finish()
-    return [event for event in events if isinstance(event, ManeuverJudged)]
+def batches(records: list[Record], size: int, key: bytes | None = None) -> Iterator[list[Columns]]:
+    """The records decoded as a live link or, in large batches, as a log is."""
+    scanner = FrameScanner(key=key)
+    for i in range(0, len(records), size):
+        data = b"".join(struct.pack(">Q", r.stamp_us) + r.frame for r in records[i : i + size])
+        yield scanner.feed(data)
+
+
+def flown(records: list[Record], batch: int = 50, key: bytes | None = None) -> list[tuple[float, ...]]:
+    """Start and every sample of every channel of every manoeuvre."""
+    stream = FlightStream(Aircraft())
+    events = [event for columns in batches(records, batch, key) for event in stream.feed(columns)]
+    return [
+        (
+            event.maneuver.span.start_s,
+            *np.concatenate([np.r_[channel.t, channel.y] for channel in event.maneuver.channels.values()]),
+        )
+        for event in [*events, *stream.finish()]
+        if isinstance(event, ManeuverFlown)
+    ]
+
+
+def judged(records: list[Record], batch: int = 50) -> list[ManeuverJudged]:
+    """Every verdict on these records."""
+    campaign = Campaign(Aircraft())
+    events = [event for columns in batches(records, batch) for event in campaign.feed(columns)]
+    return [event for event in [*events, *campaign.finish()] if isinstance(event, ManeuverJudged)]

@@ -1,0 +1,133 @@
+import numpy as np
+import pytest
+
+from advisor.doctor.survey import Arrival, Survey
+from advisor.flight.messages import Columns
+from tests.doctor.builders import among, aoa, attitude, columns, hud
+
+
+def surveyed(*batches: list[Columns]) -> tuple[Survey, dict[str, Arrival]]:
+    survey = Survey(1, 1)
+    for batch in batches:
+        survey.feed(batch)
+    return survey, {arrival.name: arrival for arrival in survey.arrivals}
+
+
+def test_an_even_message_has_its_rate_no_jitter_and_no_gap() -> None:
+    _, arrivals = surveyed([attitude(np.arange(0.0, 20.0, 0.02))])
+    found = arrivals["ATTITUDE"]
+    assert found.rate_hz == pytest.approx(50.0)
+    assert found.lowest_hz == pytest.approx(50.0, abs=0.2)
+    assert found.jitter_ms == pytest.approx(0.0, abs=1e-6)
+    assert found.largest_gap_s == pytest.approx(0.02)
+    assert found.renewed_hz == pytest.approx(50.0)
+
+
+def test_a_loop_of_50_hz_that_delivers_20_20_20_40_ms_is_called_40_hz() -> None:
+    t = np.cumsum(np.tile([0.02, 0.02, 0.02, 0.04], 100))
+    _, arrivals = surveyed([attitude(t)])
+    assert arrivals["ATTITUDE"].rate_hz == pytest.approx(40.0, rel=0.01)
+    assert arrivals["ATTITUDE"].jitter_ms == pytest.approx(8.66, rel=0.02)
+
+
+def test_a_value_repeated_under_fresh_stamps_is_not_called_renewed() -> None:
+    t = np.arange(0.0, 20.0, 0.02)
+    master = attitude(t)
+    _, arrivals = surveyed([master, aoa(t, among(master, t, t), renewed_hz=20.0)])
+    assert arrivals["AOA_SSA"].rate_hz == pytest.approx(50.0, rel=0.01)
+    assert arrivals["AOA_SSA"].renewed_hz == pytest.approx(20.0, rel=0.01)
+
+
+def test_a_rate_cut_in_flight_shows_in_its_worst_five_seconds_not_in_its_pace() -> None:
+    t = np.concatenate([np.arange(0.0, 30.0, 0.02), np.arange(30.0, 40.0, 0.25), np.arange(40.0, 70.0, 0.02)])
+    _, arrivals = surveyed([attitude(t)])
+    assert arrivals["ATTITUDE"].lowest_hz == pytest.approx(4.0, abs=0.3)
+    assert arrivals["ATTITUDE"].rate_hz > 49.0
+
+
+def test_a_silence_is_a_gap_and_does_not_lower_the_rate() -> None:
+    t = np.concatenate([np.arange(0.0, 10.0, 0.02), np.arange(14.0, 24.0, 0.02)])
+    _, arrivals = surveyed([attitude(t)])
+    assert arrivals["ATTITUDE"].largest_gap_s == pytest.approx(4.02)
+    assert arrivals["ATTITUDE"].rate_hz == pytest.approx(50.0)
+
+
+def test_a_message_without_a_stamp_is_timed_by_the_attitude_before_it() -> None:
+    t, slow = np.arange(0.0, 20.0, 0.02), np.arange(0.0, 20.0, 0.1)
+    master = attitude(t)
+    _, arrivals = surveyed([master, hud(slow, among(master, slow, t))])
+    assert arrivals["VFR_HUD"].rate_hz == pytest.approx(10.0, rel=0.01)
+
+
+def test_duplicates_and_overtaking_packets_change_no_rate() -> None:
+    dice = np.random.default_rng(3)
+    t = np.arange(0.0, 20.0, 0.02)
+    late = t + dice.uniform(0.0, 0.2, len(t))
+    mixed = np.repeat(t[np.argsort(late)], 1 + (dice.random(len(t)) < 0.1))
+    _, arrivals = surveyed([attitude(mixed)])
+    assert arrivals["ATTITUDE"].rate_hz == pytest.approx(50.0)
+    assert arrivals["ATTITUDE"].largest_gap_s == pytest.approx(0.02)
+
+
+def test_batches_make_no_difference() -> None:
+    t = np.arange(0.0, 20.0, 0.02)
+    master = attitude(t)
+    alpha = aoa(t, among(master, t, t), renewed_hz=20.0)
+
+    def cut(part: Columns, a: int, b: int) -> Columns:
+        fields = {name: values[a:b] for name, values in part.fields.items()}
+        return Columns(part.name, 1, 1, part.order[a:b], part.arrival_s[a:b], fields)
+
+    whole, _ = surveyed([master, alpha])
+    pieces, _ = surveyed(*([cut(master, i, i + 7), cut(alpha, i, i + 7)] for i in range(0, len(t), 7)))
+    assert pieces.arrivals == whole.arrivals
+    assert pieces.clocks == whole.clocks
+
+
+def test_a_reboot_is_counted_and_its_silence_is_no_gap() -> None:
+    first, second = np.arange(100.0, 110.0, 0.02), np.arange(3.0, 13.0, 0.02)
+    together = np.concatenate([first, second])
+    survey, arrivals = surveyed([attitude(together, arrival_s=np.arange(len(together)) * 0.02)])
+    assert survey.clocks.boots == 2
+    assert arrivals["ATTITUDE"].largest_gap_s == pytest.approx(0.02)
+
+
+def test_drift_and_jitter_of_arrival_are_told_against_the_hosts_clock() -> None:
+    dice = np.random.default_rng(1)
+    t = np.arange(0.0, 60.0, 0.02)
+    survey, _ = surveyed([attitude(t, arrival_s=t / 1.03 + dice.normal(0.0, 0.004, len(t)))])
+    assert survey.clocks.drift_percent == pytest.approx(3.0, abs=0.05)
+    assert survey.clocks.arrival_jitter_ms == pytest.approx(4.0, rel=0.1)
+
+
+def test_stamps_of_another_clock_are_counted_as_strayed() -> None:
+    t = np.arange(0.0, 20.0, 0.02)
+    master = attitude(t)
+    foreign = aoa(t + 500.0, among(master, t, t), renewed_hz=50.0)
+    survey, _ = surveyed([master, foreign])
+    assert survey.clocks.strayed == {"AOA_SSA": pytest.approx(1.0)}
+
+
+def test_a_32_bit_counter_that_wraps_is_no_stray() -> None:
+    wrap_s = 2.0**32 * 1e-6
+    t = np.arange(wrap_s - 5.0, wrap_s + 5.0, 0.02)
+    master = attitude(t)
+    wrapped = columns(
+        "SERVO_OUTPUT_RAW",
+        t,
+        among(master, t, t),
+        time_usec=(np.round(t * 1e6) % 2**32).astype(np.uint32),
+        port=0,
+        servo1_raw=np.arange(len(t)),
+    )
+    survey, arrivals = surveyed([master, wrapped])
+    assert survey.clocks.strayed == {}
+    assert arrivals["SERVO_OUTPUT_RAW"].largest_gap_s == pytest.approx(0.02)
+
+
+def test_another_system_is_not_counted() -> None:
+    t = np.arange(0.0, 20.0, 0.02)
+    other = attitude(np.arange(0.0, 20.0, 0.25))
+    other = Columns("ATTITUDE", 9, 1, other.order, other.arrival_s, other.fields)
+    _, arrivals = surveyed([attitude(t), other])
+    assert arrivals["ATTITUDE"].count == len(t)
