@@ -75,7 +75,5 @@ def knowledge(estimates: Sequence[Estimate], plan: CampaignPlan) -> Knowledge:
         distance, dof = disagreement(before, widened(beliefs[-1], excess))
         surprise = distance / float(chi2.isf(SURPRISING, dof)) if dof else float("nan")
         predicted = surprise < 1.0
-    agreeing = [e for i, e in enumerate(estimates) if i not in left_out]
-    return Knowledge(
-        belief, tolerances(belief.theta, agreeing, plan), predicted, surprise, widening, left_out
-    )
+    first = next(e for i, e in enumerate(estimates) if i not in left_out)
+    return Knowledge(belief, tolerances(belief.theta, first, plan), predicted, surprise, widening, left_out)

@@ -1,7 +1,5 @@
 """How well a parameter must be known: the crew's percentage, and what stands in for it near zero."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, CampaignPlan
@@ -13,7 +11,7 @@ NEAR_ZERO = 3.0
 """A parameter is near zero when its whole effect on the response is less than this many times the noise."""
 
 
-def tolerances(theta: FloatArray, estimates: Sequence[Estimate], plan: CampaignPlan) -> FloatArray:
+def tolerances(theta: FloatArray, first: Estimate, plan: CampaignPlan) -> FloatArray:
     """The half-width each parameter's 95 % interval must stay below.
 
     The share ``plan.tolerance_percent`` of the parameter. For one near zero, a share of which is
@@ -22,16 +20,17 @@ def tolerances(theta: FloatArray, estimates: Sequence[Estimate], plan: CampaignP
     also be wrong by what shifts the trim by as much as the noise of the angle of attack. What
     ``plan.tolerance`` says of a parameter stands above all this.
 
+    Noise and response are those of the ``first`` usable manoeuvre: a bolder one shows more, and must
+    not move the goal while it is being approached.
+
     Returns
     -------
     FloatArray
         Shape (8,), each in its parameter's unit.
     """
     size = np.abs(theta)
-    tolerance = np.fmax(
-        0.01 * plan.tolerance_percent * size, unnoticeable_change(estimates) - size / NEAR_ZERO
-    )
-    noise = np.median([fits["alpha"].noise for e in estimates for fits in e.fits if "alpha" in fits])
+    tolerance = np.fmax(0.01 * plan.tolerance_percent * size, unnoticeable_change(first) - size / NEAR_ZERO)
+    noise = first.fits[0]["alpha"].noise
     for constant, stiffness in (("Z_0", "Z_alpha"), ("M_0", "M_alpha")):
         k = PARAMETERS.index(constant)
         tolerance[k] = np.fmax(tolerance[k], size[PARAMETERS.index(stiffness)] * noise)
@@ -40,7 +39,7 @@ def tolerances(theta: FloatArray, estimates: Sequence[Estimate], plan: CampaignP
     return tolerance
 
 
-def unnoticeable_change(estimates: Sequence[Estimate]) -> FloatArray:
+def unnoticeable_change(estimate: Estimate) -> FloatArray:
     """The change of each parameter alone that moves the response by as much as the noise, δ.
 
     A diagonal element of the information matrix is the summed square of the response's change per unit
@@ -52,9 +51,7 @@ def unnoticeable_change(estimates: Sequence[Estimate]) -> FloatArray:
     FloatArray
         Shape (8,), each in its parameter's unit; infinite where the response does not depend on it.
     """
-    samples = sum(len(fit.t) for e in estimates for fits in e.fits for fit in fits.values())
-    information = sum(
-        (np.diag(information_of(e.covariance_cr)) for e in estimates), np.zeros(len(PARAMETERS))
-    )
+    samples = sum(len(fit.t) for fits in estimate.fits for fit in fits.values())
+    information = np.diag(information_of(estimate.covariance_cr))
     with np.errstate(divide="ignore"):
         return np.asarray(np.sqrt(samples / information))

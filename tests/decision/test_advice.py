@@ -14,6 +14,8 @@ from advisor.decision.stopping import flight_test
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.record import Channel
 from advisor.oem.surface import Servo
+from advisor.study.estimating import estimate_copies
+from advisor.study.flying import Scene, follow
 from tests.decision.campaigns import THETA, estimate
 
 INSTRUMENTS = Instruments((0.02, 0.02), (np.radians(0.15), np.radians(0.5)), Servo())
@@ -137,15 +139,11 @@ def test_every_flight_test_verdict_comes_with_advice() -> None:
 
 
 def test_the_expected_error_is_that_of_repeated_estimates() -> None:
-    from advisor.study.estimating import estimate_copies
-    from advisor.study.flying import Flight, Scene, respond
-
     scene = Scene()
     alpha, trim = scene.aircraft.trim()
     t = np.arange(501) / 50.0
     elevator = STANDARD.elevator(trim, 1.0, 10.0).at(t)
-    begin = np.array([alpha, 0.0])
-    flight = Flight(t, elevator, respond(scene.aircraft, elevator, begin, 0.02), begin)
+    flight = follow(scene, t, elevator)
     noise = np.array(INSTRUMENTS.noise)
     found = estimate_copies(flight, 0.1 * noise, 150, np.random.default_rng(12))
     expected = expect(scene.theta, STANDARD.elevator(trim, 1.0, 10.0), INSTRUMENTS)

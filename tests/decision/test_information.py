@@ -100,3 +100,11 @@ def test_of_two_that_contradict_each_other_neither_is_left_out() -> None:
     known = knowledge([estimate(), estimate(with_change("M_alpha", 0.5))], PLAN)
     assert known.left_out == ()
     assert not known.predicted
+
+
+def test_a_bolder_manoeuvre_does_not_move_the_goal() -> None:
+    zero = THETA * [1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    gentle, bold = estimate(zero, std_percent=2.0), estimate(zero, std_percent=0.2)
+    alone, both = knowledge([gentle], PLAN), knowledge([gentle, bold], PLAN)
+    assert both.tolerance[2] == pytest.approx(alone.tolerance[2])
+    assert both.percent < alone.percent

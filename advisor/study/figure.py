@@ -1,0 +1,107 @@
+"""Figure 5: the stop criterion against the number of manoeuvres, with the 25 % line."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from advisor.aircraft import Rule
+from advisor.problems import ConfigurationError
+from advisor.study.campaigns import Outcome
+from advisor.study.paper import ORDER
+
+LIMIT_PERCENT = 25.0
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """The criterion of one rule at one noise level over all campaigns."""
+
+    rule: Rule
+    noise_percent: float
+    quantiles: tuple[tuple[float, float, float] | None, ...]
+    """Per manoeuvre: 10 %, 50 %, 90 % over the campaigns that have a value; None where none has."""
+
+
+def curve(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome]) -> Curve:
+    """Collect the criterion's history, as if every campaign flew on to its end."""
+    quantiles: list[tuple[float, float, float] | None] = []
+    for i in range(len(ORDER)):
+        values = [
+            v for o in outcomes if i < len(o.history_percent) and (v := o.history_percent[i]) is not None
+        ]
+        low, middle, high = np.quantile(values, [0.1, 0.5, 0.9]) if values else (0.0, 0.0, 0.0)
+        quantiles.append((float(low), float(middle), float(high)) if values else None)
+    return Curve(rule, noise_percent, tuple(quantiles))
+
+
+def draw(curves: Sequence[Curve], path: Path) -> None:
+    """Write the figure; the ending of ``path`` (.png, .svg) says how.
+
+    Raises
+    ------
+    ConfigurationError
+        matplotlib is not installed, or the ending is unknown to it.
+    """
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise ConfigurationError(
+            "--figure needs matplotlib: pip install 'inflight-advisor[report]'."
+        ) from error
+    rules: list[Rule] = ["continuous", "separate"]
+    figure = Figure(figsize=(9.0, 4.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(1, len(rules), sharey=True)
+    for axis, rule in zip(axes, rules, strict=True):
+        for marker, one in zip("osD", (c for c in curves if c.rule == rule), strict=False):
+            known = [(i + 1, q) for i, q in enumerate(one.quantiles) if q is not None]
+            number = [i for i, _ in known]
+            (line,) = axis.plot(
+                number, [q[1] for _, q in known], marker=marker, label=f"noise {one.noise_percent:g} %"
+            )
+            axis.fill_between(
+                number, [q[0] for _, q in known], [q[2] for _, q in known], color=line.get_color(), alpha=0.15
+            )
+        axis.axhline(LIMIT_PERCENT, color="black", linestyle="--", linewidth=1.0, label="limit 25 %")
+        axis.set(title=rule, xlabel="manoeuvres flown", yscale="log", xlim=(2.7, len(ORDER) + 0.3))
+        axis.grid(visible=True, which="both", alpha=0.2)
+    axes[0].set_ylabel("criterion, Eq. (12), in %")
+    axes[-1].legend(loc="upper right", fontsize=8)
+    try:
+        figure.savefig(path, dpi=150)
+    except ValueError as error:
+        raise ConfigurationError(f"--figure {path}: {error}") from error
+
+
+def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[str]:
+    """The medians of one rule as lines of text, logarithmic in the criterion."""
+    chosen = [c for c in curves if c.rule == rule]
+    values = [q[1] for c in chosen for q in c.quantiles if q is not None]
+    if not values:
+        return [f"{rule}: no campaign has three accepted manoeuvres"]
+    low, high = np.log(min(*values, LIMIT_PERCENT) * 0.8), np.log(max(*values, LIMIT_PERCENT) * 1.25)
+
+    def line_of(percent: float) -> int:
+        return round(float((high - np.log(percent)) / (high - low)) * (height - 1))
+
+    width = 6
+    grid = [[" "] * (width * len(ORDER) + 1) for _ in range(height)]
+    grid[line_of(LIMIT_PERCENT)] = list("-" * (width * len(ORDER) + 1))
+    for one in chosen:
+        symbol = f"{one.noise_percent:g}"
+        for i, q in enumerate(one.quantiles):
+            if q is not None:
+                at = width * i + 2
+                grid[line_of(q[1])][at : at + len(symbol)] = list(symbol)
+    labels = {line_of(v): f"{v:6.3g}" for v in (np.exp(low) / 0.8, LIMIT_PERCENT, np.exp(high) / 1.25)}
+    rows = [f"{labels.get(i, ''):>6} |{''.join(cells).rstrip()}" for i, cells in enumerate(grid)]
+    numbers = "".join(f"{i:^{width}}" for i in range(1, len(ORDER) + 1))
+    return [
+        f"{rule}: criterion of Eq. (12) in %, median; each mark is a noise level in %, --- the limit",
+        *rows,
+        f"{'':>6} +{'-' * (width * len(ORDER))}",
+        f"{'':>8}{numbers}".rstrip() + "  manoeuvres flown",
+    ]

@@ -1,0 +1,149 @@
+"""Other readings of the paper's rules, to see which reproduces its Table 1 best.
+
+The advisor's own readings are the first of each list; the others exist only here.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS, Rule
+from advisor.decision.acceptance import ALLOWED_INCREASE, Costs, continuous_improvement, separate_computation
+from advisor.decision.pooling import beliefs_at_one_speed, pool
+from advisor.decision.scatter import scatter_percent
+from advisor.decision.verdict import RuleResult
+from advisor.flight.messages import FloatArray
+from advisor.oem.estimate import Estimate
+from advisor.study.paper import TABLE_1
+
+Accepting = Callable[[Sequence[float]], list[bool]]
+
+
+def continuous_against_last_flown(costs: Sequence[float]) -> list[bool]:
+    """Eq. (10) with i − 1 the last manoeuvre flown, accepted or not."""
+    return [i == 0 or cost < ALLOWED_INCREASE * costs[i - 1] for i, cost in enumerate(costs)]
+
+
+def separate_among_accepted(costs: Sequence[float]) -> list[bool]:
+    """Eq. (11) with only accepted manoeuvres under the median."""
+    kept: list[float] = []
+    verdicts = []
+    for cost in costs:
+        good = not kept or cost < median(kept)
+        verdicts.append(good)
+        if good:
+            kept.append(cost)
+    return verdicts
+
+
+def _ours(rule: Callable[[Costs], Sequence[RuleResult]]) -> Accepting:
+    return lambda costs: [result.accepted for result in rule(costs)]
+
+
+def population_scatter(theta: FloatArray) -> float:
+    """Eq. (12) with n instead of n − 1 under the standard deviation."""
+    return scatter_percent(theta) * float(np.sqrt((len(theta) - 1) / len(theta)))
+
+
+def largest_scatter(theta: FloatArray) -> float:
+    """Eq. (12) with the largest parameter instead of the Euclidean norm."""
+    return 500.0 * float(np.max(theta.std(axis=0, ddof=1) / np.abs(theta.mean(axis=0))))
+
+
+def written_out(theta: FloatArray) -> float:
+    """Eq. (13)."""
+    return scatter_percent(theta, "eq13")
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One way to understand the paper; everything but one point as the advisor does."""
+
+    name: str
+    accepting: Mapping[Rule, Accepting]
+    criterion: Callable[[FloatArray], float] = scatter_percent
+    members: int = 3
+
+
+_OURS: Mapping[Rule, Accepting] = {
+    "continuous": _ours(continuous_improvement),
+    "separate": _ours(separate_computation),
+}
+
+READINGS = (
+    Reading("as the advisor does", _OURS),
+    Reading("(10): last flown", {**_OURS, "continuous": continuous_against_last_flown}),
+    Reading("(11): median of accepted", {**_OURS, "separate": separate_among_accepted}),
+    Reading("(12): n + 1 members", _OURS, members=4),
+    Reading("(12): divided by n", _OURS, population_scatter),
+    Reading("(12): largest, not norm", _OURS, largest_scatter),
+    Reading("(13) as written out", _OURS, written_out),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingResult:
+    """How one reading fares in one row of Table 1."""
+
+    reading: str
+    rule: Rule
+    noise_percent: float
+    median: int | None
+    never_percent: float
+    as_paper_percent: float
+    """Share of campaigns that need exactly as many manoeuvres as the paper's."""
+
+
+def compare(campaigns: Sequence[Sequence[Estimate]], noise_percent: float) -> list[ReadingResult]:
+    """Every reading on the same campaigns."""
+    results = []
+    for reading in READINGS:
+        for rule, accepting in reading.accepting.items():
+            needed = [_needed(campaign, accepting, reading) for campaign in campaigns]
+            ordered = sorted(np.inf if n is None else n for n in needed)
+            middle = ordered[len(ordered) // 2]
+            results.append(
+                ReadingResult(
+                    reading.name,
+                    rule,
+                    noise_percent,
+                    None if np.isinf(middle) else int(middle),
+                    100.0 * float(np.mean([n is None for n in needed])),
+                    100.0 * float(np.mean([n == TABLE_1[rule, noise_percent].needed for n in needed])),
+                )
+            )
+    return results
+
+
+def _needed(campaign: Sequence[Estimate], accepting: Accepting, reading: Reading) -> int | None:
+    taken: list[FloatArray] = []
+    for number, good in enumerate(accepting([e.cost for e in campaign]), start=1):
+        if good:
+            taken.append(campaign[number - 1].theta)
+        if len(taken) >= reading.members and reading.criterion(np.array(taken[-reading.members :])) < 25.0:
+            return number
+    return None
+
+
+def reported_errors(
+    campaigns: Sequence[Sequence[Estimate]], truth: FloatArray
+) -> Mapping[str, Mapping[str, float]]:
+    """Median error in percent after three manoeuvres for each value the paper may have reported."""
+    first = [campaign[:3] for campaign in campaigns]
+    values = {
+        "mean of the window": [np.mean([e.theta for e in c], axis=0) for c in first],
+        "last manoeuvre": [c[-1].theta for c in first],
+        "all together": [pool(beliefs_at_one_speed(c)).theta for c in first],
+    }
+    return {
+        name: dict(
+            zip(
+                PARAMETERS,
+                (100.0 * np.median(np.abs(np.array(v) / truth - 1.0), axis=0)).tolist(),
+                strict=True,
+            )
+        )
+        for name, v in values.items()
+    }
