@@ -9,6 +9,7 @@ manoeuvre is judged against its own natural frequency (`advisor.decision.quality
 """
 
 from collections.abc import Collection, Mapping
+from math import isfinite
 
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus
@@ -51,7 +52,7 @@ def problems(
     """
     if vehicle is None:
         return [_no_vehicle(other_systems)]
-    found = [*_missing(elevator, channels), *_too_slow(channels)]
+    found = [*_missing(elevator, channels, vehicle), *_too_slow(channels, vehicle)]
     if not found and maneuvers == 0:
         found.append(
             Problem(
@@ -78,25 +79,21 @@ def _no_vehicle(other_systems: Collection[int]) -> Problem:
     )
 
 
-def _missing(elevator: Surface | Problem, channels: Mapping[str, ChannelStatus]) -> list[Problem]:
-    found = []
-    if isinstance(elevator, Problem):
-        found.append(elevator)
-    elif "elevator" not in channels:
+def _missing(
+    elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
+) -> list[Problem]:
+    found = [elevator] if isinstance(elevator, Problem) else []
+    if "q" not in channels:
+        # Its stamps are the vehicle's clock: without it no other channel can be placed either.
+        text = "There is no pitch rate: no ATTITUDE arrived."
+        return [*found, Problem("no_pitch_rate", text, f"Ask for ATTITUDE: {_ask('ATTITUDE', vehicle)}.")]
+    if isinstance(elevator, Surface) and "elevator" not in channels:
         outputs = " and ".join(str(n) for n in elevator.outputs)
         found.append(
             Problem(
                 "no_elevator",
                 f"Servo output {outputs}, the elevator, never carried a pulse (SERVO_OUTPUT_RAW).",
                 "Ask for SERVO_OUTPUT_RAW (--request-rates), or set elevator.output in the aircraft file.",
-            )
-        )
-    if "q" not in channels:
-        found.append(
-            Problem(
-                "no_pitch_rate",
-                "There is no pitch rate: no ATTITUDE arrived.",
-                "Ask for ATTITUDE (--request-rates, or " + _parameter("ATTITUDE") + ").",
             )
         )
     if "alpha" not in channels:
@@ -111,18 +108,24 @@ def _missing(elevator: Surface | Problem, channels: Mapping[str, ChannelStatus])
     return found
 
 
-def _too_slow(channels: Mapping[str, ChannelStatus]) -> list[Problem]:
+def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[Problem]:
+    if "q" not in channels:
+        return []
     needed = [channels[name] for name in ("elevator", "q", "alpha") if name in channels]
     slow = {_message(status): status.rate_hz for status in needed if not status.rate_hz >= SLOWEST_HZ}
     return [
         Problem(
             "rate",
-            f"{message} arrives at {rate_hz:.1f} Hz, too slow to identify a short period "
+            f"{message} arrives {_at(rate_hz)}, too slow to identify a short period "
             f"(at least {SLOWEST_HZ:.0f} Hz, better {_ASK_HZ} Hz).",
-            f"Ask for {_ASK_HZ} Hz: {_parameter(message)}, or run live with --request-rates.",
+            f"Ask for {_ASK_HZ} Hz: {_ask(message, vehicle)}.",
         )
         for message, rate_hz in slow.items()
     ]
+
+
+def _at(rate_hz: float) -> str:
+    return f"at {rate_hz:.1f} Hz" if isfinite(rate_hz) else "hardly at all"
 
 
 def _message(status: ChannelStatus) -> str:
@@ -130,8 +133,9 @@ def _message(status: ChannelStatus) -> str:
     return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
 
 
-def _parameter(message: str) -> str:
+def _ask(message: str, vehicle: Vehicle) -> str:
     group = _GROUPS.get(message)
-    if group is None:
-        return f"the rate of {message} on the vehicle"
-    return f"set SR0_{group} (MAV1_{group} in newer firmware) to {_ASK_HZ}"
+    if vehicle.autopilot == "ardupilot" and group:
+        parameters = f"SR0_{group} (MAV1_{group} in newer firmware)"
+        return f"set {parameters} to {_ASK_HZ}, or run live with --request-rates"
+    return f"set its rate on the vehicle to {_ASK_HZ} Hz, or run live with --request-rates"

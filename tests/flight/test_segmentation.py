@@ -1,0 +1,217 @@
+"""The segmenter: every input found and named, nothing invented, sample by sample."""
+
+import numpy as np
+import pytest
+
+from advisor.flight.segmentation import Segmenter
+from tests.flight.elevators import PATTERNS, Stream, coloured, length, slewed, stamps, steps
+
+DEG = np.radians(1.0)
+SEEDS = range(12)
+
+
+def found(stream):
+    segmenter = Segmenter()
+    spans = [segmenter.push(t, u) for t, u in zip(stream.t.tolist(), stream.u.tolist(), strict=True)]
+    return [span for span in (*spans, segmenter.finish()) if span is not None]
+
+
+def drawn(
+    seed, kind, slew=0.0, jitter=0.0, noise=0.0, wander=0.0, ramp=0.0, rate_hz=None, human=0.0, modified=False
+):
+    """One input of random size, time unit and rate, spoilt as asked (shares of its amplitude or unit)."""
+    rng = np.random.default_rng((seed, len(kind)))
+    amplitude = DEG * np.exp(rng.uniform(np.log(0.25), np.log(20.0)))
+    unit_s = np.exp(rng.uniform(np.log(0.3 if rate_hz else 0.1), np.log(2.0)))
+    rate = rate_hz or rng.uniform(max(10.0, 8.0 / unit_s), max(100.0, 8.1 / unit_s))
+    levels = tuple(
+        (units * rng.uniform(1 - human, 1 + human), level * rng.uniform(1 - human, 1 + human))
+        for units, level in PATTERNS[kind]
+    )
+    if modified:
+        levels = ((levels[0][0], 0.8 * levels[0][1]), *((units, 1.1 * level) for units, level in levels[1:]))
+    duration = length(levels) * unit_s
+    t = stamps(rng, 6.0 + duration + max(3.0, min(8.0, duration)) + 5.0, rate, jitter=0.2)
+    u = slewed(t, amplitude * steps(t, 6.0, unit_s, levels), slew * unit_s)
+    u = u * (1.0 + jitter * coloured(rng, t, 2.0)) + noise * amplitude * rng.standard_normal(len(t))
+    u = u + wander * amplitude * coloured(rng, t, 0.3) + ramp * amplitude * t / 10.0
+    return Stream(t, u + DEG * rng.uniform(-5.0, 5.0), [(kind, 6.0, 6.0 + duration)])
+
+
+SPOILT = {
+    "clean": {},
+    "with noise on the command": {"noise": 0.05},
+    "with much noise on the command": {"noise": 0.1},
+    "with a stick that shakes": {"jitter": 0.1},
+    "amid corrections": {"wander": 0.1},
+    "on a trim ramp": {"ramp": 0.1},
+    "at ten hertz": {"rate_hz": 10.0},
+}
+SLOPPY = {
+    "with slewed edges": {"slew": 0.3},
+    "with badly slewed edges": {"slew": 0.5},
+    "by hand": {"slew": 0.3, "human": 0.15, "jitter": 0.05},
+    "with balanced areas": {"modified": True},
+}
+
+
+@pytest.mark.parametrize("how", SPOILT)
+@pytest.mark.parametrize("kind", ["3-2-1-1", "reverse 3-2-1-1", "doublet", "other"])
+def test_every_input_is_found_once_by_its_name(kind, how):
+    for seed in SEEDS:
+        stream = drawn(seed, kind, **SPOILT[how])
+        (span,) = found(stream)
+        _, first, last = stream.flown[0]
+        assert span.kind == kind
+        assert abs(span.start_s - first) < 0.15
+        assert abs(span.last_step_s - last) < 0.15
+        assert span.record_from_s < span.start_s < span.last_step_s < span.end_s
+
+
+@pytest.mark.parametrize("how", SLOPPY)
+@pytest.mark.parametrize("kind", ["3-2-1-1", "reverse 3-2-1-1"])
+def test_a_3211_is_found_however_it_was_flown(kind, how):
+    for seed in SEEDS:
+        stream = drawn(seed, kind, **SLOPPY[how])
+        (span,) = found(stream)
+        assert span.kind == kind
+        assert abs(span.start_s - 6.0) < 0.5
+
+
+def test_a_first_step_with_the_trailing_edge_up_is_a_3211_and_the_other_its_reverse():
+    t = np.arange(0.0, 20.0, 0.02)
+    for sense, kind in ((-1.0, "3-2-1-1"), (1.0, "reverse 3-2-1-1")):
+        u = sense * DEG * -steps(t, 6.0, 0.4, PATTERNS["3-2-1-1"])
+        (span,) = found(Stream(t, u))
+        assert span.kind == kind
+
+
+def test_a_pulse_is_found_when_nothing_moves_around_it():
+    for seed in SEEDS:
+        (span,) = found(drawn(seed, "pulse"))
+        assert span.kind == "pulse"
+
+
+def test_a_multisine_is_found():
+    t = np.arange(0.0, 25.0, 0.02)
+    inside = (t >= 6.0) & (t < 14.0)
+    phase = 2.0 * np.pi * (t - 6.0) / 8.0
+    u = np.where(inside, sum(np.sin(n * phase - np.pi * n * n / 7.0) for n in range(2, 9)), 0.0)
+    (span,) = found(Stream(t, 0.5 * DEG * u))
+    assert span.kind == "multisine"
+    assert abs(span.start_s - 6.0) < 0.5
+
+
+def quiet_flight(name, rng, t):
+    """Elevator histories without a test input."""
+    if name == "trim changes":
+        times, levels = np.cumsum(rng.exponential(5.0, 30)), np.cumsum(rng.normal(0.0, 1.0, 31))
+        return slewed(t, levels[np.searchsorted(times, t)], 0.2)
+    if name == "trim ramps":
+        return np.interp(t, np.cumsum(rng.exponential(4.0, 30)), np.cumsum(rng.normal(0.0, 1.0, 30)))
+    if name == "turbulence corrections":
+        return coloured(rng, t, rng.uniform(0.3, 3.0))
+    if name == "an attitude loop":
+        u = np.zeros(len(t))
+        for start in np.cumsum(rng.uniform(8.0, 15.0, 5)):
+            since, rate = np.maximum(t - start, 0.0), 2.0 * np.pi * rng.uniform(0.15, 0.5)
+            u += rng.normal() * np.exp(-rng.uniform(0.1, 0.5) * rate * since) * np.sin(rate * since)
+        return u
+    if name == "climbs":
+        u = np.zeros(len(t))
+        for start in np.cumsum(rng.uniform(6.0, 12.0, 6)):
+            u += rng.normal() * (
+                np.tanh((t - start) / 0.5) - np.tanh((t - start - rng.uniform(2.0, 6.0)) / 0.5)
+            )
+        return u
+    return slewed(t, slewed(t, coloured(rng, t, 1.0), 0.5), 0.3)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["trim ramps", "turbulence corrections", "an attitude loop", "climbs", "slow wandering"],
+)
+def test_nothing_is_invented_in(name):
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        t = stamps(rng, 60.0, rng.uniform(10.0, 80.0), jitter=0.2)
+        assert found(Stream(t, DEG * rng.uniform(0.2, 4.0) * quiet_flight(name, rng, t))) == []
+
+
+def test_no_3211_is_ever_seen_in_flight_without_one():
+    for name in (
+        "trim changes",
+        "trim ramps",
+        "turbulence corrections",
+        "an attitude loop",
+        "climbs",
+        "wandering",
+    ):
+        for seed in range(6):
+            rng = np.random.default_rng((seed, 7))
+            t = stamps(rng, 60.0, rng.uniform(10.0, 80.0), jitter=0.2)
+            kinds = {span.kind for span in found(Stream(t, DEG * quiet_flight(name, rng, t)))}
+            assert not kinds & {"3-2-1-1", "reverse 3-2-1-1"}
+
+
+def flown_at(onsets_s, duration_s, unit_s=0.4):
+    t = np.arange(0.0, duration_s, 0.02)
+    return Stream(t, DEG * sum(steps(t, onset, unit_s, PATTERNS["3-2-1-1"]) for onset in onsets_s))
+
+
+def test_the_free_response_is_as_long_as_the_input_but_at_least_three_seconds():
+    (short,) = found(flown_at([5.0], 20.0, unit_s=0.2))
+    (long,) = found(flown_at([5.0], 30.0, unit_s=0.8))
+    assert short.end_s - short.last_step_s == pytest.approx(3.0, abs=0.1)
+    assert long.end_s - long.last_step_s == pytest.approx(5.6, abs=0.1)
+    assert short.closed_by == long.closed_by == "quiet"
+
+
+def test_the_next_input_ends_a_free_response():
+    first, second = found(flown_at([5.0, 9.5], 20.0))
+    assert first.closed_by == "next input"
+    assert first.end_s == pytest.approx(9.48, abs=0.03)
+    assert second.record_from_s >= first.end_s
+    assert second.start_s == pytest.approx(9.48, abs=0.03)
+
+
+def test_a_mode_change_ends_a_free_response():
+    stream, segmenter = flown_at([5.0], 20.0), Segmenter()
+    spans = []
+    for t, u in zip(stream.t.tolist(), stream.u.tolist(), strict=True):
+        if abs(t - 9.0) < 0.005:
+            spans.append(segmenter.mode_changed(t))
+        spans.append(segmenter.push(t, u))
+    (span,) = [span for span in spans if span is not None]
+    assert span.closed_by == "mode change"
+    assert span.end_s == pytest.approx(9.0, abs=0.03)
+
+
+def test_the_end_of_the_log_and_a_gap_close_what_is_complete():
+    whole = flown_at([5.0], 20.0)
+    cut = whole.t < 9.0
+    (ended,) = found(Stream(whole.t[cut], whole.u[cut]))
+    gap = (whole.t < 9.0) | (whole.t > 14.0)
+    (gapped,) = found(Stream(whole.t[gap], whole.u[gap]))
+    assert ended.closed_by == "end of log"
+    assert gapped.closed_by == "gap"
+    assert ended.end_s == gapped.end_s == pytest.approx(8.98, abs=0.03)
+
+
+def test_an_input_under_way_is_seen_while_it_is_flown():
+    stream, segmenter = flown_at([5.0], 20.0), Segmenter()
+    seen = {}
+    for t, u in zip(stream.t.tolist(), stream.u.tolist(), strict=True):
+        segmenter.push(t, u)
+        seen[round(t, 2)] = segmenter.onset_s
+    assert seen[4.9] is None
+    assert seen[6.0] == pytest.approx(5.0, abs=0.05)
+    assert seen[9.0] == pytest.approx(5.0, abs=0.05)
+    assert seen[15.0] is None
+
+
+def test_an_hour_of_stream_needs_no_more_memory_than_a_minute():
+    segmenter = Segmenter()
+    for i in range(40_000):
+        segmenter.push(i * 0.09, 0.0)
+    assert len(segmenter._t) <= 8192

@@ -1,0 +1,106 @@
+"""Which output is the elevator, and what its pulses mean."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Elevator
+from advisor.flight.surfaces import AILERON, RUDDER, Surface, driven, find_elevator, find_surface
+from advisor.problems import Problem
+
+PLANE = {"SERVO1_FUNCTION": 4.0, "SERVO2_FUNCTION": 19.0, "SERVO4_FUNCTION": 21.0}
+
+
+def degrees(surface, *pulses):
+    return np.degrees(surface.deflection(np.array(pulses, dtype=float).reshape(len(pulses), -1))).tolist()
+
+
+def test_the_output_with_function_19_is_the_elevator():
+    surface = find_elevator(Elevator(), PLANE)
+    assert isinstance(surface, Surface)
+    assert surface.outputs == (2,)
+    assert not surface.calibrated
+    assert "25 deg" in surface.said
+
+
+def test_without_a_calibration_more_pwm_is_trailing_edge_up_unless_reversed():
+    plain = find_elevator(Elevator(), PLANE)
+    reversed_ = find_elevator(Elevator(), PLANE | {"SERVO2_REVERSED": 1.0})
+    assert degrees(plain, 1100, 1500, 1900) == pytest.approx([25, 0, -25])
+    assert degrees(reversed_, 1100, 1500, 1900) == pytest.approx([-25, 0, 25])
+
+
+def test_an_uneven_trim_gives_each_side_its_own_scale():
+    surface = find_elevator(Elevator(), PLANE | {"SERVO2_TRIM": 1400.0, "SERVO2_MAX": 2000.0})
+    assert degrees(surface, 1250, 1400, 1700) == pytest.approx([12.5, 0, -12.5])
+
+
+def test_a_calibration_is_linear_between_its_pairs_and_does_not_extrapolate():
+    elevator = Elevator(output=5, calibration=((1900, 20.0), (1100, -30.0), (1500, 0.0)))
+    surface = find_elevator(elevator, {})
+    assert degrees(surface, 1300, 1500, 1700) == pytest.approx([-15, 0, 10])
+    assert degrees(surface, 900, 2100) == pytest.approx([-30, 20])
+
+
+def test_nothing_known_is_refused_with_what_to_set():
+    problem = find_elevator(Elevator(), {})
+    assert isinstance(problem, Problem)
+    assert problem.code == "no_elevator"
+    assert "elevator.output" in problem.fix
+
+
+def test_functions_without_an_elevator_are_refused():
+    problem = find_elevator(Elevator(), {"SERVO1_FUNCTION": 4.0})
+    assert isinstance(problem, Problem)
+    assert "No output" in problem.text
+
+
+@pytest.mark.parametrize("functions", [(77, 78), (79, 80)])
+def test_elevons_and_v_tails_are_read_as_the_mean_of_both_halves(functions):
+    left, right = functions
+    surface = find_elevator(
+        Elevator(), {"SERVO1_FUNCTION": left, "SERVO5_FUNCTION": right, "SERVO5_REVERSED": 1.0}
+    )
+    assert isinstance(surface, Surface)
+    assert surface.outputs == (1, 5)
+    both_up, only_roll = [1900, 1100], [1700, 1700]
+    assert degrees(surface, both_up, only_roll) == pytest.approx([-25, 0])
+
+
+def test_one_half_of_a_mixed_pair_is_refused_by_name():
+    asked = find_elevator(Elevator(output=1), {"SERVO1_FUNCTION": 77.0, "SERVO2_FUNCTION": 78.0})
+    alone = find_elevator(Elevator(), {"SERVO1_FUNCTION": 79.0})
+    assert isinstance(asked, Problem)
+    assert "elevon" in asked.text
+    assert isinstance(alone, Problem)
+    assert "V-tail" in alone.text
+
+
+def test_one_calibration_for_two_outputs_is_refused():
+    elevator = Elevator(calibration=((1000, -25.0), (2000, 25.0)))
+    problem = find_elevator(elevator, {"SERVO1_FUNCTION": 77.0, "SERVO2_FUNCTION": 78.0})
+    assert isinstance(problem, Problem)
+    assert "calibration" in problem.text
+
+
+def test_outputs_in_two_banks_are_refused():
+    problem = find_elevator(Elevator(), {"SERVO16_FUNCTION": 19.0, "SERVO17_FUNCTION": 19.0})
+    assert isinstance(problem, Problem)
+    assert "banks" in problem.text
+
+
+def test_outputs_beyond_16_are_in_the_second_bank():
+    surface = find_elevator(Elevator(output=18), {})
+    assert isinstance(surface, Surface)
+    assert surface.port == 1
+
+
+def test_aileron_and_rudder_are_found_where_the_parameters_say():
+    assert find_surface(AILERON, PLANE).outputs == (1,)
+    assert find_surface(RUDDER, PLANE).outputs == (4,)
+    assert find_surface(RUDDER, {}) is None
+
+
+def test_idle_outputs_carry_no_pulse():
+    pulses = np.array([[0.0], [65535.0], [900.0], [1500.0]])
+    assert driven(pulses, "ardupilot").tolist() == [False, False, True, True]
+    assert driven(pulses, "px4").tolist() == [False, False, False, True]
