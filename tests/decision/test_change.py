@@ -1,0 +1,126 @@
+"""Something changed: told apart from noise and from a poor manoeuvre."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import CampaignPlan
+from advisor.decision.change import find_change
+from advisor.decision.history import Flown
+from advisor.decision.stopping import flight_test
+from advisor.decision.verdict import Reason
+from advisor.flight.messages import FloatArray
+from advisor.study.flying import Scene, fly_named, respond
+from sim.linear import ShortPeriod
+from tests.decision.campaigns import THETA, drawn, estimate, with_change
+
+
+def flown(rng: np.random.Generator, *thetas: FloatArray) -> list[Flown]:
+    return [Flown(drawn(rng, theta)) for theta in thetas]
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(21)
+
+
+@pytest.mark.parametrize("parameter", ["Z_alpha", "M_alpha", "M_delta_e", "M_q"])
+def test_a_loss_is_suspected_after_one_manoeuvre_and_confirmed_after_two(
+    rng: np.random.Generator, parameter: str
+) -> None:
+    less = with_change(parameter, 0.85)
+    history = flown(rng, THETA, THETA, THETA, less, less)
+    first, second = find_change(history[:4]), find_change(history)
+    assert first is not None
+    assert second is not None
+    assert not first.confirmed
+    assert second.confirmed
+    assert first.after == second.after == 3
+    assert second.moved[0].parameter == parameter
+    assert second.moved[0].percent == pytest.approx(-15.0, abs=4.0)
+    assert abs(second.moved[0].sigma) > 5.0
+
+
+def test_noise_alone_is_no_change(rng: np.random.Generator) -> None:
+    alarms = [find_change(flown(rng, *[THETA] * 6)) for _ in range(60)]
+    assert not any(alarms)
+
+
+def test_a_poor_manoeuvre_is_forgotten_when_the_next_is_like_the_earlier_ones(
+    rng: np.random.Generator,
+) -> None:
+    poor = THETA * rng.normal(1.0, 0.2, 8)
+    history = flown(rng, THETA, THETA, THETA, poor, THETA)
+    suspected = find_change(history[:4])
+    assert suspected is not None
+    assert "poor manoeuvre, or something changed" in suspected.sentence
+    assert find_change(history) is None
+
+
+def test_two_manoeuvres_alone_cannot_tell_which_is_the_odd_one(rng: np.random.Generator) -> None:
+    assert find_change(flown(rng, THETA, with_change("M_alpha", 0.5))) is None
+
+
+def test_a_change_of_a_few_per_cent_is_not_worth_a_warning(rng: np.random.Generator) -> None:
+    slight = with_change("M_alpha", 0.95)
+    exact = [Flown(estimate(theta, std_percent=0.1)) for theta in (THETA, THETA, THETA, slight, slight)]
+    assert find_change(exact) is None
+
+
+@pytest.mark.parametrize(
+    ("powers", "looks_like"),
+    [
+        ((0, 0, 0, 1, 0, 0), "centre of gravity"),
+        ((1, 0, 0, 0, 0, 0), "icing"),
+        ((0, 0, 1, 0, 0, 1), "elevator's effectiveness or its calibration"),
+        ((1, 0, 1, 2, 1, 2), "air speed"),
+        ((0, 1, 1, -1, 0, 0), "scale of the angle of attack"),
+        ((0, -1, 0, 1, 0, 1), "scale of the pitch rate"),
+    ],
+)
+def test_the_simplest_cause_is_named(
+    rng: np.random.Generator, powers: tuple[int, ...], looks_like: str
+) -> None:
+    one_plus = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    exponents = np.array([0, *powers[:3], 0, *powers[3:]], float)
+    after = (THETA + one_plus) * 0.8**exponents - one_plus
+    change = find_change(flown(rng, THETA, THETA, THETA, after, after))
+    assert change is not None
+    assert looks_like in change.looks_like
+    assert looks_like in change.sentence
+
+
+def test_a_scale_error_of_the_angle_of_attack_moves_the_parameters_as_its_cause_says() -> None:
+    # Substitute α = α_m/k in Eqs. (1) and (2) and compare trajectories.
+    scene, k = Scene(), 0.8
+    truth = fly_named(scene, "3211")
+    theta = scene.theta.copy()
+    theta[[0, 3]] *= k
+    theta[2] = (1.0 + theta[2]) * k - 1.0
+    theta[5] /= k
+    misread = ShortPeriod(*theta)
+    response = respond(misread, truth.elevator, truth.trim * [k, 1.0], 1.0 / scene.rate_hz)
+    np.testing.assert_allclose(response, truth.response * [k, 1.0], atol=1e-9)
+
+
+def test_unusable_manoeuvres_are_no_evidence_of_a_change(rng: np.random.Generator) -> None:
+    spoilt = [
+        Flown(estimate(with_change("M_alpha", 0.5)), reasons=(Reason("bank", "banked", 40.0, 30.0),))
+    ] * 2
+    assert find_change([*flown(rng, THETA, THETA, THETA), *spoilt]) is None
+
+
+def test_the_flight_test_warns_whichever_rule_decides(rng: np.random.Generator) -> None:
+    less = with_change("M_alpha", 0.8)
+    history = flown(rng, THETA, THETA, THETA, less, less)
+    for rule in ("continuous", "separate", "information"):
+        warnings = flight_test(history, CampaignPlan(rule=rule)).warnings
+        assert any(w.startswith("Something changed after manoeuvre 3: M_alpha -20 %") for w in warnings)
+
+
+def test_manoeuvres_are_numbered_as_flown_even_with_unusable_ones_between(rng: np.random.Generator) -> None:
+    less = with_change("M_alpha", 0.8)
+    spoilt = Flown(estimate(), reasons=(Reason("bank", "banked", 40.0, 30.0),))
+    before, after = flown(rng, THETA, THETA, THETA), flown(rng, less, less)
+    change = find_change([before[0], spoilt, *before[1:], *after])
+    assert change is not None
+    assert change.after == 4
