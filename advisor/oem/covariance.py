@@ -2,23 +2,30 @@
 
 Near the optimum the estimate is linear in the noise, θ̂ - θ = Aᵀ·ν, with the influence A of
 every measurement. White noise of covariance R gives AᵀRA, which is the Cramér-Rao bound. Real
-residuals are coloured; then the covariance is AᵀΓA with Γ the noise's own autocorrelation,
-estimated from the residuals: Klein & Morelli, *Aircraft System Identification* (2006),
-Eqs. (5.42)-(5.46).
+residuals are coloured; then the covariance is AᵀΓA with Γ the noise's own autocovariance,
+estimated from the residuals (Klein & Morelli, *Aircraft System Identification*, section on
+the accuracy of output-error estimates with coloured residuals; here with the
+autocovariance of the model in ``colour``).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import stdtrit
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
-from advisor.model.response import LOCAL, N_PARAMETERS, N_SHARED, SHARED
+from advisor.model.response import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, SHARED
+from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from advisor.oem.problem import Assembly
 
 LEAST_EIGENVALUE = 1e-13
 """Of a normalised information matrix; below, round-off decides the inverse."""
 OPEN_SHARE = 0.01
+"""Of a parameter, in directions the data leave open; above, it is unresolved."""
+DIFFERENCE = 0.05
+LEAST_FREEDOM = 3.0
+GAUSS_975 = 1.959963984540054
 REPORTED = tuple((name in SHARED, (SHARED if name in SHARED else LOCAL).index(name)) for name in PARAMETERS)
 """Where each of the eight stands: (shared or local, index)."""
 
@@ -117,20 +124,43 @@ def cramer_rao(assembly: Assembly, rows: FloatArray, noise: FloatArray) -> Float
     return (rows * noise[assembly.channel, None] ** 2).T @ rows
 
 
-def coloured(assembly: Assembly, rows: FloatArray, residual: FloatArray) -> FloatArray:
-    """AᵀΓA, shape (8 + k, 8 + k), with the autocovariance of each output pooled over the manoeuvres."""
-    total = np.zeros((rows.shape[1], rows.shape[1]))
-    for output in {name for named in assembly.rows for name in named}:
+def coloured(
+    assembly: Assembly, rows: FloatArray, residual: FloatArray, g: FloatArray
+) -> tuple[FloatArray, dict[str, Colour]]:
+    """AᵀΓA, shape (8 + k, 8 + k), with the colour of each output pooled over the manoeuvres.
+
+    The colour is itself an estimate. Its uncertainty is carried to each variance (Satterthwaite's
+    degrees of freedom), and the variance enlarged by the square of Student's over Gauss's 97.5 %
+    point, so that ±1.96 standard deviations hold the truth in 95 % of cases.
+    """
+    width = rows.shape[1]
+    total = np.zeros((width, width))
+    spread = np.zeros(width)
+    colours: dict[str, Colour] = {}
+    for output in OUTPUTS:
         stretches = [named[output] for named in assembly.rows if output in named]
-        reach = max(2, max(s.stop - s.start for s in stretches) // 5)
-        power = np.zeros(reach)
-        cross = np.zeros((reach, *total.shape))
-        for s in stretches:
-            v, a = residual[s], rows[s]
-            for k in range(min(reach, len(v))):
-                power[k] += v[k:] @ v[: len(v) - k]
-                cross[k] += a[k:].T @ a[: len(a) - k]
-        autocovariance = power / sum(s.stop - s.start for s in stretches)
-        for k in range(reach):
-            total += autocovariance[k] * (cross[k] if k == 0 else cross[k] + cross[k].T)
-    return total
+        if not stretches:
+            continue
+        colour = find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
+        colours[output] = colour
+
+        def part(changed: Colour, stretches: list[slice] = stretches) -> FloatArray:
+            summed: FloatArray = np.sum([product(rows[s], changed) for s in stretches], axis=0)
+            return summed
+
+        own = part(colour)
+        total += own
+        slopes = np.zeros((len(colour.uncertainty), width))
+        slopes[0] = np.diag(own)
+        for i in range(1, len(colour.uncertainty)):
+            step = np.zeros(3)
+            step[i] = DIFFERENCE
+            slopes[i] = np.diag(part(moved(colour, step)) - part(moved(colour, -step))) / (2.0 * DIFFERENCE)
+        spread += np.einsum("ij,ik,kj->j", slopes, colour.uncertainty, slopes)
+    variance = np.diag(total)
+    with_spread = spread > 0.0
+    freedom = np.full(width, np.inf)
+    freedom[with_spread] = np.maximum(2.0 * variance[with_spread] ** 2 / spread[with_spread], LEAST_FREEDOM)
+    widening = stdtrit(np.minimum(freedom, 1e9), 0.975) / GAUSS_975
+    widened: FloatArray = total * np.outer(widening, widening)
+    return widened, colours

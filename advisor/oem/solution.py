@@ -1,5 +1,6 @@
 """Solving a problem: start, descent, errors, what is identifiable."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
+from advisor.oem.colour import Colour
 from advisor.oem.covariance import REPORTED, Influence, coloured, cramer_rao, influence
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.gauss_newton import CONVERGED, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend, weigh
@@ -37,6 +39,8 @@ class Solution:
     """(8 + k, 8 + k) Cramér-Rao bound; beyond the eight stand the k extra parameters."""
     covariance: FloatArray
     """(8 + k, 8 + k) corrected for coloured residuals."""
+    colours: Mapping[str, Colour]
+    """Output name to the colour of its noise."""
 
     @property
     def residual(self) -> FloatArray:
@@ -109,6 +113,7 @@ def evaluate(
         return NoEstimate(
             "singular", "The input does not excite the motion enough to tell the parameters apart."
         )
+    corrected, colours = coloured(assembly, effect.rows, assembly.z - y, g)
     return Solution(
         problem=problem,
         assembly=assembly,
@@ -118,7 +123,8 @@ def evaluate(
         influence=effect,
         theta=reported(optimum.shared, optimum.local),
         covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise),
-        covariance=coloured(assembly, effect.rows, assembly.z - y),
+        covariance=corrected,
+        colours=colours,
     )
 
 

@@ -1,0 +1,207 @@
+"""The colour of an output's noise: white noise plus a first-order autoregression, by restricted likelihood.
+
+    ν_k = w_k + x_k,   x_{k+1} = φ·x_k + e_k
+
+Real residuals are a mixture of the two: sensor noise that forgets at once and small errors of
+the model that last. Sample autocorrelations of residuals come out too small, because the fitted
+parameters have eaten part of the slow noise; restricted maximum likelihood (Patterson &
+Thompson, *Biometrika* 58, 1971) looks only at what no parameter can explain and is free of that
+bias. Whitening is a scalar Kalman filter.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from scipy.optimize import minimize
+from scipy.signal import lfilter
+
+from advisor.flight.messages import FloatArray
+
+MEMORIES = (-0.4, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.993)
+"""First guesses of φ."""
+WHITE_SHARES = (0.0, 0.1, 0.5, 2.0)
+"""First guesses of var w / var x."""
+SIGNIFICANT = 6.0
+"""Gain in twice the log-likelihood from which colour is believed."""
+LARGEST_MEMORY = 0.9995
+SMALLEST_SHARE = 1e-4
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Residuals of one output in one manoeuvre, and what its parameters could explain."""
+
+    residual: FloatArray
+    """(n,)."""
+    columns: FloatArray
+    """(n, p) derivatives by the manoeuvre's parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Colour:
+    """Noise of one output."""
+
+    variance: float
+    """Of the coloured part x, or of all when ``memory`` is 0."""
+    memory: float
+    """φ; 0: white."""
+    white_share: float
+    """var w / var x."""
+    uncertainty: FloatArray
+    """(k, k) covariance of the logarithm of ``variance``, and with colour of the two shape
+    parameters of ``shape``."""
+
+    @property
+    def shape(self) -> FloatArray:
+        """(2,) φ and var w / var x on unbounded scales."""
+        return _unbounded(self.memory, self.white_share)
+
+
+def find_colour(stretches: Sequence[Stretch]) -> Colour:
+    """Fit the noise model to residuals of one output, pooled over manoeuvres."""
+    scale = float(np.sqrt(np.mean(np.concatenate([s.residual for s in stretches]) ** 2)))
+    if scale == 0.0:
+        return Colour(0.0, 0.0, 0.0, np.zeros((1, 1)))
+    prepared = [_orthogonal(s, scale) for s in stretches]
+    freedom = sum(max(len(block) - block.shape[1] + 1, 1) for block in prepared)
+
+    def cost(memory: float, share: float) -> tuple[float, float]:
+        power = determinants = 0.0
+        for block in prepared:
+            part, determinant = _restricted(block, memory, share)
+            power += part
+            determinants += determinant
+        return float(freedom * np.log(power / freedom) + determinants), power / freedom
+
+    white, variance = cost(0.0, 0.0)
+    plain = Colour(scale**2 * variance, 0.0, 0.0, np.array([[2.0 / freedom]]))
+    guesses = [(cost(memory, 0.0)[0], memory, 0.0) for memory in MEMORIES]
+    best = min(guesses)
+    guesses += [(cost(best[1], share)[0], best[1], share) for share in WHITE_SHARES[1:]]
+    slower = min(0.99, 0.5 + best[1] / 2.0)
+    guesses += [(cost(slower, share)[0], slower, share) for share in WHITE_SHARES[1:]]
+    _, memory, share = min(guesses)
+
+    def by_shape(x: FloatArray) -> float:
+        return cost(*_bounded(x))[0]
+
+    found = minimize(
+        by_shape,
+        _unbounded(memory, share),
+        method="Nelder-Mead",
+        options={"xatol": 1e-2, "fatol": 1e-2, "initial_simplex": _simplex(_unbounded(memory, share))},
+    )
+    memory, share = _bounded(found.x)
+    if white - float(found.fun) < SIGNIFICANT:
+        return plain
+    variance = cost(memory, share)[1]
+
+    def joint(x: FloatArray) -> float:
+        """-2·log-likelihood by log variance and shape."""
+        power = determinants = 0.0
+        for block in prepared:
+            part, determinant = _restricted(block, *_bounded(x[1:]))
+            power += part
+            determinants += determinant
+        return float(freedom * x[0] + power * np.exp(-x[0]) + determinants)
+
+    centre = np.concatenate([[np.log(variance)], _unbounded(memory, share)])
+    return Colour(scale**2 * variance, memory, share, _uncertainty(joint, centre))
+
+
+def product(rows: FloatArray, colour: Colour) -> FloatArray:
+    """AᵀΓA, shape (k, k), for the influence ``rows`` (n, k) of one stretch."""
+    square = rows.T @ rows
+    if colour.memory == 0.0:
+        return colour.variance * square
+    forward = rows.T @ lfilter([1.0], [1.0, -colour.memory], rows, axis=0)
+    total: FloatArray = colour.variance * (forward + forward.T - square + colour.white_share * square)
+    return total
+
+
+def moved(colour: Colour, step: FloatArray) -> Colour:
+    """The colour with log variance and shape displaced by ``step`` (3,)."""
+    memory, share = _bounded(colour.shape + step[1:])
+    return Colour(colour.variance * float(np.exp(step[0])), memory, share, colour.uncertainty)
+
+
+def _bounded(x: FloatArray) -> tuple[float, float]:
+    return LARGEST_MEMORY * float(np.tanh(x[0])), float(np.exp(np.clip(x[1], np.log(SMALLEST_SHARE), 9.0)))
+
+
+def _unbounded(memory: float, share: float) -> FloatArray:
+    return np.array([np.arctanh(memory / LARGEST_MEMORY), np.log(max(share, SMALLEST_SHARE))])
+
+
+def _simplex(x: FloatArray) -> FloatArray:
+    corners: FloatArray = x + np.array([[0.0, 0.0], [0.15, 0.0], [0.0, 1.0]])
+    return corners
+
+
+def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:
+    """(n, r + 1) orthonormal basis of the columns, and the residual last."""
+    columns = stretch.columns / np.where(np.any(stretch.columns != 0.0, axis=0), 1.0, np.inf)
+    size = np.linalg.norm(columns, axis=0)
+    basis, values, _ = np.linalg.svd(columns[:, size > 0.0] / size[size > 0.0], full_matrices=False)
+    return np.ascontiguousarray(
+        np.column_stack([basis[:, values > 1e-9 * values[0]], stretch.residual / scale])
+    )
+
+
+@numba.njit(cache=True, fastmath={"reassoc", "contract"})
+def _restricted(block: FloatArray, memory: float, share: float) -> tuple[float, float]:
+    """Residual power after whitening and regression, and log det Γ + log det XᵀΓ⁻¹X.
+
+    ``block`` (n, p + 1): regressors and residual; Γ that of unit-variance x.
+    """
+    n, width = block.shape
+    white = np.empty((width, n))
+    state = np.zeros(width)
+    predicted = 1.0
+    determinants = 0.0
+    for k in range(n):
+        total = predicted + share
+        root = 1.0 / np.sqrt(total)
+        gain = memory * predicted / total
+        determinants += np.log(total)
+        for j in range(width):
+            innovation = block[k, j] - state[j]
+            white[j, k] = innovation * root
+            state[j] = memory * state[j] + gain * innovation
+        predicted = memory * memory * predicted * (1.0 - predicted / total) + 1.0 - memory * memory
+    gram = np.empty((width, width))
+    for i in range(width):
+        for j in range(i + 1):
+            dot = 0.0
+            for k in range(n):
+                dot += white[i, k] * white[j, k]
+            gram[i, j] = dot
+    for j in range(width):
+        for k in range(j):
+            gram[j, j] -= gram[j, k] ** 2
+        if j == width - 1:
+            return gram[j, j], determinants
+        gram[j, j] = np.sqrt(max(gram[j, j], 1e-300))
+        determinants += 2.0 * np.log(gram[j, j])
+        for i in range(j + 1, width):
+            for k in range(j):
+                gram[i, j] -= gram[i, k] * gram[j, k]
+            gram[i, j] /= gram[j, j]
+    return 0.0, determinants
+
+
+def _uncertainty(cost: Callable[[FloatArray], float], centre: FloatArray) -> FloatArray:
+    """Covariance of the parameters from the curvature of -2·log-likelihood."""
+    n = len(centre)
+    steps = np.array([0.05, 0.05, 0.3])
+    hessian = np.empty((n, n))
+    for i in range(n):
+        for j in range(i + 1):
+            a, b = np.eye(n)[i] * steps[i], np.eye(n)[j] * steps[j]
+            mixed = cost(centre + a + b) - cost(centre + a - b) - cost(centre - a + b) + cost(centre - a - b)
+            hessian[i, j] = hessian[j, i] = mixed / (8.0 * steps[i] * steps[j])
+    values, vectors = np.linalg.eigh(hessian)
+    covariance: FloatArray = (vectors / np.maximum(values, 0.05)) @ vectors.T
+    return covariance

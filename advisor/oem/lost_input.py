@@ -1,0 +1,110 @@
+"""Elevator samples that a link lost at a step, estimated with the aircraft's answer to them.
+
+A lost measurement costs its own information and no more. A lost sample of the input costs far
+more: joined by a straight line, the edge of a step lies up to an interval beside its true
+place, and every output after it is explained wrongly. But the outputs tell where the edge was.
+So where samples are missing and the command differs before and after, they are parameters like
+the others, bounded by their neighbours: Gauss-Newton on them and the aircraft together.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.model.response import N_PARAMETERS, respond
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.solution import Solution, solve
+
+LOST_INTERVAL = 1.5
+"""Stamps further apart than this many usual intervals have lost a sample between them."""
+LONGEST_GAP_S = 0.25
+"""Beyond this a gap is an outage, which no step of a stick explains."""
+STEP_SHARE = 0.05
+"""Share of the input's range that the command must have moved across the gap."""
+MOST_ROUNDS = 6
+_SETTLED = 1e-3
+
+
+def restored(problem: Problem) -> Problem:
+    """The problem with the input samples lost at steps put back, each record by itself."""
+    records = tuple(_restored(problem, record) for record in problem.records)
+    return replace(problem, records=records)
+
+
+def _restored(problem: Problem, record: Record) -> Record:
+    stamps, where = _lost(record.elevator)
+    if len(stamps) == 0:
+        return record
+    completed, at = _completed(record, stamps)
+    low = np.minimum(record.elevator.y[where], record.elevator.y[where + 1])
+    high = np.maximum(record.elevator.y[where], record.elevator.y[where + 1])
+    alone = replace(problem, records=(completed,))
+    solution = solve(alone)
+    for _ in range(MOST_ROUNDS):
+        if isinstance(solution, NoEstimate):
+            return record
+        values = completed.elevator.y[at]
+        better = np.clip(values + _correction(solution, at), low, high)
+        completed = _with_values(completed, at, better)
+        solution = solve(
+            replace(problem, records=(completed,)), begin=(solution.optimum.shared, solution.optimum.local)
+        )
+        if np.max(np.abs(better - values)) <= _SETTLED * float(np.ptp(record.elevator.y)):
+            break
+    return completed
+
+
+def _lost(elevator: Signal) -> tuple[FloatArray, "np.ndarray[tuple[int], np.dtype[np.int64]]"]:
+    """Stamps of lost samples at steps, and the index of the last sample before each."""
+    intervals = np.diff(elevator.t)
+    usual = float(np.median(intervals))
+    moved = np.abs(np.diff(elevator.y)) > STEP_SHARE * float(np.ptp(elevator.y))
+    gaps = (intervals > LOST_INTERVAL * usual) & (intervals <= LONGEST_GAP_S) & moved
+    stamps, where = [], []
+    for i in np.flatnonzero(gaps):
+        parts = round(float(intervals[i]) / usual)
+        for k in range(1, parts):
+            stamps.append(elevator.t[i] + k * intervals[i] / parts)
+            where.append(int(i))
+    return np.array(stamps), np.array(where, dtype=np.int64)
+
+
+def _completed(
+    record: Record, stamps: FloatArray
+) -> tuple[Record, "np.ndarray[tuple[int], np.dtype[np.int64]]"]:
+    """The record with samples on the straight line at these stamps, and their indices."""
+    t = np.sort(np.concatenate([record.elevator.t, stamps]))
+    return replace(record, elevator=Signal(t, record.elevator.at(t))), np.searchsorted(t, stamps)
+
+
+def _with_values(
+    record: Record, at: "np.ndarray[tuple[int], np.dtype[np.int64]]", values: FloatArray
+) -> Record:
+    y = record.elevator.y.copy()
+    y[at] = values
+    return replace(record, elevator=Signal(record.elevator.t, y))
+
+
+def _correction(solution: Solution, at: "np.ndarray[tuple[int], np.dtype[np.int64]]") -> FloatArray:
+    """Change of each lost sample that, with a change of the parameters, explains the residuals best."""
+    (record,) = solution.problem.records
+    step = 0.1 * float(np.ptp(record.elevator.y))
+    answers = np.empty((len(solution.fitted), len(at)))
+    for j, index in enumerate(at):
+        moved = _with_values(record, np.array([index]), record.elevator.y[[index]] + step)
+        assembly = assemble(replace(solution.problem, records=(moved,)))
+        y = np.empty(len(solution.fitted))
+        respond(
+            assembly.grid, solution.optimum.shared, solution.optimum.local, y, np.empty((0, N_PARAMETERS))
+        )
+        answers[:, j] = (y - solution.fitted) / step
+    weight = 1.0 / solution.optimum.noise[solution.assembly.channel]
+    known = solution.sensitivities[:, solution.assembly.free]
+    system = np.column_stack([known, answers]) * weight[:, None]
+    scale = np.linalg.norm(system, axis=0)
+    scale[scale == 0.0] = 1.0
+    change = np.linalg.lstsq(system / scale, solution.residual * weight, rcond=1e-10)[0] / scale
+    correction: FloatArray = change[known.shape[1] :]
+    return correction
