@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from sim.blind.seal import SealError
 from sim.effects.fitting import flight_of
 from sim.flight import Flight
 from sim.loading import ScenarioError
@@ -95,6 +96,58 @@ def record(out: Path, **options: Any) -> None:
     click.echo(f"{out}: {flight.duration_s:.0f} s of flight, {count} messages", err=True)
 
 
+@main.command()
+@click.option("--cases", default=100, show_default=True, help="How many.")
+@click.option("--seed", required=True, type=int, help="Draws everything; keep it from whoever answers.")
+@click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder for the logs.")
+@click.option("--only", multiple=True, help="Groups to draw from: clean, hard, jsbsim, none, ...")
+def blind(cases: int, seed: int, out: Path, only: tuple[str, ...]) -> None:
+    """Write flights whose effect is withheld, and seal the key beside the folder.
+
+    Example: python -m sim blind --cases 200 --seed 11 --out cases
+    """
+    from sim.blind.draw import GROUPS
+    from sim.blind.generate import generate, key_beside
+
+    unknown = [name for name in only if name not in GROUPS]
+    if unknown:
+        raise click.BadParameter(
+            f"{', '.join(unknown)}: choose from {', '.join(GROUPS)}", param_hint="--only"
+        )
+    chosen = [group for group in GROUPS if not only or group in only]
+    digest = generate(
+        cases, seed, out, chosen, tell=lambda text: click.echo(f"\r{text}  ", err=True, nl=False)
+    )
+    click.echo(f"\nsealed {cases} cases, key {key_beside(out)}, hash {digest}", err=True)
+
+
+@main.command()
+@click.argument("folder", type=click.Path(path_type=Path, exists=True))
+@click.argument("answers", type=click.Path(path_type=Path, exists=True))
+def commit(folder: Path, answers: Path) -> None:
+    """Commit answers by their hash, before the key is opened.
+
+    ANSWERS holds one JSON object a line: {"case": NAME, "answer": document of advisor gap --json}.
+    """
+    from sim.blind.seal import commit as commit_answers
+
+    click.echo(commit_answers(folder, answers))
+
+
+@main.command()
+@click.argument("folder", type=click.Path(path_type=Path, exists=True))
+@click.argument("answers", type=click.Path(path_type=Path, exists=True))
+@click.option("--key", type=click.Path(path_type=Path, exists=True), help="Default: beside the folder.")
+@click.option("--details", is_flag=True, help="Also effect by effect, and every wrong answer.")
+def reveal(folder: Path, answers: Path, key: Path | None, details: bool) -> None:
+    """Open the key and score committed answers, with 95 % intervals."""
+    from sim.blind.generate import key_beside
+    from sim.blind.reveal import report
+
+    for line in report(folder, answers, key or key_beside(folder), details):
+        click.echo(line)
+
+
 def run() -> None:
     """Run the command; mistakes of the user's end with exit code 2 and a sentence each."""
     try:
@@ -103,7 +156,7 @@ def run() -> None:
         for problem in error.problems:
             click.echo(f"error: {problem}", err=True)
         sys.exit(2)
-    except (TrimError, OSError) as error:
+    except (TrimError, SealError, OSError) as error:
         click.echo(f"error: {error}", err=True)
         sys.exit(2)
 

@@ -249,6 +249,7 @@ def noise_sigma(
         quiet = Scenario(
             aircraft=scenario.aircraft,
             engine=scenario.engine,
+            airframe=scenario.airframe,
             airspeed_m_s=scenario.airspeed_m_s,
             height_m=scenario.height_m,
             amplitude_deg=scenario.amplitude_deg,

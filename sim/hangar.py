@@ -61,5 +61,5 @@ def build(scenario: Scenario, **changes: float) -> Aircraft:
         return LinearAircraft(RESEARCH_JET, airspeed, scenario.height_m)
     airframe = AIRFRAMES[scenario.aircraft][0]
     held = 1.0 if scenario.speed == "held" else 0.0
-    flown = replace(airframe, **{"speed_held": held, **changes})
+    flown = replace(airframe, **{"speed_held": held, **scenario.airframe, **changes})
     return NonlinearAircraft(flown, airspeed, scenario.height_m)

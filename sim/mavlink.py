@@ -36,10 +36,14 @@ Message = Any
 class Voice:
     """Turns samples into due messages, and answers requests.
 
-    Rates asked for beyond the loop's are what the loop can do, as on the real autopilot.
+    Rates asked for beyond the loop's are what the loop can do, as on the real autopilot. Servo outputs are
+    written ``output_late_s`` after the tick, and stamped so.
     """
 
-    def __init__(self, rates: dict[str, float], clock: Clock, calibration: Calibration) -> None:
+    def __init__(
+        self, rates: dict[str, float], clock: Clock, calibration: Calibration, output_late_s: float = 0.0
+    ) -> None:
+        self._output_late_s = output_late_s
         self._clock = clock
         self._calibration = calibration
         self._interval = {name: 1.0 / rate if rate > 0 else math.inf for name, rate in rates.items()}
@@ -189,7 +193,7 @@ class Voice:
             round(low + 2 * half * sample.throttle),
             round(middle + half * sample.rudder),
         ]
-        stamp = round(1e6 * boot_s) % 2**32
+        stamp = round(1e6 * (boot_s + self._output_late_s)) % 2**32
         return mavlink.MAVLink_servo_output_raw_message(stamp, 0, *outputs, *([0] * 12))
 
     def _raw_imu(self, sample: Sample, boot_s: float) -> Message:

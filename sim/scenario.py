@@ -1,12 +1,13 @@
 """Scenario files: what is flown, by which aircraft, in which air, measured how."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Literal
 
 import yaml
 
+from sim.airframe import Airframe
 from sim.loading import ScenarioError, load
 from sim.maneuvers import INPUTS
 
@@ -175,6 +176,8 @@ class Scenario:
     link: Link = field(default_factory=Link)
     rates: dict[str, float] = field(default_factory=_rates)
     """Message name to Hz."""
+    airframe: dict[str, float] = field(default_factory=dict)
+    """Fields of the nonlinear airframe (``sim.airframe.Airframe``) that differ from the named aircraft's."""
     effects: dict[str, dict[str, float]] = field(default_factory=dict)
     """Effect name to its parameters, see ``sim.effects``."""
 
@@ -246,5 +249,7 @@ def _contradictions(scenario: Scenario) -> list[str]:
         errors.append("link.drop: must be at least 0 and below 1")
     if not 0.0 <= scenario.noise.colour < 1.0:
         errors.append("noise.colour: must be at least 0 and below 1")
+    known = [entry.name for entry in fields(Airframe)]
+    errors += [f"airframe.{name}: unknown field" for name in scenario.airframe if name not in known]
     errors += [f"rates.{name}: must be at least 0" for name, rate in scenario.rates.items() if rate < 0]
     return errors

@@ -9,6 +9,7 @@ import numpy as np
 from sim.airframe import GRAVITY_M_S2
 from sim.motion import Motion
 from sim.scenario import AlphaSensor
+from sim.servo import FirstOrderServo
 
 
 @dataclass(slots=True)
@@ -65,20 +66,23 @@ class DerivedAlpha:
 
     def __init__(self, sensor: AlphaSensor) -> None:
         self._sensor = sensor
-        self._lagged: float | None = None
+        self._filter = FirstOrderServo(max(sensor.lag_s, 1e-6))
+        self._awake = False
         self._shown = 0.0
         self._next_s = 0.0
         self._time_s = 0.0
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
         """Replace the vane's reading; the motion's own α knows nothing of gusts."""
-        if self._lagged is None:
-            self._lagged = motion.alpha
-        decay = math.exp(-dt / self._sensor.lag_s) if self._sensor.lag_s > 0 else 0.0
-        self._lagged = motion.alpha + (self._lagged - motion.alpha) * decay
+        if not self._awake or dt == 0.0:
+            self._filter.reset(motion.alpha)
+            self._awake = True
+            lagged = motion.alpha
+        else:
+            lagged = self._filter.step(motion.alpha, dt)
         self._time_s += dt
         if self._time_s >= self._next_s - 1e-9:
-            self._shown = self._lagged + math.radians(self._sensor.bias_deg)
+            self._shown = lagged + math.radians(self._sensor.bias_deg)
             self._next_s += 1.0 / self._sensor.renewed_hz
         reading.alpha = self._shown
 

@@ -31,7 +31,9 @@ class Telemetry:
     def __init__(self, flight: Flight) -> None:
         self.flight = flight
         scenario = flight.scenario
-        self.voice = Voice(dict(scenario.rates), scenario.clock, flight.calibration)
+        # A held command jumps within one step of the integration: in the middle of it, on average.
+        late = 0.5 * scenario.step_s if scenario.input == "held" else 0.0
+        self.voice = Voice(dict(scenario.rates), scenario.clock, flight.calibration, late)
         self._generator = np.random.default_rng([scenario.seed, 9])
 
     def bursts(self) -> Iterator[Burst]:

@@ -5,21 +5,23 @@ from collections.abc import Callable
 
 from sim.motion import Motion
 from sim.sensors import Reading
+from sim.servo import FirstOrderServo
 
 
 class Lagging:
     """An angle-of-attack vane with inertia and a filter: τ α̇_m = α − α_m."""
 
     def __init__(self, lag_s: float) -> None:
-        self.lag_s = lag_s
-        self._shown: float | None = None
+        self._filter = FirstOrderServo(lag_s)
+        self._awake = False
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
         """Show a lagged angle of attack."""
-        if self._shown is None or dt == 0.0:
-            self._shown = reading.alpha
-        self._shown = reading.alpha + (self._shown - reading.alpha) * math.exp(-dt / self.lag_s)
-        reading.alpha = self._shown
+        if not self._awake or dt == 0.0:
+            self._filter.reset(reading.alpha)
+            self._awake = True
+            return
+        reading.alpha = self._filter.step(reading.alpha, dt)
 
 
 class Scaled:

@@ -1,0 +1,237 @@
+"""Draw a case: aircraft, manoeuvres, air, noise, and what is withheld."""
+
+from dataclasses import asdict, dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from sim import hangar
+from sim.blind.sizes import INSIDE, ON_ANY_ENGINE, OUTSIDE, Scale
+from sim.blind.visibility import structural_gap
+from sim.effects.fitting import KINDS, flight_of, without_effects
+from sim.flight import Sample, noise_sigma
+from sim.linear import ShortPeriod
+from sim.scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
+
+Group = Literal["clean", "hard", "jsbsim", "none", "parameters", "outside", "two"]
+GROUPS: tuple[Group, ...] = ("clean", "hard", "jsbsim", "none", "parameters", "outside", "two")
+SHARES = (0.34, 0.20, 0.08, 0.18, 0.04, 0.10, 0.06)
+"""How often each group is drawn unless told otherwise."""
+
+SMALLEST_GAP = 0.05
+"""An effect that leaves less above the noise is drawn again: nobody could be asked to see it."""
+
+ATTEMPTS = 10
+OFFSETS = ("alpha_bias", "pitch_rate_bias")
+"""Offsets hide among a manoeuvre's own unknowns; only kinematics show them, so their size alone counts."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One sealed case: what was flown, and what the answer should be."""
+
+    group: Group
+    scenario: Scenario
+    belief: ShortPeriod
+    """The ``model`` of the aircraft file: what the simulator believes."""
+    effects: dict[str, dict[str, float]]
+    blocks: list[str]
+    gap: float
+    """Structural gap above the noise."""
+    hard: bool
+    background: list[str] = field(default_factory=list)
+    """What the hard conditions hold beside the effect."""
+
+    def key(self) -> dict[str, object]:
+        """What the sealed key says of the case."""
+        said = asdict(self)
+        del said["scenario"], said["belief"]
+        said["aircraft"] = self.scenario.aircraft
+        return said
+
+
+def draw_case(group: Group, generator: np.random.Generator) -> Case:
+    """Draw until an effect is visible above the noise.
+
+    Raises
+    ------
+    RuntimeError
+        No draw of the group was visible, which would mean that sizes and noise do not go together.
+    """
+    hard = group == "hard" or (group in ("none", "outside", "two") and generator.random() < 0.3)
+    for _ in range(40):
+        names = _names(group, generator)
+        scenario, background = _scenario(group, names, hard, generator)
+        case = _sized(group, scenario, names, hard, background, generator)
+        if case is not None:
+            return case
+    raise RuntimeError(f"no visible case of group {group}")
+
+
+def _names(group: Group, generator: np.random.Generator) -> list[str]:
+    if group in ("none", "parameters"):
+        return []
+    if group == "jsbsim":
+        return [str(generator.choice(ON_ANY_ENGINE))]
+    if group == "outside":
+        return [str(generator.choice(sorted(OUTSIDE)))]
+    known = [name for name in sorted(INSIDE) if group == "clean" or name not in ("turbulence", "gust")]
+    first = str(generator.choice(known))
+    if group != "two":
+        return [first]
+    others = [name for name in known if KINDS[name].block != KINDS[first].block and name not in OFFSETS]
+    return [first, str(generator.choice(others))]
+
+
+def _scenario(
+    group: Group, names: list[str], hard: bool, generator: np.random.Generator
+) -> tuple[Scenario, list[str]]:
+    """Draw everything but the sizes."""
+    uniform = generator.uniform
+    engine: Literal["bundled", "jsbsim"] = "jsbsim" if group == "jsbsim" else "bundled"
+    aircraft = "c172p" if engine == "jsbsim" else ("uav" if generator.random() < 0.55 else "light")
+    usual = hangar.habits(Scenario(aircraft=aircraft, engine=engine))
+    span = 1.0 if engine == "jsbsim" else hangar.AIRFRAMES[aircraft][0].span
+    low = "ground_effect" in names or (engine == "bundled" and generator.random() < 0.2)
+    fast = generator.random() < 0.15
+    background: list[str] = []
+    air, clock, instruments, colour = Air(), Clock(boot_s=float(uniform(20.0, 900.0))), Instruments(), 0.0
+    if hard:
+        length = 1.0 if aircraft == "uav" else 2.5
+        air = Air(turbulence_m_s=float(uniform(0.05, 0.2)) * length, length_m=60.0 * length)
+        clock = replace(clock, jitter_s=0.004)
+        instruments = Instruments(float(uniform(-0.3, 0.3)) * length)
+        colour = float(uniform(0.3, 0.8))
+        background = ["turbulence"]
+    order = ["3211", "rev", "doublet", "rev", "3211", "121", "3211", "rev", "doublet"]
+    maneuvers = tuple(
+        Maneuver(
+            input=name,
+            amplitude_deg=usual.amplitude_deg * float(generator.choice([0.6, 1.0, 1.3])),
+            throttle_change=float(uniform(-0.2, 0.2))
+            if generator.random() < 0.4 and engine == "bundled"
+            else 0.0,
+        )
+        for name in generator.permutation(order)
+    )
+    scenario = Scenario(
+        aircraft=aircraft,
+        engine=engine,
+        seed=int(generator.integers(2**31)),
+        loop_hz=250.0 if fast else 50.0,
+        airspeed_m_s=usual.airspeed_m_s * float(uniform(0.9, 1.12)),
+        height_m=1000.0
+        if engine == "jsbsim"
+        else float(uniform(1.2, 2.5)) * span
+        if low
+        else float(uniform(80, 400)),
+        lead_in_s=6.0,
+        free_s=float(uniform(3.0, 4.0)),
+        gap_s=6.0,
+        unit_s=round(usual.unit_s * float(generator.choice([0.8, 1.0, 1.2])), 2),
+        maneuvers=maneuvers,
+        input="held" if not fast and generator.random() < 0.3 else "linear",
+        speed="free" if hard or engine == "jsbsim" else "held",
+        noise=_noise(generator, colour),
+        instruments=instruments,
+        air=air,
+        clock=clock,
+        airframe=_airframe(aircraft, generator) if engine == "bundled" else {},
+    )
+    return scenario, background
+
+
+def _noise(generator: np.random.Generator, colour: float) -> Noise:
+    """White noise of good flight-test instruments up to that of a hobby autopilot."""
+    level = float(np.exp(generator.uniform(np.log(0.4), np.log(2.0))))
+
+    def about(value: float) -> float:
+        return value * level * float(generator.uniform(0.7, 1.4))
+
+    return Noise(
+        alpha_deg=about(0.06),
+        pitch_rate_deg_s=about(0.15),
+        pitch_deg=about(0.05),
+        accelerometer_m_s2=about(0.05),
+        airspeed_m_s=about(0.06),
+        climb_m_s=about(0.05),
+        colour=colour,
+    )
+
+
+def _airframe(aircraft: str, generator: np.random.Generator) -> dict[str, float]:
+    """Another aircraft of the same class: its main figures moved by up to a fifth."""
+    base = hangar.AIRFRAMES[aircraft][0]
+    names = ("mass", "iyy", "cl_alpha", "cl_q", "cl_delta_e", "cm_alpha", "cm_q", "cm_delta_e")
+    return {name: getattr(base, name) * float(generator.uniform(0.82, 1.2)) for name in names}
+
+
+def _sized(
+    group: Group,
+    scenario: Scenario,
+    names: list[str],
+    hard: bool,
+    background: list[str],
+    generator: np.random.Generator,
+) -> Case | None:
+    """Draw sizes until the effect shows; None: this flight cannot show it."""
+    quiet = replace(scenario, noise=Noise(), air=Air(), clock=replace(scenario.clock, jitter_s=0.0))
+    flight = flight_of(without_effects(quiet))
+    truth = flight.engine.truth
+    belief = _believed(truth, generator) if group == "parameters" else truth
+    if not names:
+        return Case(group, scenario, belief, {}, [], 0.0, hard, background)
+    plain = list(flight.samples())
+    scale = _scale(scenario, plain)
+    sigma = noise_sigma(scenario)
+    for _ in range(ATTEMPTS):
+        effects = {name: (INSIDE.get(name) or OUTSIDE[name])(scale, generator) for name in names}
+        gaps = [
+            _gap(name, replace(quiet, effects={name: sizes}), plain, truth, sigma)
+            for name, sizes in effects.items()
+        ]
+        if min(gaps) >= SMALLEST_GAP:
+            blocks = [KINDS[name].block for name in names]
+            return Case(
+                group,
+                replace(scenario, effects=effects),
+                belief,
+                effects,
+                blocks,
+                min(gaps),
+                hard,
+                background,
+            )
+    return None
+
+
+def _gap(
+    name: str, scenario: Scenario, plain: list[Sample], truth: ShortPeriod, sigma: dict[str, float]
+) -> float:
+    if name in OFFSETS:
+        channel, size = ("alpha", "bias_rad") if name == "alpha_bias" else ("q", "bias_rad_s")
+        return (scenario.effects[name][size] / sigma[channel]) ** 2
+    changed = list(flight_of(scenario).samples())
+    motions = np.array([(s.motion.airspeed, s.motion.height, s.motion.alpha) for s in changed])
+    if not np.isfinite(motions).all() or motions[:, 1].min() < 0.0 or np.abs(motions[:, 2]).max() > 0.35:
+        return 0.0
+    return structural_gap(plain, changed, truth, sigma, 1.0 / scenario.loop_hz)
+
+
+def _scale(scenario: Scenario, plain: list[Sample]) -> Scale:
+    flown = [sample for sample in plain if sample.flying]
+    amplitude = float(np.ptp([sample.motion.elevator for sample in flown])) / 2
+    swing = float(np.ptp([sample.motion.alpha for sample in flown])) / 2
+    if scenario.engine == "jsbsim":
+        return Scale(4.0, 1.5, amplitude, swing)
+    base = hangar.AIRFRAMES[scenario.aircraft][0]
+    fields = {name: scenario.airframe[name] for name in ("cl_alpha", "cm_alpha", "cm_delta_e")}
+    return Scale(1.0 if scenario.aircraft == "uav" else 4.0, base.chord, amplitude, swing, **fields)
+
+
+def _believed(truth: ShortPeriod, generator: np.random.Generator) -> ShortPeriod:
+    """A simulator whose structure is right and whose derivatives are off by 10 to 30 percent."""
+    values = truth.as_dict()
+    for name in ("Z_alpha", "M_alpha", "M_q", "M_delta_e"):
+        values[name] *= 1.0 + float(generator.choice([-1, 1]) * generator.uniform(0.1, 0.3))
+    return ShortPeriod(**values)

@@ -1,0 +1,77 @@
+"""Write sealed cases: logs and aircraft files under names that mean nothing."""
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from sim.blind.draw import GROUPS, SHARES, Case, Group, draw_case
+from sim.blind.seal import seal
+from sim.effects.fitting import flight_of
+from sim.record import record
+from sim.servo import Calibration
+
+LOG, AIRCRAFT = "flight.tlog", "aircraft.yaml"
+MADE_AT = 1_790_000_000
+"""Every file carries this time: the order of making says nothing."""
+
+
+def key_beside(folder: Path) -> Path:
+    """Where the key of a folder of cases is kept: beside it, not in it."""
+    return folder.with_name(folder.name + ".key.json")
+
+
+def generate(
+    count: int,
+    seed: int,
+    folder: Path,
+    groups: Sequence[Group] = GROUPS,
+    tell: Callable[[str], None] = lambda text: None,
+) -> str:
+    """Draw and fly ``count`` cases into ``folder``; return the seal's hash.
+
+    The key is sealed before the first log is written.
+    """
+    generator = np.random.default_rng([seed, 2026])
+    shares = np.array([SHARES[GROUPS.index(group)] for group in groups])
+    folder.mkdir(parents=True, exist_ok=True)
+    cases: dict[str, Case] = {}
+    for number in range(count):
+        group = groups[int(generator.choice(len(groups), p=shares / shares.sum()))]
+        own = np.random.default_rng([seed, number])
+        name = own.bytes(6).hex()
+        cases[name] = draw_case(group, own)
+        tell(f"drawn {number + 1} of {count}")
+    digest = seal({name: cases[name].key() for name in sorted(cases)}, key_beside(folder), folder)
+    for number, name in enumerate(sorted(cases)):
+        write_case(cases[name], folder / name)
+        tell(f"flown {number + 1} of {count}")
+    return digest
+
+
+def write_case(case: Case, folder: Path) -> None:
+    """Write one case's log and aircraft file."""
+    folder.mkdir(exist_ok=True)
+    record(flight_of(case.scenario), folder / LOG)
+    (folder / AIRCRAFT).write_text(yaml.safe_dump(aircraft_file(case), sort_keys=False), encoding="utf-8")
+    for path in (folder / LOG, folder / AIRCRAFT, folder):
+        os.utime(path, (MADE_AT, MADE_AT))
+
+
+def aircraft_file(case: Case) -> dict[str, Any]:
+    """What the crew believes of the aircraft: the same keys for every case."""
+    return {
+        "name": "aircraft",
+        "elevator": {
+            "output": "auto",
+            "calibration": [list(point) for point in Calibration().points],
+            "lag_s": 0.0,
+            "delay_s": 0.0,
+        },
+        "accelerometer": {"arm_m": round(case.scenario.instruments.accelerometer_arm_m, 4)},
+        "reference_airspeed_m_s": round(case.scenario.airspeed_m_s or 0.0, 3),
+        "model": {name: float(f"{value:.6g}") for name, value in case.belief.as_dict().items()},
+    }

@@ -1,0 +1,59 @@
+"""Open the key of sealed cases and tell how well they were answered."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from sim.blind.score import by_effect, judge, score
+from sim.blind.seal import SealError, unseal
+
+
+def read_answers(path: Path) -> dict[str, dict[str, Any]]:
+    """Read answers, one JSON object a line: ``case`` and ``answer`` (or ``document``).
+
+    Raises
+    ------
+    SealError
+        A line is no such object.
+    """
+    answers: dict[str, dict[str, Any]] = {}
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+        if not line.strip():
+            continue
+        try:
+            said = json.loads(line)
+            answers[str(said["case"])] = dict(said.get("answer") or said.get("document") or {})
+        except (ValueError, KeyError, TypeError) as error:
+            raise SealError(f"{path}:{number}: not a line of {{case, answer}}") from error
+    return answers
+
+
+def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -> Iterator[str]:
+    """Yield the lines of the score table.
+
+    Raises
+    ------
+    SealError
+        The answers are not those committed, or the key is not the one sealed.
+    """
+    said = read_answers(answers)
+    key = unseal(folder, answers, key_file)
+    judged = judge(key, said)
+    yield f"{len(key)} cases, {len(set(said) & set(key))} answered; percent with 95 % intervals"
+    for rate in score(judged):
+        yield rate.line()
+    if not details:
+        return
+    yield "right cause first, by effect"
+    for rate in by_effect(judged):
+        yield rate.line()
+    yield "not right"
+    for name, j in zip(key, judged, strict=True):
+        expected = {"none": "none", "parameters": "parameters", "outside": "unknown"}.get(j.group)
+        fine = j.verdict == expected if expected else j.right
+        if not fine:
+            told = f"{j.verdict} {j.named[0] if j.named else ''}".strip()
+            sizes = {effect: {k: round(v, 5) for k, v in own.items()} for effect, own in j.sizes.items()}
+            truth = f"{name} {j.group:10s} {sizes or '-'} gap {j.gap:.2f}"
+            yield f"  {truth} -> {told} @ {j.block} p={j.probability:.2f}"

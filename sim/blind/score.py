@@ -1,0 +1,222 @@
+"""Score a diagnosis of sealed cases: rates with 95 % intervals."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+MODERATE_GAP = 0.2
+"""Structural gap above the noise from which an effect counts as moderate."""
+
+Z95 = 1.959964
+BINS = 10
+
+
+@dataclass(frozen=True)
+class Rate:
+    """A share of cases, or a median, with its 95 % interval (Wilson's for shares, bootstrap for medians)."""
+
+    name: str
+    value: float
+    low: float
+    high: float
+    count: int
+    goal: str
+
+    def line(self) -> str:
+        """One row of the table; values in percent unless the goal speaks otherwise."""
+        if not self.count:
+            return f"{self.name:52s}       no case              goal {self.goal}"
+        figures = f"{self.value:7.1f} [{self.low:5.1f}, {self.high:5.1f}]  n={self.count:<5d}"
+        return f"{self.name:52s} {figures} goal {self.goal}"
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A case's truth beside the answer to it."""
+
+    group: str
+    truth: tuple[str, ...]
+    blocks: tuple[str, ...]
+    sizes: Mapping[str, Mapping[str, float]]
+    gap: float
+    hard: bool
+    background: tuple[str, ...]
+    verdict: str
+    named: tuple[str, ...]
+    """Effects of ``causes``, best first."""
+    added: tuple[str, ...]
+    """Effects of the waterfall."""
+    probability: float
+    parameters: Mapping[str, Mapping[str, float]]
+    """Of the first cause."""
+    ties: tuple[str, ...]
+    block: str
+    shrink_percent: float
+
+    @property
+    def right(self) -> bool:
+        """The first cause is the true one."""
+        return self.verdict == "effect" and self.named[:1] == self.truth[:1]
+
+    @property
+    def right_or_tie(self) -> bool:
+        """The true cause is first or among those the answer says it cannot tell from it."""
+        return self.right or (self.verdict == "effect" and self.truth[0] in self.ties)
+
+
+def judge(key: Mapping[str, Any], answers: Mapping[str, Mapping[str, Any]]) -> list[Judged]:
+    """Lay answers (``advisor gap --json`` documents by case) beside the key; no answer counts as unknown."""
+    judged = []
+    for name, truth in key.items():
+        answer = answers.get(name, {})
+        causes = answer.get("causes") or []
+        first = causes[0] if causes else {}
+        shrink = (answer.get("shrink") or {}).get("percent")
+        judged.append(
+            Judged(
+                group=truth["group"],
+                truth=tuple(truth["effects"]),
+                blocks=tuple(truth["blocks"]),
+                sizes=truth["effects"],
+                gap=float(truth["gap"]),
+                hard=bool(truth["hard"]),
+                background=tuple(truth["background"]),
+                verdict=str(answer.get("verdict", "unknown")),
+                named=tuple(str(cause.get("effect")) for cause in causes),
+                added=tuple(str(step.get("effect")) for step in answer.get("waterfall") or []),
+                probability=float(first.get("probability") or 0.0),
+                parameters=first.get("parameters") or {},
+                ties=tuple(first.get("cannot_be_told_from") or ()),
+                block=str((answer.get("where") or {}).get("block", "")),
+                shrink_percent=math.nan if shrink is None else float(shrink),
+            )
+        )
+    return judged
+
+
+def score(judged: Sequence[Judged]) -> list[Rate]:
+    """Return every figure of the table."""
+    single = [j for j in judged if j.group in ("clean", "hard", "jsbsim")]
+    clean = [j for j in single if j.group == "clean"]
+    hard = [j for j in single if j.group == "hard"]
+    moderate = [j for j in hard if j.gap >= MODERATE_GAP]
+    engine = [j for j in single if j.group == "jsbsim"]
+    none = [j for j in judged if j.group == "none"]
+    outside = [j for j in judged if j.group == "outside"]
+    two = [j for j in judged if j.group == "two"]
+    named = [j for j in judged if j.verdict == "effect" and j.group != "two"]
+    covered = [inside for j in single if j.right for inside in _covered(j)]
+    return [
+        _share("right cause first, clean", [j.right for j in clean], ">= 98"),
+        _share("  the same, or a tie that is stated", [j.right_or_tie for j in clean], ""),
+        _share("right cause first, hard, moderate or stronger", [j.right for j in moderate], ">= 95"),
+        _share("  the same, or a tie that is stated", [j.right_or_tie for j in moderate], ""),
+        _share("right cause first, hard, all", [j.right for j in hard], ""),
+        _share("a named cause is right (hard)", [j.right for j in hard if j.verdict == "effect"], ">= 98"),
+        _share("a named cause is right (all but two effects)", [j.right for j in named], ""),
+        _share("right cause first, JSBSim", [j.right for j in engine], ">= 95"),
+        _share("false alarms without an effect", [_alarm(j) for j in none], "<= 1"),
+        _share(
+            "parameters told when only they are off",
+            [j.verdict == "parameters" for j in judged if j.group == "parameters"],
+            "",
+        ),
+        _share("outside the catalogue: unknown", [j.verdict == "unknown" for j in outside], ">= 90"),
+        _share("outside the catalogue: right block", [j.block in j.blocks for j in outside], ">= 97"),
+        _share("named effects: right block", [j.block in j.blocks for j in single], ""),
+        _share("two effects: both named", [_both(j) for j in two], ">= 90"),
+        _median("held-out shrink, right cause, clean (median %)", [j for j in clean if j.right], ">= 97"),
+        _median("held-out shrink, right cause, hard (median %)", [j for j in hard if j.right], ">= 90"),
+        _share("size within its stated 95 % interval", covered, "92..98"),
+        _calibration_error([j for j in judged if j.verdict == "effect" and j.group != "two"]),
+        _shuffled(single),
+    ]
+
+
+def by_effect(judged: Sequence[Judged]) -> list[Rate]:
+    """Right cause first, effect by effect, over clean, hard and JSBSim cases."""
+    single = [j for j in judged if j.group in ("clean", "hard", "jsbsim")]
+    return [
+        _share(f"  {name}", [j.right for j in single if j.truth[0] == name], "")
+        for name in sorted({j.truth[0] for j in single})
+    ]
+
+
+def _alarm(j: Judged) -> bool:
+    """An effect, a change or an unknown claimed where nothing was; background turbulence may be named."""
+    if j.verdict == "effect" and set(j.named[:1]) <= set(j.background):
+        return False
+    return j.verdict != "none"
+
+
+def _both(j: Judged) -> bool:
+    return j.verdict == "effect" and set(j.truth) <= {*j.named[:1], *j.added}
+
+
+def _covered(j: Judged) -> list[bool]:
+    """For each size of the key that the answer gives by the same name: does its 95 % interval hold it?"""
+    found = []
+    for name, true in j.sizes[j.truth[0]].items():
+        said = j.parameters.get(name)
+        if said and said.get("std") is not None:
+            found.append(abs(float(said["value"]) - true) <= Z95 * float(said["std"]))
+    return found
+
+
+def _share(name: str, hits: Sequence[bool], goal: str) -> Rate:
+    count = len(hits)
+    if not count:
+        return Rate(name, math.nan, math.nan, math.nan, 0, goal)
+    share, squared = sum(hits) / count, Z95**2
+    middle = (share + squared / (2 * count)) / (1 + squared / count)
+    half = Z95 / (1 + squared / count) * math.sqrt(share * (1 - share) / count + squared / (4 * count**2))
+    return Rate(name, 100 * share, 100 * max(middle - half, 0.0), 100 * min(middle + half, 1.0), count, goal)
+
+
+def _median(name: str, judged: Sequence[Judged], goal: str) -> Rate:
+    values = np.array([j.shrink_percent for j in judged if math.isfinite(j.shrink_percent)])
+    if not len(values):
+        return Rate(name, math.nan, math.nan, math.nan, 0, goal)
+    drawn = np.random.default_rng(0).choice(values, (2000, len(values)))
+    low, high = np.percentile(np.median(drawn, axis=1), [2.5, 97.5])
+    return Rate(name, float(np.median(values)), float(low), float(high), len(values), goal)
+
+
+def _calibration_error(judged: Sequence[Judged]) -> Rate:
+    """Expected calibration error of the first cause's probability, in percent, ten equal bins."""
+    name, goal = "expected calibration error of probabilities", "<= 5"
+    if not judged:
+        return Rate(name, math.nan, math.nan, math.nan, 0, goal)
+    said = np.array([j.probability for j in judged])
+    right = np.array([j.right for j in judged], dtype=float)
+
+    def error(index: Any) -> float:
+        p, r = said[index], right[index]
+        bins = np.minimum((p * BINS).astype(int), BINS - 1)
+        gaps = [
+            abs(p[bins == b].mean() - r[bins == b].mean()) * (bins == b).mean()
+            for b in range(BINS)
+            if (bins == b).any()
+        ]
+        return float(sum(gaps))
+
+    whole = np.arange(len(said))
+    drawn = [error(np.random.default_rng(i).choice(whole, len(whole))) for i in range(300)]
+    low, high = np.percentile(drawn, [2.5, 97.5])
+    return Rate(name, 100 * error(whole), 100 * float(low), 100 * float(high), len(said), goal)
+
+
+def _shuffled(judged: Sequence[Judged]) -> Rate:
+    """Right cause first with the labels shuffled: what chance gives."""
+    generator = np.random.default_rng(0)
+    hits: list[bool] = []
+    for _ in range(20 if judged else 0):
+        order = generator.permutation(len(judged))
+        hits += [
+            a.verdict == "effect" and a.named[:1] == judged[int(b)].truth[:1]
+            for a, b in zip(judged, order, strict=True)
+        ]
+    return _share("label shuffle: right by chance (20 shuffles)", hits, "chance")

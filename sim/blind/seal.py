@@ -1,0 +1,66 @@
+"""Seals: a key published as a salted hash first, answers committed by hash before the key is opened."""
+
+import hashlib
+import json
+import secrets
+from pathlib import Path
+from typing import Any
+
+SEAL = "SEAL"
+"""File in the cases' folder that holds the hash of salt and key."""
+
+COMMITMENT = "COMMITMENT"
+"""File in the cases' folder that holds the hash of the answers."""
+
+
+class SealError(ValueError):
+    """A seal is missing or broken; the sentence says which."""
+
+
+def seal(key: dict[str, Any], key_file: Path, folder: Path) -> str:
+    """Write the key outside the folder and its salted hash inside; return the hash.
+
+    The salt keeps anybody from guessing the key and checking the guess against the hash.
+    """
+    text = json.dumps({"salt": secrets.token_hex(32), "key": key}, sort_keys=True)
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    key_file.write_text(text, encoding="utf-8")
+    key_file.chmod(0o600)
+    (folder / SEAL).write_text(digest + "\n", encoding="utf-8")
+    return digest
+
+
+def commit(folder: Path, answers: Path) -> str:
+    """Commit answers by their hash; return it.
+
+    Raises
+    ------
+    SealError
+        Other answers were committed before.
+    """
+    digest = hashlib.sha256(answers.read_bytes()).hexdigest()
+    place = folder / COMMITMENT
+    if place.exists() and place.read_text(encoding="utf-8").strip() != digest:
+        raise SealError(f"{place}: other answers were committed before; cases can be answered once")
+    place.write_text(digest + "\n", encoding="utf-8")
+    return digest
+
+
+def unseal(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
+    """Open the key, once the answers are those committed and the key is the one sealed.
+
+    Raises
+    ------
+    SealError
+        No commitment, other answers, or another key.
+    """
+    place = folder / COMMITMENT
+    if not place.exists():
+        raise SealError(f"answers are not committed: run python -m sim commit {folder} {answers} first")
+    if place.read_text(encoding="utf-8").strip() != hashlib.sha256(answers.read_bytes()).hexdigest():
+        raise SealError(f"{answers}: not the answers that were committed")
+    text = key_file.read_text(encoding="utf-8")
+    if hashlib.sha256(text.encode()).hexdigest() != (folder / SEAL).read_text(encoding="utf-8").strip():
+        raise SealError(f"{key_file}: not the key that was sealed")
+    key: dict[str, Any] = json.loads(text)["key"]
+    return key

@@ -1,0 +1,206 @@
+"""Sealed cases: fairly drawn, honestly sealed, correctly scored."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import yaml
+
+from sim.blind.draw import SMALLEST_GAP, draw_case
+from sim.blind.generate import aircraft_file, generate, key_beside
+from sim.blind.reveal import report
+from sim.blind.score import judge, score
+from sim.blind.seal import SEAL, SealError, commit, unseal
+from sim.blind.sizes import INSIDE, OUTSIDE
+from sim.blind.visibility import structural_gap
+from sim.effects import catalogue, outside
+from sim.effects.fitting import flight_of
+from sim.flight import noise_sigma
+from sim.scenario import Maneuver, Noise, Scenario
+from sim.tlog import read_tlog
+
+
+@pytest.fixture(scope="module")
+def cases(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sealed") / "cases"
+    generate(3, 5, folder, ("none", "parameters"))
+    return folder
+
+
+def key_of(folder):
+    return json.loads(key_beside(folder).read_text())["key"]
+
+
+def test_every_effect_has_sizes_to_draw_from():
+    assert sorted(INSIDE) == sorted(catalogue.CATALOGUE)
+    assert sorted(OUTSIDE) == sorted(outside.OUTSIDE)
+
+
+def test_names_files_and_keys_say_nothing(cases):
+    folders = sorted(path for path in cases.iterdir() if path.is_dir())
+    assert all(len(path.name) == 12 and int(path.name, 16) >= 0 for path in folders)
+    descriptions = [yaml.safe_load((path / "aircraft.yaml").read_text()) for path in folders]
+    assert all(set(d) == set(descriptions[0]) for d in descriptions)
+    times = {path.stat().st_mtime for folder in folders for path in folder.iterdir()}
+    assert len(times) == 1
+    parameters = [
+        sorted({m.param_id for _, m in read_tlog(folder / "flight.tlog", ["PARAM_VALUE"])})
+        for folder in folders
+    ]
+    assert all(names == parameters[0] for names in parameters)
+
+
+def test_the_key_lies_outside_the_folder_and_matches_the_seal(cases, tmp_path):
+    assert not list(cases.glob("**/*key*"))
+    answers = tmp_path / "answers.jsonl"
+    answers.write_text("")
+    with pytest.raises(SealError, match="not committed"):
+        unseal(cases, answers, key_beside(cases))
+    commit(cases, answers)
+    try:
+        assert unseal(cases, answers, key_beside(cases)) == key_of(cases)
+        answers.write_text("{}")
+        with pytest.raises(SealError, match="not the answers that were committed"):
+            unseal(cases, answers, key_beside(cases))
+        with pytest.raises(SealError, match="other answers were committed before"):
+            commit(cases, answers)
+        answers.write_text("")
+        forged = tmp_path / "key.json"
+        forged.write_text(key_beside(cases).read_text().replace("none", "outside"))
+        with pytest.raises(SealError, match="not the key that was sealed"):
+            unseal(cases, answers, forged)
+    finally:
+        (cases / "COMMITMENT").unlink()
+    assert len((cases / SEAL).read_text().strip()) == 64
+
+
+def test_a_report_lists_every_figure_with_its_interval(cases, tmp_path):
+    answers = tmp_path / "answers.jsonl"
+    lines = [json.dumps({"case": name, "answer": {"verdict": "none"}}) for name in key_of(cases)]
+    answers.write_text("\n".join(lines))
+    commit(cases, answers)
+    try:
+        text = "\n".join(report(cases, answers, key_beside(cases), details=True))
+    finally:
+        (cases / "COMMITMENT").unlink()
+    nothing = sum(case["group"] == "none" for case in key_of(cases).values())
+    assert "3 cases, 3 answered" in text
+    assert f"n={nothing}" in next(line for line in text.splitlines() if line.startswith("false alarms"))
+
+
+@pytest.mark.parametrize("group", ["clean", "jsbsim", "outside", "two"])
+def test_a_drawn_effect_is_visible_above_the_noise(group):
+    case = draw_case(group, np.random.default_rng(2))
+    assert case.gap >= SMALLEST_GAP
+    assert len(case.effects) == (2 if group == "two" else 1)
+    assert set(case.effects) <= set(OUTSIDE if group == "outside" else INSIDE)
+    assert set(aircraft_file(case)["model"]) == set(case.belief.as_dict())
+
+
+def test_the_same_numbers_draw_the_same_case():
+    first, again = (draw_case("clean", np.random.default_rng(9)) for _ in range(2))
+    assert first == again
+
+
+PLAIN = Scenario(
+    maneuvers=(Maneuver("3211"), Maneuver("rev")),
+    noise=Noise(),
+    speed="held",
+    lead_in_s=3.0,
+    gap_s=4.0,
+    free_s=3.0,
+)
+
+
+def gap_of(changed):
+    noise = replace(PLAIN, noise=Noise(percent=1.0))
+    plain = flight_of(PLAIN)
+    before, after = list(plain.samples()), list(flight_of(changed).samples())
+    return structural_gap(before, after, plain.engine.truth, noise_sigma(noise), 0.02)
+
+
+def test_a_change_that_eight_parameters_can_hide_has_hardly_a_structural_gap():
+    power = replace(PLAIN, airframe={"cm_delta_e": -1.15 * 1.02})
+    delayed = replace(PLAIN, effects={"transport_delay": {"delay_s": 0.02}})
+    assert gap_of(PLAIN) == pytest.approx(0.0, abs=1e-12)
+    assert gap_of(power) < 0.02 * gap_of(delayed)
+
+
+def test_the_structural_gap_grows_with_the_square_of_a_small_effect():
+    small, large = (gap_of(replace(PLAIN, effects={"alpha_lag": {"lag_s": lag}})) for lag in (0.004, 0.008))
+    assert large / small == pytest.approx(4.0, rel=0.15)
+
+
+def truth(group, effects, blocks, gap=1.0):
+    return {
+        "group": group,
+        "effects": effects,
+        "blocks": blocks,
+        "gap": gap,
+        "hard": group == "hard",
+        "background": ["turbulence"] if group == "hard" else [],
+    }
+
+
+def answer(verdict, effect=None, probability=0.99, parameters=None, block="", waterfall=(), shrink=98.0):
+    causes = (
+        [{"effect": effect, "probability": probability, "parameters": parameters or {}}] if effect else []
+    )
+    return {
+        "verdict": verdict,
+        "causes": causes,
+        "where": {"block": block},
+        "waterfall": [{"effect": name} for name in waterfall],
+        "shrink": {"percent": shrink},
+    }
+
+
+def figures(key, answers):
+    return {rate.name: rate for rate in score(judge(key, answers))}
+
+
+def test_perfect_answers_score_full_marks_and_shuffled_labels_fall():
+    names = sorted(INSIDE)
+    key = {f"{i:02d}": truth("clean", {name: {"lag_s": 0.05}}, ["input"]) for i, name in enumerate(names)}
+    size = {"lag_s": {"value": 0.051, "std": 0.001}}
+    answers = {
+        case: answer("effect", next(iter(t["effects"])), 1.0, size, "input") for case, t in key.items()
+    }
+    told = figures(key, answers)
+    assert told["right cause first, clean"].value == 100.0
+    assert told["size within its stated 95 % interval"].value == 100.0
+    assert told["expected calibration error of probabilities"].value == 0.0
+    assert told["held-out shrink, right cause, clean (median %)"].value == 98.0
+    assert told["label shuffle: right by chance (20 shuffles)"].value < 10.0
+
+
+def test_wrong_answers_are_counted_where_they_belong():
+    key = {
+        "a": truth("none", {}, []),
+        "b": truth("none", {}, []),
+        "c": truth("outside", {"fuel_slosh": {}}, ["moment_equation"]),
+        "d": truth("two", {"alpha_lag": {}, "alpha_dot": {}}, ["alpha_sensor", "moment_equation"]),
+        "e": truth("hard", {"alpha_lag": {"lag_s": 0.05}}, ["alpha_sensor"]),
+    }
+    answers = {
+        "a": answer("effect", "alpha_lag"),
+        "b": answer("none"),
+        "c": answer("unknown", block="moment_equation"),
+        "d": answer("effect", "alpha_lag", waterfall=("alpha_lag", "alpha_dot")),
+        "e": answer("effect", "alpha_skew", 0.6),
+    }
+    told = figures(key, answers)
+    assert told["false alarms without an effect"].value == 50.0
+    assert told["outside the catalogue: unknown"].value == 100.0
+    assert told["outside the catalogue: right block"].value == 100.0
+    assert told["two effects: both named"].value == 100.0
+    assert told["right cause first, hard, moderate or stronger"].value == 0.0
+    assert told["a named cause is right (hard)"].value == 0.0
+
+
+def test_an_interval_is_wilsons():
+    key = {f"{i}": truth("none", {}, []) for i in range(20)}
+    rate = figures(key, {case: answer("none") for case in key})["false alarms without an effect"]
+    assert (rate.value, rate.low) == (0.0, 0.0)
+    assert rate.high == pytest.approx(16.1, abs=0.1)
