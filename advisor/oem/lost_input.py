@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, respond
+from advisor.model.response import N_PARAMETERS, Index, respond
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.problem import Problem, Record, Signal, assemble
 from advisor.oem.solution import Solution, solve
@@ -28,9 +28,11 @@ _SETTLED = 1e-3
 
 
 def restored(problem: Problem) -> Problem:
-    """The problem with the input samples lost at steps put back, each record by itself."""
-    records = tuple(_restored(problem, record) for record in problem.records)
-    return replace(problem, records=records)
+    """The problem with the input samples lost at steps put back, each record by itself.
+
+    A record that lost none, or whose fit does not converge, is left as it is.
+    """
+    return replace(problem, records=tuple(_restored(problem, record) for record in problem.records))
 
 
 def _restored(problem: Problem, record: Record) -> Record:
@@ -56,7 +58,7 @@ def _restored(problem: Problem, record: Record) -> Record:
     return completed
 
 
-def _lost(elevator: Signal) -> tuple[FloatArray, "np.ndarray[tuple[int], np.dtype[np.int64]]"]:
+def _lost(elevator: Signal) -> tuple[FloatArray, Index]:
     """Stamps of lost samples at steps, and the index of the last sample before each."""
     intervals = np.diff(elevator.t)
     usual = float(np.median(intervals))
@@ -71,23 +73,19 @@ def _lost(elevator: Signal) -> tuple[FloatArray, "np.ndarray[tuple[int], np.dtyp
     return np.array(stamps), np.array(where, dtype=np.int64)
 
 
-def _completed(
-    record: Record, stamps: FloatArray
-) -> tuple[Record, "np.ndarray[tuple[int], np.dtype[np.int64]]"]:
+def _completed(record: Record, stamps: FloatArray) -> tuple[Record, Index]:
     """The record with samples on the straight line at these stamps, and their indices."""
     t = np.sort(np.concatenate([record.elevator.t, stamps]))
     return replace(record, elevator=Signal(t, record.elevator.at(t))), np.searchsorted(t, stamps)
 
 
-def _with_values(
-    record: Record, at: "np.ndarray[tuple[int], np.dtype[np.int64]]", values: FloatArray
-) -> Record:
+def _with_values(record: Record, at: Index, values: FloatArray) -> Record:
     y = record.elevator.y.copy()
     y[at] = values
     return replace(record, elevator=Signal(record.elevator.t, y))
 
 
-def _correction(solution: Solution, at: "np.ndarray[tuple[int], np.dtype[np.int64]]") -> FloatArray:
+def _correction(solution: Solution, at: Index) -> FloatArray:
     """Change of each lost sample that, with a change of the parameters, explains the residuals best."""
     (record,) = solution.problem.records
     step = 0.1 * float(np.ptp(record.elevator.y))

@@ -11,6 +11,7 @@ from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.lost_input import restored
 from advisor.oem.problem import GRAVITY, Problem, Record, Signal
 from advisor.oem.surface import Servo
 
@@ -68,12 +69,14 @@ def prepare(
     )
     known = [signal for signal in signals if signal is not None]
     return Prepared(
-        problem=Problem(
-            records=records,
-            reference_airspeed_m_s=_reference(known, aircraft) if together else None,
-            servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
-            vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
-            accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+        problem=restored(
+            Problem(
+                records=records,
+                reference_airspeed_m_s=_reference(known, aircraft) if together else None,
+                servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
+                vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
+                accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+            )
         ),
         renewed_hz=min((len(alpha.t) - 1) / float(alpha.t[-1] - alpha.t[0]) for alpha, _ in alphas),
         alpha_held=any(held for _, held in alphas),
