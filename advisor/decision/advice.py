@@ -28,7 +28,8 @@ def next_input(history: Sequence[Flown], aircraft: Aircraft, stopped: bool) -> N
         return NextInput("no further manoeuvre needed", Remaining(0, 0))
     conditions = find_conditions(history, aircraft)
     if conditions is None:
-        return NextInput(_first_input(aircraft), _without_a_model(history, plan))
+        spoken = _same_but_better(history[-1]) if history else _first_input(aircraft)
+        return NextInput(f"next: {spoken}", _without_a_model(history, plan))
     known = knowledge([e for flown in history if (e := flown.usable)], plan)
     choice = _choose(conditions, known, plan)
     if choice is None:
@@ -86,7 +87,13 @@ def _first_input(aircraft: Aircraft) -> str:
         frequency = ShortPeriod.from_mapping(aircraft.model).natural_frequency
         if np.isfinite(frequency) and frequency > 0.0:
             unit = max(round(0.5 * np.pi / frequency, 1), 0.2)
-    return f"next: 3-2-1-1, {unit:.1f} s steps, 10 % stick, to begin gently"
+    return f"3-2-1-1, {unit:.1f} s steps, 10 % stick, to begin gently"
+
+
+def _same_but_better(flown: Flown) -> str:
+    """While none was usable: the same input, with what the newest one's first reason says to do."""
+    _, _, remedy = flown.reasons[0].text.partition("; ") if flown.reasons else ("", "", "")
+    return f"the same again, {remedy}" if remedy else "the same again"
 
 
 def _without_a_model(history: Sequence[Flown], plan: CampaignPlan) -> Remaining:

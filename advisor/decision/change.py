@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from advisor.aircraft import PARAMETERS
 from advisor.decision.consistency import odd_ones
@@ -18,11 +18,12 @@ from advisor.decision.history import Flown
 from advisor.decision.pooling import (
     DERIVATIVES,
     Belief,
+    Shared,
     beliefs_at_one_speed,
     disagreement,
     inconsistency,
     information_of,
-    pool,
+    pool_shared,
 )
 from advisor.flight.messages import FloatArray
 
@@ -80,7 +81,7 @@ def find_change(history: Sequence[Flown]) -> Change | None:
     if splits[k - 2] <= 1.0:
         return None
     widening = _widening(before, after)
-    first, second = pool(before), pool(after)
+    first, second = pool_shared(before), pool_shared(after)
     moved = _moved(first, second, widening)
     if not moved or _back_to_normal(before, after):
         return None
@@ -90,10 +91,10 @@ def find_change(history: Sequence[Flown]) -> Change | None:
 
 def _compare(before: Sequence[Belief], after: Sequence[Belief]) -> float:
     """Distance between both sides over its limit; above 1 noise does not explain it."""
-    distance, dof = disagreement(pool(before), pool(after))
+    distance, dof = disagreement(pool_shared(before), pool_shared(after))
     if dof == 0:
         return 0.0
-    return distance / _widening(before, after) / float(chi2.isf(FALSE_ALARM, dof))
+    return distance / _widening(before, after) / float(chdtri(dof, FALSE_ALARM))
 
 
 def _widening(before: Sequence[Belief], after: Sequence[Belief]) -> float:
@@ -107,21 +108,21 @@ def _back_to_normal(before: Sequence[Belief], after: Sequence[Belief]) -> bool:
     """Whether the newest manoeuvre is again like those before: then the odd ones were merely poor."""
     if len(after) < 2:
         return False
-    with_old, dof = disagreement(pool(before), after[-1])
-    with_new, _ = disagreement(pool(after[:-1]), after[-1])
-    return with_old < with_new or inconsistency(after)[0] > with_old + float(chi2.isf(CONSISTENCY, dof))
+    with_old, dof = disagreement(pool_shared(before), after[-1].shared)
+    with_new, _ = disagreement(pool_shared(after[:-1]), after[-1].shared)
+    return with_old < with_new or inconsistency(after)[0] > with_old + float(chdtri(dof, CONSISTENCY))
 
 
-def _moved(before: Belief, after: Belief, widening: float) -> tuple[Moved, ...]:
+def _moved(before: Shared, after: Shared, widening: float) -> tuple[Moved, ...]:
     found = []
-    for k in DERIVATIVES:
-        difference = after.theta[k] - before.theta[k]
+    names = [PARAMETERS[k] for k in DERIVATIVES]
+    for k, (name, value) in enumerate(zip(names, before.theta, strict=True)):
+        difference = after.theta[k] - value
         std = np.sqrt(widening * (before.covariance[k, k] + after.covariance[k, k]))
-        size = abs(before.theta[k] + (1.0 if PARAMETERS[k] == "Z_q" else 0.0))
+        size = abs(value + (1.0 if name == "Z_q" else 0.0))
         if abs(difference) > LEAST_SIGMA * std and abs(difference) > LEAST_SHARE * size:
-            found.append(
-                Moved(PARAMETERS[k], 100.0 * difference / size * np.sign(before.theta[k]), difference / std)
-            )
+            percent = 100.0 * difference / size * np.sign(value)
+            found.append(Moved(name, float(percent), float(difference / std)))
     return tuple(sorted(found, key=lambda m: -abs(m.sigma)))
 
 
@@ -139,25 +140,21 @@ _CAUSES = {
 }
 
 
-def _simplest_cause(before: Belief, after: Belief, widening: float) -> str:
+def _simplest_cause(before: Shared, after: Shared, widening: float) -> str:
     """The cause that alone explains the differences of all six derivatives, if one does."""
     misfits = {name: _misfit(before, after, np.array(powers, float)) for name, powers in _CAUSES.items()}
     best = min(misfits, key=lambda name: misfits[name])
-    return best if misfits[best] < widening * float(chi2.isf(CONSISTENCY, len(DERIVATIVES) - 1)) else ""
+    return best if misfits[best] < widening * float(chdtri(len(DERIVATIVES) - 1, CONSISTENCY)) else ""
 
 
-def _misfit(before: Belief, after: Belief, powers: FloatArray) -> float:
+def _misfit(before: Shared, after: Shared, powers: FloatArray) -> float:
     """χ² left when ``before`` is multiplied by the best factor to these powers."""
-    d = list(DERIVATIVES)
-    block = np.ix_(d, d)
-    one = np.array([1.0 if PARAMETERS[k] == "Z_q" else 0.0 for k in d])
-    start, target = before.theta[d] + one, after.theta[d] + one
+    one = np.array([1.0 if PARAMETERS[k] == "Z_q" else 0.0 for k in DERIVATIVES])
+    start, target = before.theta + one, after.theta + one
     exponent = 0.0
     for _ in range(20):
         factors = np.exp(exponent * powers)
-        information = information_of(
-            after.covariance[block] + before.covariance[block] * np.outer(factors, factors)
-        )
+        information = information_of(after.covariance + before.covariance * np.outer(factors, factors))
         slope, residual = powers * start * factors, target - start * factors
         curvature = float(slope @ information @ slope)
         if not curvature > 0.0:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from advisor.decision.pooling import Belief, inconsistency, pool
 
@@ -27,7 +27,7 @@ def odd_ones(beliefs: Sequence[Belief]) -> tuple[int, ...]:
     odd: list[int] = []
     while len(inside) >= FEWEST and len(odd) + 1 <= (len(beliefs) - 1) // 3:
         total, dof = inconsistency([beliefs[i] for i in inside])
-        if dof < 1 or total < float(chi2.isf(ODD_BELOW, dof)):
+        if dof < 1 or total < float(chdtri(dof, ODD_BELOW)):
             break
         remaining = {i: inconsistency([beliefs[j] for j in inside if j != i]) for i in inside}
         candidate = min(remaining, key=lambda i: remaining[i][0])
@@ -48,7 +48,7 @@ def excess(beliefs: Sequence[Belief]) -> float:
     if len(beliefs) < 2:
         return 1.0
     total, dof = inconsistency(beliefs)
-    return 1.0 if dof < 1 or total < float(chi2.isf(WIDEN_BELOW, dof)) else total / dof
+    return 1.0 if dof < 1 or total < float(chdtri(dof, WIDEN_BELOW)) else total / dof
 
 
 def widened(belief: Belief, factor: float) -> Belief:

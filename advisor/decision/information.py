@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from advisor.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.consistency import consensus, widened
@@ -72,8 +72,8 @@ def knowledge(estimates: Sequence[Estimate], plan: CampaignPlan) -> Knowledge:
     predicted, surprise = False, float("nan")
     if len(beliefs) > 1:
         before, excess, _ = consensus(beliefs[:-1])
-        distance, dof = disagreement(before, widened(beliefs[-1], excess))
-        surprise = distance / float(chi2.isf(SURPRISING, dof)) if dof else float("nan")
+        distance, dof = disagreement(before.shared, widened(beliefs[-1], excess).shared)
+        surprise = distance / float(chdtri(dof, SURPRISING)) if dof else float("nan")
         predicted = surprise < 1.0
     first = next(e for i, e in enumerate(estimates) if i not in left_out)
     return Knowledge(belief, tolerances(belief.theta, first, plan), predicted, surprise, widening, left_out)

@@ -50,7 +50,7 @@ def _verdict(flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult]) -> Mane
     elif reasons:
         sentence = f"REPEAT: {reasons[0].text}"
     else:
-        sentence = f"ACCEPTED: {_why_accepted(flown, rules[rule])}"
+        sentence = f"ACCEPTED: {_why_accepted(flown, rule, rules[rule])}"
     return ManeuverVerdict(
         not reasons, sentence, reasons, {str(name): result for name, result in rules.items()}, cautions
     )
@@ -68,9 +68,11 @@ def _reasons(flown: Flown, rule: Rule, result: RuleResult) -> tuple[Reason, ...]
     return (Reason("cost", _TOO_COSTLY[rule].format(cost=cost, limit=limit), cost, limit),)
 
 
-def _why_accepted(flown: Flown, result: RuleResult) -> str:
+def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
+    if rule == "information":
+        return "good manoeuvre, it adds to what is known"
     if result.limit is None or isinstance(flown.estimate, NoEstimate):
-        return "usable, nothing to compare its cost with"
+        return "good manoeuvre, the first to compare others with"
     return f"cost {flown.estimate.cost:.2g}, limit {result.limit:.2g}"
 
 

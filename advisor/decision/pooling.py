@@ -7,6 +7,8 @@ data, only estimates and covariances, so that every decision of a campaign is re
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,11 +21,22 @@ INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))
 """Trim and speed differ from one manoeuvre to the next, so each has its own Z_0 and M_0."""
 DERIVATIVES = tuple(k for k in range(len(PARAMETERS)) if k not in INTERCEPTS)
 
+_D, _C = list(DERIVATIVES), list(INTERCEPTS)
+_DD, _CC, _CD, _DC = np.ix_(_D, _D), np.ix_(_C, _C), np.ix_(_C, _D), np.ix_(_D, _C)
 _SPEED_POWER = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS], dtype=float)
 _GRAVITY = 9.80665
 
 
-@dataclass(frozen=True, slots=True)
+class Shared(NamedTuple):
+    """What is believed of the six derivatives, which manoeuvres share, in the order of ``DERIVATIVES``."""
+
+    theta: FloatArray
+    """Shape (6,)."""
+    covariance: FloatArray
+    """Shape (6, 6); infinite on the diagonal where nothing is known."""
+
+
+@dataclass(frozen=True)
 class Belief:
     """What is believed of θ: mean and covariance."""
 
@@ -36,6 +49,16 @@ class Belief:
     def std(self) -> FloatArray:
         """Shape (8,)."""
         return np.sqrt(np.diag(self.covariance))
+
+    @cached_property
+    def shared(self) -> Shared:
+        """The derivatives alone."""
+        return Shared(self.theta[_D], self.covariance[_DD])
+
+    @cached_property
+    def information(self) -> FloatArray:
+        """Shape (6, 6). Information about the derivatives, zero where nothing is known."""
+        return information_of(self.shared.covariance)
 
 
 def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
@@ -59,6 +82,15 @@ def _at_speed(estimate: Estimate, speed: float, reference: float) -> Belief:
     return Belief(theta, estimate.covariance * np.outer(scale, scale))
 
 
+def pool_shared(beliefs: Sequence[Belief]) -> Shared:
+    """The information-weighted mean of the derivatives of at least one estimate."""
+    information = np.sum([belief.information for belief in beliefs], axis=0)
+    weighted = np.sum([b.information @ _finite(b.shared.theta) for b in beliefs], axis=0)
+    covariance = covariance_of(information)
+    known = np.isfinite(np.diag(covariance))
+    return Shared(np.where(known, _finite(covariance) @ weighted, np.nan), covariance)
+
+
 def pool(beliefs: Sequence[Belief]) -> Belief:
     """The information-weighted mean of several estimates, each with its own Z_0 and M_0.
 
@@ -70,38 +102,25 @@ def pool(beliefs: Sequence[Belief]) -> Belief:
     beliefs
         At least one.
     """
-    d, c = list(DERIVATIVES), list(INTERCEPTS)
-    information = np.zeros((len(d), len(d)))
-    weighted = np.zeros(len(d))
-    for belief in beliefs:
-        weight = information_of(belief.covariance[np.ix_(d, d)])
-        information += weight
-        weighted += weight @ np.where(np.isfinite(belief.theta[d]), belief.theta[d], 0.0)
-    covariance_d = covariance_of(information)
-    known = np.isfinite(np.diag(covariance_d))
-    shared = np.where(np.isfinite(covariance_d), covariance_d, 0.0)
-    theta_d = np.where(known, shared @ weighted, np.nan)
-
-    theta = np.empty(len(PARAMETERS))
-    covariance = np.zeros((len(PARAMETERS), len(PARAMETERS)))
-    theta[d], covariance[np.ix_(d, d)] = theta_d, covariance_d
-    intercepts, gains, own = [], [], np.zeros((len(c), len(c)))
-    for belief in beliefs:
-        cross = belief.covariance[np.ix_(c, d)]
-        gain = np.nan_to_num(cross) @ information_of(belief.covariance[np.ix_(d, d)])
-        intercepts.append(belief.theta[c] + gain @ np.nan_to_num(theta_d - belief.theta[d]))
-        gains.append(gain)
-        own += belief.covariance[np.ix_(c, c)] - gain @ np.nan_to_num(cross).T
+    shared = pool_shared(beliefs)
     n = len(beliefs)
-    gain = np.mean(gains, axis=0)
-    theta[c] = np.mean(intercepts, axis=0)
-    covariance[np.ix_(c, c)] = own / n**2 + gain @ shared @ gain.T
-    covariance[np.ix_(c, d)] = gain @ shared
-    covariance[np.ix_(d, c)] = (gain @ shared).T
+    constants, gain, own = np.zeros(len(_C)), np.zeros((len(_C), len(_D))), np.zeros((len(_C), len(_C)))
+    for belief in beliefs:
+        cross = _finite(belief.covariance[_CD])
+        each = cross @ belief.information
+        constants += (belief.theta[_C] + each @ _finite(shared.theta - belief.shared.theta)) / n
+        gain += each / n
+        own += (belief.covariance[_CC] - each @ cross.T) / n**2
+    theta, covariance = np.empty(len(PARAMETERS)), np.empty((len(PARAMETERS), len(PARAMETERS)))
+    known = _finite(shared.covariance)
+    theta[_D], theta[_C] = shared.theta, constants
+    covariance[_DD], covariance[_CC] = shared.covariance, own + gain @ known @ gain.T
+    covariance[_CD] = gain @ known
+    covariance[_DC] = covariance[_CD].T
     return Belief(theta, covariance)
 
 
-def disagreement(belief: Belief, other: Belief) -> tuple[float, int]:
+def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
     """How far two independent estimates of the derivatives lie apart.
 
     Returns
@@ -110,9 +129,7 @@ def disagreement(belief: Belief, other: Belief) -> tuple[float, int]:
         Mahalanobis distance squared over the derivatives that both know, and their number: χ²
         distributed with that many degrees of freedom when nothing but noise separates the two.
     """
-    d = list(DERIVATIVES)
-    total = belief.covariance[np.ix_(d, d)] + other.covariance[np.ix_(d, d)]
-    return _distance(belief.theta[d] - other.theta[d], information_of(total))
+    return _distance(one.theta - other.theta, information_of(one.covariance + other.covariance))
 
 
 def inconsistency(beliefs: Sequence[Belief]) -> tuple[float, int]:
@@ -124,13 +141,17 @@ def inconsistency(beliefs: Sequence[Belief]) -> tuple[float, int]:
         χ² and its degrees of freedom: those the estimates have together, less those the pooled value
         took.
     """
-    d = list(DERIVATIVES)
-    centre = pool(beliefs).theta[d]
+    centre = pool_shared(beliefs).theta
     total, dof = 0.0, -int(np.isfinite(centre).sum())
     for belief in beliefs:
-        distance, size = _distance(belief.theta[d] - centre, information_of(belief.covariance[np.ix_(d, d)]))
+        distance, size = _distance(belief.shared.theta - centre, belief.information)
         total, dof = total + distance, dof + size
     return total, dof
+
+
+def _finite(values: FloatArray) -> FloatArray:
+    """Zero for what is unknown."""
+    return np.where(np.isfinite(values), values, 0.0)
 
 
 def _distance(difference: FloatArray, information: FloatArray) -> tuple[float, int]:
@@ -163,6 +184,9 @@ def covariance_of(information: FloatArray) -> FloatArray:
 def _inverse(matrix: FloatArray) -> FloatArray:
     """Inverse of a symmetric positive semi-definite matrix, scaled so that units do not matter."""
     scale = 1.0 / np.sqrt(np.diag(matrix))
-    return np.asarray(np.linalg.pinv(matrix * np.outer(scale, scale), hermitian=True)) * np.outer(
-        scale, scale
-    )
+    outer = np.outer(scale, scale)
+    try:
+        half = np.linalg.inv(np.linalg.cholesky(matrix * outer))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.pinv(matrix * outer, hermitian=True)) * outer
+    return np.asarray(half.T @ half) * outer

@@ -11,6 +11,7 @@ from advisor.decision.foresight import Instruments, expect
 from advisor.decision.history import Flown
 from advisor.decision.inputs import StepInput
 from advisor.decision.stopping import flight_test
+from advisor.decision.verdict import Reason
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.record import Channel
 from advisor.oem.surface import Servo
@@ -54,6 +55,12 @@ def test_before_the_first_manoeuvre_the_textbook_input_is_advised_gently() -> No
     assert advice.advice == "next: 3-2-1-1, 0.5 s steps, 10 % stick, to begin gently"
     assert advice.remaining.median == 2
     assert next_input([], replace(AIRCRAFT, campaign=CampaignPlan()), stopped=False).remaining.median == 3
+
+
+def test_while_none_was_usable_the_remedy_of_the_newest_is_repeated() -> None:
+    rough = Reason("turbulence", "rough air, 15 % of the pitch rate; fly it in calmer air", 15.0, 8.0)
+    advice = next_input([replace(flown(), reasons=(rough,))], AIRCRAFT, stopped=False)
+    assert advice.advice == "next: the same again, fly it in calmer air"
 
 
 def test_a_prior_model_times_the_first_input() -> None:

@@ -79,7 +79,7 @@ def test_what_no_manoeuvre_knows_stays_unknown() -> None:
 
 def test_distances_between_estimates_are_chi_square_distributed() -> None:
     rng = np.random.default_rng(6)
-    pairs = [disagreement(random_belief(rng), random_belief(rng)) for _ in range(800)]
+    pairs = [disagreement(random_belief(rng).shared, random_belief(rng).shared) for _ in range(800)]
     assert {dof for _, dof in pairs} == {6}
     assert np.mean([d for d, _ in pairs]) == pytest.approx(6.0, rel=0.08)
     groups = [inconsistency([random_belief(rng) for _ in range(4)]) for _ in range(400)]
