@@ -12,6 +12,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray, IntArray
 
+_MS = 1e-3
 _WRAP_MS = 2**32
 _LATE_MS = 2000
 """A master stamp older than the newest by less than this is a late packet."""
@@ -45,7 +46,7 @@ class BootClock:
     @property
     def newest_s(self) -> float:
         """Newest believed stamp, s since boot; NaN before the first."""
-        return float("nan") if self._newest_ms is None else self._newest_ms / 1000.0
+        return float("nan") if self._newest_ms is None else self._newest_ms * _MS
 
     def advance(self, time_boot_ms: IntArray) -> MasterStamps:
         """Take stamps in order of arrival.
@@ -60,7 +61,7 @@ class BootClock:
         for i, raw in enumerate(time_boot_ms.tolist()):
             believed_ms = self._believe(raw)
             if believed_ms is not None:
-                t[i] = believed_ms / 1000.0
+                t[i] = believed_ms * _MS
             boot[i] = self.boot
         return MasterStamps(t, boot)
 

@@ -256,5 +256,5 @@ def _without_spikes(u: FloatArray) -> FloatArray:
     """Median of three: one sample alone is no movement."""
     if len(u) < 3:
         return u
-    inner: FloatArray = np.median(np.stack([u[:-2], u[1:-1], u[2:]]), axis=0)
-    return np.concatenate(([u[0]], inner, [u[-1]]))
+    low, high = np.minimum(u[:-2], u[1:-1]), np.maximum(u[:-2], u[1:-1])
+    return np.concatenate(([u[0]], np.maximum(low, np.minimum(high, u[2:])), [u[-1]]))

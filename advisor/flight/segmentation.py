@@ -59,7 +59,7 @@ class Segmenter:
             last = float(self._t[self._size - 1])
             if t <= last:
                 return None
-            if t - last > self._longest_gap_s():
+            if t - last > _LONGEST_GAP_S and t - last > self._longest_gap_s():
                 span = self._end("gap", last)
                 self._forget_all()
         self._store(t, u)
@@ -142,7 +142,7 @@ class Segmenter:
 
     def _longest_gap_s(self) -> float:
         recent = self._t[max(self._from, self._size - 20) : self._size]
-        return max(_LONGEST_GAP_S, 5.0 * float(np.median(np.diff(recent)))) if len(recent) > 2 else np.inf
+        return 5.0 * float(np.median(np.diff(recent))) if len(recent) > 2 else np.inf
 
     def _store(self, t: float, u: float) -> None:
         if self._size == len(self._t):

@@ -124,6 +124,8 @@ class Tracks:
     def append(self, new: Decoded) -> None:
         """Take samples of one channel from one source."""
         key = (new.channel, new.source)
+        if len(new.t) == 0:
+            return
         if key not in self._tracks:
             self._tracks[key] = Track(new.channel, new.source, new.provenance)
         self._tracks[key].append(new.t, new.y, new.order)

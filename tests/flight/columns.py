@@ -14,9 +14,9 @@ class Wire:
     def __init__(self) -> None:
         self._sent: list[tuple[float, int, str, int, int, Mapping[str, Any]]] = []
 
-    def send(self, name: str, at_s: float, system: int = 1, component: int = 1, **fields: Any) -> None:
+    def send(self, message: str, at_s: float, /, system: int = 1, component: int = 1, **fields: Any) -> None:
         """Put one message on the wire; it arrives at ``at_s``."""
-        self._sent.append((at_s, len(self._sent), name, system, component, fields))
+        self._sent.append((at_s, len(self._sent), message, system, component, fields))
 
     def columns(self, rows: Sequence[int] | None = None) -> list[Columns]:
         """All messages, or the given places in the order of arrival, as one batch."""

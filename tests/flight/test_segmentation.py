@@ -7,7 +7,7 @@ from advisor.flight.segmentation import Segmenter
 from tests.flight.elevators import PATTERNS, Stream, coloured, length, slewed, stamps, steps
 
 DEG = np.radians(1.0)
-SEEDS = range(12)
+SEEDS = range(8)
 
 
 def found(stream):
@@ -132,9 +132,9 @@ def quiet_flight(name, rng, t):
     ["trim ramps", "turbulence corrections", "an attitude loop", "climbs", "slow wandering"],
 )
 def test_nothing_is_invented_in(name):
-    for seed in range(6):
+    for seed in range(5):
         rng = np.random.default_rng(seed)
-        t = stamps(rng, 60.0, rng.uniform(10.0, 80.0), jitter=0.2)
+        t = stamps(rng, 45.0, rng.uniform(10.0, 60.0), jitter=0.2)
         assert found(Stream(t, DEG * rng.uniform(0.2, 4.0) * quiet_flight(name, rng, t))) == []
 
 
@@ -147,9 +147,9 @@ def test_no_3211_is_ever_seen_in_flight_without_one():
         "climbs",
         "wandering",
     ):
-        for seed in range(6):
+        for seed in range(3):
             rng = np.random.default_rng((seed, 7))
-            t = stamps(rng, 60.0, rng.uniform(10.0, 80.0), jitter=0.2)
+            t = stamps(rng, 45.0, rng.uniform(10.0, 60.0), jitter=0.2)
             kinds = {span.kind for span in found(Stream(t, DEG * quiet_flight(name, rng, t)))}
             assert not kinds & {"3-2-1-1", "reverse 3-2-1-1"}
 
@@ -212,6 +212,6 @@ def test_an_input_under_way_is_seen_while_it_is_flown():
 
 def test_an_hour_of_stream_needs_no_more_memory_than_a_minute():
     segmenter = Segmenter()
-    for i in range(40_000):
-        segmenter.push(i * 0.09, 0.0)
+    for i in range(15_000):
+        segmenter.push(i * 0.24, 0.0)
     assert len(segmenter._t) <= 8192

@@ -1,0 +1,64 @@
+"""Who the vehicle is among everything that sends heartbeats."""
+
+import pytest
+
+from advisor.flight.vehicle import Vehicle, VehicleFinder, is_aircraft, mode_name
+from tests.flight.columns import Wire, heartbeat
+
+GCS, GIMBAL, ONBOARD, PLANE = 6, 26, 18, 1
+INVALID, ARDUPILOT, PX4 = 8, 3, 12
+
+
+def heard(*senders, target_system=None):
+    finder = VehicleFinder(target_system)
+    for at_s, sender in enumerate(senders):
+        wire = Wire()
+        heartbeat(wire, float(at_s), **sender)
+        finder.hear(wire.columns()[0])
+    return finder
+
+
+def test_a_ground_station_or_gimbal_heard_first_is_not_the_vehicle():
+    finder = heard(
+        {"autopilot": INVALID, "kind": GCS, "system": 255, "component": 190},
+        {"autopilot": INVALID, "kind": GIMBAL, "component": 154},
+        {"autopilot": ARDUPILOT, "kind": ONBOARD, "component": 191},
+        {"autopilot": ARDUPILOT, "kind": PLANE, "system": 7},
+    )
+    assert finder.vehicle == Vehicle(7, 1, "ardupilot", PLANE)
+    assert finder.others == set()
+
+
+def test_of_several_vehicles_the_first_is_followed_and_the_others_are_known():
+    finder = heard({"system": 3}, {"system": 5}, {"system": 3})
+    assert finder.vehicle is not None
+    assert finder.vehicle.system == 3
+    assert finder.others == {5}
+
+
+def test_the_vehicle_asked_for_is_waited_for():
+    finder = heard({"system": 3}, {"system": 5}, target_system=5)
+    assert finder.vehicle is not None
+    assert finder.vehicle.system == 5
+    assert finder.others == {3}
+
+
+def test_an_unknown_autopilot_is_named_by_its_number():
+    finder = heard({"autopilot": 17})
+    assert str(finder.vehicle) == "autopilot 17 1/1"
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "custom", "name"),
+    [("ardupilot", 0, "MANUAL"), ("ardupilot", 7, "CRUISE"), ("ardupilot", 99, "mode 99"),
+     ("px4", 1 << 16, "MANUAL"), ("px4", 4 << 16 | 3 << 24, "AUTO"), ("generic", 4, "mode 4")],
+)  # fmt: skip
+def test_modes_bear_the_names_their_users_know(autopilot, custom, name):
+    assert mode_name(Vehicle(1, 1, autopilot, PLANE), custom) == name
+
+
+def test_the_link_and_the_core_agree_on_what_an_aircraft_is():
+    assert is_aircraft(ARDUPILOT, PLANE)
+    assert is_aircraft(PX4, 22)
+    assert not is_aircraft(INVALID, PLANE)
+    assert not is_aircraft(ARDUPILOT, GCS)
