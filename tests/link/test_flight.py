@@ -9,6 +9,8 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from tests.link.air import Record, flown, judged, records_of, through_a_poor_radio
 from tests.link.builders import Sender, attitude, heartbeat
 
+HEARTBEAT, PARAM_VALUE = 0, 22
+
 
 @pytest.fixture(scope="module")
 def flight(tmp_path_factory: pytest.TempPathFactory) -> list[Record]:
@@ -36,6 +38,11 @@ def verdicts(records: list[Record]) -> list[tuple[bool, ...]]:
     ]
 
 
+def message_id(record: Record) -> int:
+    """Of a MAVLink 2 frame."""
+    return int.from_bytes(record.frame[7:10], "little")
+
+
 def amid(records: list[Record], strangers: list[bytes]) -> list[Record]:
     """The flight with a stranger's frames, one by one, between its own."""
     mixed = []
@@ -58,6 +65,19 @@ def test_jitter_of_200_ms_with_overtaking_and_duplicates_changes_no_verdict(
     assert verdicts(disturbed) == undisturbed
 
 
+def test_a_fifth_of_the_packets_lost_and_200_ms_of_jitter_change_no_verdict(
+    flight: list[Record], undisturbed: list[tuple[bool, ...]]
+) -> None:
+    # Parameters come by a protocol that repeats what is lost; everything else is sent once.
+    asked = [record for record in flight if message_id(record) == PARAM_VALUE]
+    sent = [record for record in flight if message_id(record) != PARAM_VALUE]
+    delivered = asked + through_a_poor_radio(sent, seed=2, loss=0.2, jitter_s=0.2)
+    disturbed = verdicts(sorted(delivered, key=lambda record: record.stamp_us))
+    assert [(accepted, stop) for accepted, *_, stop in disturbed] == [
+        (accepted, stop) for accepted, *_, stop in undisturbed
+    ]
+
+
 def test_strangers_on_the_link_change_no_sample_of_any_manoeuvre(flight: list[Record]) -> None:
     intruder = Sender(system=9)
     strangers = [
@@ -73,7 +93,7 @@ def test_strangers_on_the_link_change_no_sample_of_any_manoeuvre(flight: list[Re
             dialect.MAVLink_statustext_message(6, b"ArduPlane V9.9.9", 0, 0),
         )
     ]
-    known = next(i for i, record in enumerate(flight) if record.frame[7:10] == bytes(3))
+    known = next(i for i, record in enumerate(flight) if message_id(record) == HEARTBEAT)
     disturbed = flight[: known + 1] + amid(flight[known + 1 :], strangers)
     assert flown(disturbed) == flown(flight)
 
