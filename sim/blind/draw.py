@@ -97,8 +97,8 @@ def _scenario(
     background: list[str] = []
     air, clock, instruments, colour = Air(), Clock(boot_s=float(uniform(20.0, 900.0))), Instruments(), 0.0
     if hard:
-        length = 1.0 if aircraft == "uav" else 2.5
-        air = Air(turbulence_m_s=float(uniform(0.05, 0.2)) * length, length_m=60.0 * length)
+        length = usual.airspeed_m_s / 25.0
+        air = Air(turbulence_m_s=float(uniform(0.05, 0.15)) * length, length_m=60.0 * length)
         clock = replace(clock, jitter_s=0.004)
         instruments = Instruments(float(uniform(-0.3, 0.3)) * length)
         colour = float(uniform(0.3, 0.8))
@@ -222,11 +222,12 @@ def _scale(scenario: Scenario, plain: list[Sample]) -> Scale:
     flown = [sample for sample in plain if sample.flying]
     amplitude = float(np.ptp([sample.motion.elevator for sample in flown])) / 2
     swing = float(np.ptp([sample.motion.alpha for sample in flown])) / 2
+    speed = plain[0].motion.airspeed / 25.0
     if scenario.engine == "jsbsim":
-        return Scale(4.0, 1.5, amplitude, swing)
+        return Scale(4.0, 1.5, amplitude, swing, speed)
     base = hangar.AIRFRAMES[scenario.aircraft][0]
     fields = {name: scenario.airframe[name] for name in ("cl_alpha", "cm_alpha", "cm_delta_e")}
-    return Scale(1.0 if scenario.aircraft == "uav" else 4.0, base.chord, amplitude, swing, **fields)
+    return Scale(1.0 if scenario.aircraft == "uav" else 4.0, base.chord, amplitude, swing, speed, **fields)
 
 
 def _believed(truth: ShortPeriod, generator: np.random.Generator) -> ShortPeriod:

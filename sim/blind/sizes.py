@@ -20,6 +20,8 @@ class Scale:
     """Elevator amplitude of the test inputs, rad."""
     swing: float
     """Angle-of-attack amplitude of their response, rad."""
+    speed: float
+    """1 at 25 m/s; gusts are as large as the angle they make."""
     cl_alpha: float = 4.9
     cm_alpha: float = -0.75
     cm_delta_e: float = -1.15
@@ -90,8 +92,8 @@ INSIDE: dict[str, Draw] = {
     "icing": _one("severity", 0.1, 0.6),
     "airspeed_variation": _pair(_one("share", 0.4, 1.0), _one("period_s", 15.0, 30.0)),
     "ground_effect": _pair(_one("lift", 0.1, 0.6), _one("moment", 0.004, 0.03, signed=True)),
-    "turbulence": _pair(_one("sigma_w_m_s", 0.15, 1.0, by="length"), _one("length_m", 30.0, 150.0)),
-    "gust": _pair(_one("amplitude_m_s", 0.6, 4.0), _one("length_m", 12.0, 35.0, by="length")),
+    "turbulence": _pair(_one("sigma_w_m_s", 0.25, 1.2, by="speed"), _one("length_m", 30.0, 150.0)),
+    "gust": _pair(_one("amplitude_m_s", 0.6, 3.0, by="speed"), _one("length_m", 12.0, 35.0, by="speed")),
     "alpha_lag": _one("lag_s", 0.012, 0.1),
     "alpha_scale": _one("scale", 0.03, 0.3, signed=True),
     "alpha_bias": _one("bias_rad", 0.008, 0.05, signed=True),
@@ -99,7 +101,7 @@ INSIDE: dict[str, Draw] = {
     "pitch_rate_bias": _one("bias_rad_s", 0.003, 0.03, signed=True),
     "pitch_rate_scale": _one("scale", 0.03, 0.3, signed=True),
     "structural_mode": _pair(
-        _one("omega_rad_s", 14.0, 55.0), _pair(_one("damping", 0.02, 0.1), _one("rate_gain", 0.015, 0.12))
+        _one("frequency_hz", 2.2, 9.0), _pair(_one("damping", 0.02, 0.1), _one("gain", 0.25, 4.0))
     ),
     "accelerometer_offset": _one("arm_m", 0.04, 0.4, signed=True, by="length"),
     "alpha_skew": _SKEW,

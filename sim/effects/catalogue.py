@@ -102,8 +102,8 @@ def _q_scale(kit: Kit, sizes: Sizes) -> None:
 
 
 def _bending(kit: Kit, sizes: Sizes) -> None:
-    hertz = sizes["omega_rad_s"] / (2 * math.pi)
-    kit.fittings.sensors.append(BendingMode(hertz, sizes["damping"], sizes["rate_gain"]))
+    mode = BendingMode(sizes["frequency_hz"], sizes["damping"], sizes["gain"], sizes["displacement_gain"])
+    kit.fittings.sensors.append(mode)
 
 
 def _imu_arm(kit: Kit, sizes: Sizes) -> None:
@@ -179,7 +179,9 @@ CATALOGUE: dict[str, Kind] = {
     "pitch_rate_bias": Kind("pitch_rate_sensor", {"bias_rad_s": 0.01}, _q_bias),
     "pitch_rate_scale": Kind("pitch_rate_sensor", {"scale": 0.1}, _q_scale),
     "structural_mode": Kind(
-        "pitch_rate_sensor", {"omega_rad_s": 25.0, "damping": 0.04, "rate_gain": 0.08}, _bending
+        "pitch_rate_sensor",
+        {"frequency_hz": 4.0, "damping": 0.04, "gain": 2.0, "displacement_gain": 0.0},
+        _bending,
     ),
     "accelerometer_offset": Kind("accelerometer", {"arm_m": 0.2}, _imu_arm),
     "alpha_skew": _skew("alpha"),

@@ -50,23 +50,24 @@ class VaneAhead:
 class BendingMode:
     """The gyro sits on a fuselage that bends when the elevator pushes the tail.
 
-    η̈ + 2ζω η̇ + ω² η = ω² (δ − δ_trim); the gyro turns with the local slope, q + gain η̇.
+    η̈ + 2ζω η̇ + ω² η = ω² (δ − δ_trim); the gyro turns with the local slope's rate, q + gain η̇/ω,
+    and whatever it feels of the bend itself, ``displacement_gain`` η.
     """
 
-    def __init__(self, frequency_hz: float, damping: float, gain: float) -> None:
+    def __init__(self, frequency_hz: float, damping: float, gain: float, displacement_gain: float) -> None:
         self.omega = 2 * math.pi * frequency_hz
-        self.damping, self.gain = damping, gain
+        self.damping, self.gain, self.displacement_gain = damping, gain, displacement_gain
         self._trim: float | None = None
         self._bend = self._rate = 0.0
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Add the local slope's rate to the pitch rate."""
+        """Add what the bending fuselage does to the pitch rate."""
         if self._trim is None:
             self._trim = motion.elevator
         push = self.omega**2 * (motion.elevator - self._trim - self._bend)
         self._rate += (push - 2 * self.damping * self.omega * self._rate) * dt
         self._bend += self._rate * dt
-        reading.q += self.gain * self._rate
+        reading.q += self.gain * self._rate / self.omega + self.displacement_gain * self._bend
 
 
 class Transformed:

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from sim.effects.air import Gusts
 from sim.effects.catalogue import CATALOGUE
 from sim.effects.changes import FieldChange, Onset
 from sim.effects.kit import Kit, Sizes
@@ -69,6 +70,11 @@ def _speed(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
     engine.record["gravity"] = 1.0
 
 
+def _gust(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
+    times = (sizes.get("at_s", boot_s + kit.middle_s) - boot_s,)
+    kit.fittings.air.append(Gusts(sizes.get("amplitude_m_s", 0.0), sizes.get("length_m", 1.0), times))
+
+
 _DERIVATIVES = tuple(name for name in ShortPeriod.__dataclass_fields__ if not name.endswith("_0"))
 
 TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
@@ -97,12 +103,10 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
         frozenset({"rate_per_s", "step", "at_s"}),
         _between_maneuvers(_DERIVATIVES, inverse=True),
     ),
+    "gust": (frozenset({"amplitude_m_s", "length_m", "at_s"}), _gust),
     "icing": (frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e", "at_s"}), _ice),
 }
 """Effects that are terms of the equations: their parameters, and how they are fitted."""
-
-EXTRA: Mapping[str, frozenset[str]] = {"structural_mode": frozenset({"gain"})}
-"""Parameters that a component of the catalogue takes in an aircraft file beside its own."""
 
 
 def problems_with(effects: Mapping[str, Sizes]) -> list[str]:
@@ -112,7 +116,7 @@ def problems_with(effects: Mapping[str, Sizes]) -> list[str]:
         if name in TERMS:
             known: frozenset[str] = TERMS[name][0]
         elif name in CATALOGUE:
-            known = frozenset(CATALOGUE[name].sizes) | EXTRA.get(name, frozenset())
+            known = frozenset(CATALOGUE[name].sizes)
         else:
             problems.append(f"effects.{name}: unknown effect")
             continue

@@ -83,7 +83,7 @@ SMALL = {
     "alpha_vane_offset": {"arm_m": 1e-4},
     "pitch_rate_bias": {"bias_rad_s": 1e-6},
     "pitch_rate_scale": {"scale": 1e-5},
-    "structural_mode": {"rate_gain": 1e-5},
+    "structural_mode": {"gain": 1e-5},
     "accelerometer_offset": {"arm_m": 1e-5},
     "alpha_skew": {"skew_s": 1e-5},
     "pitch_rate_skew": {"skew_s": 1e-5},
