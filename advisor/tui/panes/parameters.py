@@ -42,15 +42,15 @@ verdict pane says why.
         """Nothing is shown yet."""
         super().on_mount()
         self._view: View | None = None
-        self._shown: object = None
+        self._shown: tuple[object, ...] | None = None
 
     def show(self, view: View) -> None:
         """Fill the table anew when an estimate changed."""
         self._view = view
-        key = (id(view.state.maneuvers), id(view.state.model), view.selected)
-        if key == self._shown and view.state.maneuvers:
+        what = (view.state.maneuvers, view.state.model, view.judged)
+        if self._shown is not None and all(a is b for a, b in zip(what, self._shown, strict=True)):
             return
-        self._shown = key
+        self._shown = what
         table = self.query_one(DataTable)
         row = max(table.cursor_row, 0)
         selected = view.judged.estimate if view.judged else None

@@ -30,6 +30,7 @@ class Plot(Widget):
         super().__init__(id=id, classes=classes)
         self._chart = chart
         self._strips: list[Strip] | None = None
+        self._looks: dict[str, Style] = {}
 
     @property
     def chart(self) -> Chart:
@@ -51,21 +52,32 @@ class Plot(Widget):
         """A new theme needs new colours."""
         super().notify_style_update()
         self._strips = None
+        self._looks.clear()
 
     def render_line(self, y: int) -> Strip:
         """One line of the painted chart."""
         if self._strips is None:
             self._strips = self._paint(self.size.width, self.size.height)
-        return self._strips[y] if y < len(self._strips) else Strip.blank(self.size.width, self.rich_style)
+        return self._strips[y] if y < len(self._strips) else Strip.blank(self.size.width, self._style("base"))
+
+    def _style(self, part: str) -> Style:
+        """The style sheet's style of a part; looking it up anew takes as long as painting."""
+        if part not in self._looks:
+            base = self.rich_style
+            special = (
+                Style() if part == "base" else self.get_component_rich_style(f"plot--{part}", partial=True)
+            )
+            self._looks[part] = base + special
+        return self._looks[part]
 
     def _paint(self, width: int, height: int) -> list[Strip]:
-        chart, base = self._chart, self.rich_style
-        label_style = base + self.get_component_rich_style("plot--axis", partial=True)
+        chart, base = self._chart, self._style("base")
+        label_style = self._style("axis")
         if not chart.series:
             return _sentence(f"{chart.y_label}: {chart.why_empty}", width, label_style)
         if width < 16 or height < 4:
             return _sentence(f"{chart.y_label}: too little room for a plot.", width, label_style)
-        inks = [base + self.get_component_rich_style(f"plot--{ink}", partial=True) for ink in INKS]
+        inks = [self._style(ink) for ink in INKS]
         rows = height - 2
         heights = [s.y for s in chart.series] + [np.array([level.y]) for level in chart.levels]
         y_axis = round_axis(heights, max(1, rows // _ROWS_PER_TICK))

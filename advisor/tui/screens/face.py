@@ -28,6 +28,6 @@ class Face(Screen[None]):
 
     def show(self, view: View) -> None:
         """Update every part that wants to be to a new moment."""
-        for node in self.query("*"):
+        for node in self.walk_children():
             if isinstance(node, Part) and node.wants_showing:
                 node.show(view)
