@@ -71,6 +71,7 @@ class Announcer:
         if maneuver in self._announced:
             return
         self._announced.add(maneuver)
+        sentence = f"{maneuver} {sentence}"
         if stop is not None and not self._stop_told:
             self._stop_told = True
             sentence = f"{stop} ({sentence})"

@@ -116,6 +116,9 @@ class Link:
         # Stamps run on the monotonic clock: a host whose clock is set does not tear the recording.
         self._unix_offset_s = time.time() - time.monotonic()
         self._watch.begin(time.monotonic())
+        if self.address.speaks_first:
+            text = f"{self.address.text} is told our address by a heartbeat once a second"
+            self._say([text], time.monotonic())
         self._thread.start()
         return self
 

@@ -2,6 +2,7 @@
 
 from advisor.mavlink.framing import Frame
 from advisor.mavlink.intake import Intake
+from advisor.mavlink.ratewatch import RateWatch
 
 SILENCE_S = 5.0
 
@@ -15,6 +16,7 @@ class LinkWatch:
         self._silence_told = False
         self._cut_s: float | None = None
         self._others_told: set[int] = set()
+        self._rates = RateWatch()
         self.reconnects = 0
 
     def begin(self, now_s: float) -> None:
@@ -35,8 +37,10 @@ class LinkWatch:
         """Sentences for what these frames, or their absence, mean."""
         said = []
         vehicle = intake.vehicle
-        if any(vehicle is None or frame.system == vehicle[0] for frame in frames):
+        relevant = [frame for frame in frames if vehicle is None or frame.system == vehicle[0]]
+        if relevant:
             said += self._heard(now_s)
+            said += self._rates.look(relevant if vehicle else [], now_s)
         elif not self._silence_told and self._cut_s is None and self.silent_s(now_s) >= SILENCE_S:
             self._silence_told = True
             who = f"vehicle {vehicle[0]} is" if vehicle else f"{self._connection}: no vehicle heard,"

@@ -43,10 +43,10 @@ def test_a_sentence_survives_its_chunks_and_becomes_ascii() -> None:
 
 def test_each_manoeuvre_is_announced_once_and_stop_with_the_verdict_that_brought_it() -> None:
     announcer = Announcer()
-    announcer.judged(1, "1 ACCEPTED")
-    announcer.judged(1, "1 ACCEPTED after all")
-    announcer.judged(2, "2 ACCEPTED", stop="STOP TESTING")
-    announcer.judged(3, "3 ACCEPTED", stop="STOP TESTING")
+    announcer.judged(1, "ACCEPTED")
+    announcer.judged(1, "ACCEPTED after all")
+    announcer.judged(2, "ACCEPTED", stop="STOP TESTING")
+    announcer.judged(3, "ACCEPTED", stop="STOP TESTING")
     assert announcer.speak(None, 0.0) == []
     assert joined(announcer) == ["1 ACCEPTED", "STOP TESTING (2 ACCEPTED)", "3 ACCEPTED"]
 
@@ -63,10 +63,10 @@ def test_the_crew_hears_it_under_the_advisors_own_ids_and_the_recording_keeps_it
     assert (heard.get_type(), heard.get_srcSystem(), heard.text) == (
         "STATUSTEXT",
         254,
-        "ACCEPTED: good manoeuvre",
+        "1 ACCEPTED: good manoeuvre",
     )
     recorded = FrameScanner(["STATUSTEXT"]).feed((tmp_path / "a.tlog").read_bytes())
     assert [(part.system, part.fields["text"].tolist()) for part in recorded] == [
-        (254, [b"ACCEPTED: good manoeuvre"])
+        (254, [b"1 ACCEPTED: good manoeuvre"])
     ]
     vehicle.close()

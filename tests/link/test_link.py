@@ -1,6 +1,8 @@
 import os
 import pty
 import socket
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -12,7 +14,9 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.messages import Columns
 from advisor.mavlink.frames import FrameScanner
+from advisor.mavlink.framing import Frame
 from advisor.mavlink.link import Link
+from advisor.mavlink.ratewatch import RateWatch
 from advisor.problems import UnusableInputError
 from tests.link.builders import (
     Sender,
@@ -101,6 +105,7 @@ def test_a_link_that_must_speak_first_greets_and_is_answered() -> None:
             assert greeting.get_type() == "HEARTBEAT"
             assert greeting.type == dialect.MAV_TYPE_GCS
             assert greeting.get_srcSystem() == 254
+            assert "heartbeat once a second" in notices(link)
             listener.sendto(Sender().pack(attitude(40)), peer)
             wait_until(lambda: stamps(link.read()) == [40.0])
 
@@ -185,6 +190,56 @@ def test_another_station_talking_on_does_not_hide_that_the_vehicle_is_silent(
             time.sleep(0.05)
         assert "vehicle 1 is silent" in notices(link)
     station.close()
+
+
+def test_a_stream_cut_by_another_station_is_noticed_and_so_is_its_return() -> None:
+    watch = RateWatch()
+    said = []
+    for tick in range(60 * 50):
+        now_s = tick / 50
+        if now_s < 20.0 or now_s > 40.0 or tick % 12 == 0:
+            said += [(now_s, text) for text in watch.look([Frame(b"", 30, 0, 1, 1, False)], now_s)]
+        if tick % 50 == 0:
+            said += [(now_s, text) for text in watch.look([Frame(b"", 0, 0, 1, 1, False)], now_s)]
+    (fell_s, fell), (back_s, back) = said
+    assert "ATTITUDE fell from 50 Hz to" in fell
+    assert 20.0 < fell_s < 27.0
+    assert back == "ATTITUDE is back at 50 Hz"
+    assert 40.0 < back_s < 47.0
+
+
+def test_a_silence_is_not_mistaken_for_a_slower_stream() -> None:
+    watch = RateWatch()
+    for tick in range(60 * 50):
+        now_s = tick / 50
+        if not 20.0 < now_s < 31.0:
+            assert watch.look([Frame(b"", 30, 0, 1, 1, False)], now_s) == []
+
+
+def test_a_process_killed_without_warning_leaves_whole_records_up_to_its_last_second(
+    port: int, vehicle: UdpVehicle, tmp_path: Path
+) -> None:
+    own = tmp_path / "own.tlog"
+    program = (
+        "import sys, pathlib; from advisor.mavlink.link import Link\n"
+        f"with Link('udpin:127.0.0.1:{port}', record_to=pathlib.Path(sys.argv[1])) as link:\n"
+        "    print('listening', flush=True)\n"
+        "    while True: link.read()\n"
+    )
+    process = subprocess.Popen([sys.executable, "-c", program, str(own)], stdout=subprocess.PIPE)
+    try:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"listening\n"
+        began = time.monotonic()
+        for i in range(125):
+            vehicle.send(attitude(20 * i))
+            time.sleep(max(0.0, began + 0.02 * (i + 1) - time.monotonic()))
+    finally:
+        process.kill()
+        process.communicate()
+    kept = stamps(FrameScanner().feed(own.read_bytes()))
+    assert kept == [20.0 * i for i in range(len(kept))]
+    assert len(kept) >= 125 - 50
 
 
 def test_losses_duplicates_and_late_packets_are_counted_by_sequence_number(
