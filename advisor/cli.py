@@ -58,6 +58,9 @@ def advisor() -> None:
 
 def main() -> None:
     """Run the command line; every error a user may meet becomes one sentence and an exit code."""
+    # Matrices here are small: threads of the linear algebra library cost far more than they bring.
+    for library in ("OPENBLAS", "OMP", "MKL"):
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     try:
         code = advisor(standalone_mode=False)
     except click.ClickException as error:

@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,7 +12,10 @@ from advisor.aircraft import Aircraft
 from advisor.flight.messages import Columns
 from advisor.problems import UnusableInputError
 from advisor.tui.campaign_like import CampaignLike
-from advisor.tui.source import Source
+from advisor.tui.source import Playable, Source
+
+if TYPE_CHECKING:
+    from advisor.campaign import Campaign
 
 READ_S = 0.2
 
@@ -48,16 +52,21 @@ def _show(source: Source, aircraft: Aircraft, target_system: int | None, tell: L
     from advisor.tui.app import AdvisorApp
     from advisor.tui.settings import load_settings
 
+    campaigns: list[Campaign] = []
+
     def make_campaign() -> CampaignLike:
         # Called in the working thread, after the first paint: the numerical libraries load there.
         from advisor.campaign import Campaign
 
-        return Campaign(aircraft, target_system, settle=True, tell=tell)
+        campaigns.append(Campaign(aircraft, target_system, settle=True, tell=tell))
+        return campaigns[-1]
 
     app = AdvisorApp(source, make_campaign, aircraft, load_settings())
     app.run()
     if app.failure is not None:
         raise app.failure
+    if isinstance(source, Playable) and campaigns:
+        _refuse_if_unusable(campaigns[-1])
 
 
 def _narrate(source: Source, aircraft: Aircraft, target_system: int | None, tell: Listener | None) -> None:
@@ -67,6 +76,10 @@ def _narrate(source: Source, aircraft: Aircraft, target_system: int | None, tell
     campaign = Campaign(aircraft, target_system, tell=tell)
     with closing(source):
         follow(_batches(source), campaign, click.echo)
+    _refuse_if_unusable(campaign)
+
+
+def _refuse_if_unusable(campaign: "Campaign") -> None:
     problems = campaign.problems
     if problems:
         raise UnusableInputError(problems[0].code, problems[0].text, problems[0].fix)
@@ -74,4 +87,6 @@ def _narrate(source: Source, aircraft: Aircraft, target_system: int | None, tell
 
 def _batches(source: Source) -> Iterator[Sequence[Columns]]:
     while (columns := source.read(READ_S)) is not None:
+        for notice in source.take_notices():
+            click.echo(f"link: {notice}", err=True)
         yield columns
