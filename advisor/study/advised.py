@@ -1,6 +1,6 @@
 """What following the advice saves: campaigns flown as advised beside those that repeat the standard input."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,10 +64,12 @@ CASES = (("twin jet", 2.5), ("UAV", 1.0))
 """Aircraft and noise in percent at which the standard input needs five manoeuvres and more."""
 
 
-def measure(campaigns: int, seed: int, advance: Advance | None = None) -> list[Saving]:
+def measure(
+    campaigns: int, seed: int, advance: Advance | None = None, cases: Sequence[tuple[str, float]] = CASES
+) -> list[Saving]:
     """Fly every campaign twice, from the same first manoeuvre."""
     savings = []
-    for name, noise in CASES:
+    for name, noise in cases:
         scene = scenes()[name]
         for same in (True, False):
             rng = np.random.default_rng([seed, round(100 * noise), same])

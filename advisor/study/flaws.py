@@ -12,7 +12,8 @@ from advisor.study.campaigns import fly_campaigns, outcome
 from advisor.study.estimating import Advance
 from advisor.study.flying import Scene
 
-CAMPAIGNS = 100
+MOST_CAMPAIGNS = 100
+"""Enough for a share of practically one."""
 NOISE_PERCENT = 1.0
 
 
@@ -22,6 +23,8 @@ class Flaws:
 
     thrown_away_percent: float
     """Share of equally good manoeuvres, after the first, that Eq. (11) rejects."""
+    near_zero_campaigns: int
+    """How many campaigns were flown with Z_q = 0."""
     near_zero_never_percent: float
     """Share of campaigns at 1 % noise that Eq. (12) never ends when Z_q is zero."""
     near_zero_information: int | None
@@ -34,9 +37,11 @@ def measure(campaigns: Sequence[Sequence[Estimate]], seed: int, advance: Advance
     thrown_away = 100.0 * float(np.mean([not result.accepted for v in verdicts for result in v]))
     scene = Scene()
     scene = replace(scene, aircraft=replace(scene.aircraft, Z_q=0.0))
-    near_zero = fly_campaigns(scene, NOISE_PERCENT, CAMPAIGNS, seed, advance=advance)
+    count = min(len(campaigns), MOST_CAMPAIGNS)
+    near_zero = fly_campaigns(scene, NOISE_PERCENT, count, seed, advance=advance)
     plan = CampaignPlan()
     never = [outcome(c, "continuous", plan).needed is None for c in near_zero]
     needed = sorted(outcome(c, "information", plan).needed or np.inf for c in near_zero)
     middle = needed[len(needed) // 2]
-    return Flaws(thrown_away, 100.0 * float(np.mean(never)), None if np.isinf(middle) else int(middle))
+    ended = None if np.isinf(middle) else int(middle)
+    return Flaws(thrown_away, count, 100.0 * float(np.mean(never)), ended)

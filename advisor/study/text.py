@@ -7,7 +7,7 @@ import numpy as np
 from advisor.aircraft import PARAMETERS
 from advisor.study.advised import PLAN, Saving
 from advisor.study.changed import BEFORE, LOSS, Detection
-from advisor.study.flaws import CAMPAIGNS, NOISE_PERCENT, Flaws
+from advisor.study.flaws import NOISE_PERCENT, Flaws
 from advisor.study.flying import NOISE_READINGS, NoiseReading, Scene
 from advisor.study.readings import ReadingResult
 from advisor.study.table import Row
@@ -91,7 +91,7 @@ def flaws(found: Flaws) -> list[str]:
         f"  separate computation rejects {found.thrown_away_percent:.0f} % of equally good manoeuvres: a new "
         "cost is as likely above the median of the earlier ones as below.",
         f"  a parameter near zero keeps Eq. (12) from falling: with Z_q = 0 and {NOISE_PERCENT:g} % noise, "
-        f"{found.near_zero_never_percent:.0f} % of {CAMPAIGNS} campaigns never end; the rule information "
+        f"{found.near_zero_never_percent:.0f} % of {found.near_zero_campaigns} campaigns never end; the rule information "
         f"ends them after {_count(found.near_zero_information)} (median).",
         "",
     ]

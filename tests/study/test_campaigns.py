@@ -139,4 +139,7 @@ def test_the_whole_study_reports_where_the_paper_lies() -> None:
     assert "continuous, 2.5 %: it needed 7" in text
     assert "Two flaws" in text
     assert told[-1][0] == told[-1][1]
-    assert len(report.document["rows"]) == 9  # type: ignore[arg-type]
+    document = json.loads(json.dumps(report.document, allow_nan=False))
+    assert len(document["rows"]) == 9
+    assert len(document["figure_5"]) == 6
+    assert document["noise_reading"] == "std"

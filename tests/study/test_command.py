@@ -1,0 +1,56 @@
+"""``advisor study`` as a user calls it."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from advisor.commands.study import command
+from advisor.study import advised
+
+
+def test_json_is_one_document_and_nothing_else() -> None:
+    result = CliRunner().invoke(command, ["--campaigns", "10", "--json"])
+    assert result.exit_code == 0
+    document = json.loads(result.stdout)
+    assert document["schema"] == "advisor.study/1"
+    assert {(r["rule"], r["noise_percent"]) for r in document["rows"] if "paper" in r} == {
+        (rule, noise) for rule in ("continuous", "separate") for noise in (1.0, 2.5, 5.0)
+    }
+
+
+def test_the_same_seed_gives_the_same_study() -> None:
+    runs = [CliRunner().invoke(command, ["--campaigns", "10", "--seed", "4"]).stdout for _ in range(2)]
+    assert runs[0] == runs[1]
+
+
+def test_figure_five_is_written_as_a_picture(tmp_path: Path) -> None:
+    for name, begins in (("figure.svg", b"<?xml"), ("figure.png", b"\x89PNG")):
+        path = tmp_path / name
+        assert CliRunner().invoke(command, ["--campaigns", "10", "--figure", str(path)]).exit_code == 0
+        assert path.read_bytes().startswith(begins)
+
+
+def test_following_the_advice_saves_manoeuvres() -> None:
+    savings = advised.measure(5, seed=1, cases=[("twin jet", 2.5)])
+    assert [s.same_excursion for s in savings] == [True, False]
+    assert min(s.percent for s in savings) > 0.0
+
+
+@pytest.mark.study
+def test_what_the_advice_saves_is_told_for_two_aircraft() -> None:
+    document = json.loads(CliRunner().invoke(command, ["--advice", "--campaigns", "10", "--json"]).stdout)
+    assert {row["aircraft"] for row in document["rows"]} == {"twin jet", "UAV"}
+    within_limits = [row["fewer_percent"] for row in document["rows"] if not row["same_excursion"]]
+    assert min(within_limits) > 20.0
+
+
+def test_a_changed_aircraft_is_noticed_within_two_manoeuvres() -> None:
+    document = json.loads(CliRunner().invoke(command, ["--change", "--campaigns", "10", "--json"]).stdout)
+    lost = [row for row in document["rows"] if row["lost"]]
+    assert {(row["lost"], row["noise_percent"]) for row in lost} == {
+        (name, noise) for name in ("M_alpha", "Z_alpha") for noise in (1.0, 2.5, 5.0)
+    }
+    assert all(row["confirmed_percent"] >= 90.0 for row in lost if row["noise_percent"] <= 2.5)
+    assert all(row["confirmed_percent"] == 0.0 for row in document["rows"] if row["lost"] is None)
