@@ -55,13 +55,12 @@ def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
     if np.count_nonzero(inside) < FEWEST_SAMPLES:
         return plain
     lags = np.arange(0.0, LONGEST_LAG_S + LAG_STEP_S / 2.0, LAG_STEP_S)
-    fits = [_drift(measured.t[inside], measured.y[inside], t, shape, lag) for lag in lags]
-    left = np.array([power for _, power in fits])
+    levels, drifts, left = _joined(measured.t[inside], measured.y[inside], t, shape, lags)
     best = int(np.argmin(left))
     if left[best] > (1.0 - SMALLEST_GAIN) * left[0] or best == len(lags) - 1:
         best = 0
-    (level, drift), power = fits[best]
-    if np.sqrt(power) > LARGEST_DISAGREEMENT * level:
+    level, drift = levels[best], drifts[best]
+    if np.sqrt(left[best]) > LARGEST_DISAGREEMENT * level:
         return plain
     return Airspeed(Signal(t, shape + level + drift * (t - t[0])), float(lags[best]), True)
 
@@ -78,12 +77,15 @@ def _shape(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
     return shape
 
 
-def _drift(
-    t: FloatArray, y: FloatArray, grid: FloatArray, shape: FloatArray, lag: float
-) -> tuple[tuple[float, float], float]:
-    """Level and drift that join shape and instrument at this lag, and the mean square left over."""
-    late = t - lag
-    columns = np.column_stack([np.ones(len(t)), late - grid[0]])
+def _joined(
+    t: FloatArray, y: FloatArray, grid: FloatArray, shape: FloatArray, lags: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Level and drift that join shape and instrument, and the mean square left over, for each lag."""
+    late = t - lags[:, None]
     side = y - np.interp(late, grid, shape)
-    found = np.linalg.lstsq(columns, side, rcond=None)[0]
-    return (float(found[0]), float(found[1])), float(np.mean((side - columns @ found) ** 2))
+    since = late - grid[0]
+    middle, mean = since.mean(axis=1, keepdims=True), side.mean(axis=1, keepdims=True)
+    drift = np.sum((since - middle) * (side - mean), axis=1) / np.sum((since - middle) ** 2, axis=1)
+    level = mean[:, 0] - drift * middle[:, 0]
+    left = np.mean((side - level[:, None] - drift[:, None] * since) ** 2, axis=1)
+    return level, drift, left

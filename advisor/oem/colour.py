@@ -9,6 +9,7 @@ Thompson, *Biometrika* 58, 1971) looks only at what no parameter can explain and
 bias. Whitening is a scalar Kalman filter.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -25,8 +26,11 @@ WHITE_SHARES = (0.0, 0.1, 0.5, 2.0)
 """First guesses of var w / var x."""
 SIGNIFICANT = 6.0
 """Gain in twice the log-likelihood from which colour is believed."""
+PROMISING = 1.0
+"""Gain of the best first guess below which the search for colour is not begun."""
 LARGEST_MEMORY = 0.9995
 SMALLEST_SHARE = 1e-4
+LOG_SMALLEST_SHARE = math.log(SMALLEST_SHARE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +86,9 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
     guesses += [(cost(best[1], share)[0], best[1], share) for share in WHITE_SHARES[1:]]
     slower = min(0.99, 0.5 + best[1] / 2.0)
     guesses += [(cost(slower, share)[0], slower, share) for share in WHITE_SHARES[1:]]
-    _, memory, share = min(guesses)
+    reached, memory, share = min(guesses)
+    if white - reached < PROMISING:
+        return plain
 
     def by_shape(x: FloatArray) -> float:
         return cost(*_bounded(x))[0]
@@ -91,7 +97,7 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
         by_shape,
         _unbounded(memory, share),
         method="Nelder-Mead",
-        options={"xatol": 1e-2, "fatol": 1e-2, "initial_simplex": _simplex(_unbounded(memory, share))},
+        options={"xatol": 2e-2, "fatol": 2e-2, "initial_simplex": _simplex(_unbounded(memory, share))},
     )
     memory, share = _bounded(found.x)
     if white - float(found.fun) < SIGNIFICANT:
@@ -128,7 +134,7 @@ def moved(colour: Colour, step: FloatArray) -> Colour:
 
 
 def _bounded(x: FloatArray) -> tuple[float, float]:
-    return LARGEST_MEMORY * float(np.tanh(x[0])), float(np.exp(np.clip(x[1], np.log(SMALLEST_SHARE), 9.0)))
+    return LARGEST_MEMORY * math.tanh(x[0]), math.exp(min(max(x[1], LOG_SMALLEST_SHARE), 9.0))
 
 
 def _unbounded(memory: float, share: float) -> FloatArray:

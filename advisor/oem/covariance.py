@@ -8,6 +8,7 @@ the accuracy of output-error estimates with coloured residuals; here with the
 autocovariance of the model in ``colour``).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -125,13 +126,21 @@ def cramer_rao(assembly: Assembly, rows: FloatArray, noise: FloatArray) -> Float
 
 
 def coloured(
-    assembly: Assembly, rows: FloatArray, residual: FloatArray, g: FloatArray
+    assembly: Assembly,
+    rows: FloatArray,
+    residual: FloatArray,
+    g: FloatArray,
+    known: Mapping[str, Colour] | None = None,
 ) -> tuple[FloatArray, dict[str, Colour]]:
     """AᵀΓA, shape (8 + k, 8 + k), with the colour of each output pooled over the manoeuvres.
 
     The colour is itself an estimate. Its uncertainty is carried to each variance (Satterthwaite's
     degrees of freedom), and the variance enlarged by the square of Student's over Gauss's 97.5 %
     point, so that ±1.96 standard deviations hold the truth in 95 % of cases.
+
+    Parameters
+    ----------
+    known : colours found a moment ago, to be used again.
     """
     width = rows.shape[1]
     total = np.zeros((width, width))
@@ -141,7 +150,10 @@ def coloured(
         stretches = [named[output] for named in assembly.rows if output in named]
         if not stretches:
             continue
-        colour = find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
+        if known is not None and output in known:
+            colour = known[output]
+        else:
+            colour = find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
         colours[output] = colour
 
         def part(changed: Colour, stretches: list[slice] = stretches) -> FloatArray:

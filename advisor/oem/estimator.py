@@ -33,7 +33,8 @@ def estimate(
     solution = solve(prepared.problem, method=method)
     if isinstance(solution, NoEstimate):
         return solution
-    return _report(solution, prepared, aircraft, None)
+    lagged = _supposing_a_lag(solution) if aircraft.elevator.lag_s is None else None
+    return report(solution, prepared, aircraft, lagged=lagged)
 
 
 def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | NoEstimate:
@@ -51,12 +52,27 @@ def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estim
     if isinstance(solution, NoEstimate):
         return solution
     lag = find_lag(prepared.problem, solution) if aircraft.elevator.lag_s is None else None
-    return _report(lag.solution if lag else solution, prepared, aircraft, lag)
+    if lag is None:
+        return report(solution, prepared, aircraft)
+    lagged = None if lag.lag_s > 0.0 else _supposing_a_lag(solution)
+    return report(lag.solution, prepared, aircraft, lag=lag, lagged=lagged)
 
 
-def _report(solution: Solution, prepared: Prepared, aircraft: Aircraft, lag: Lag | None) -> Estimate:
-    unknown = aircraft.elevator.lag_s is None and not (lag is not None and lag.lag_s > 0.0)
-    lagged = _supposing_a_lag(solution) if unknown else None
+def report(
+    solution: Solution,
+    prepared: Prepared,
+    aircraft: Aircraft,
+    *,
+    lag: Lag | None = None,
+    lagged: FloatArray | None = None,
+) -> Estimate:
+    """A solution as the rest of the program sees it.
+
+    Parameters
+    ----------
+    lag : what the search for a servo lag found, when one was made.
+    lagged : (8,) the estimate had the servo a lag of ``SUPPOSED_LAG_S``, when the servo is unknown.
+    """
     return Estimate(
         theta=solution.theta,
         covariance_cr=solution.covariance_cr[:N, :N],

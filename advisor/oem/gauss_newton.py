@@ -23,7 +23,9 @@ FLAT = 1e-11
 """Converged when the last step promised less than this change of log J; what is left after it is far less."""
 BLOCK = 64
 """Rows whose products are summed at once."""
-MOST_ITERATIONS = 60
+MOST_ITERATIONS = 120
+NEAR_ENOUGH = 0.05
+"""After so many iterations a step that promises less than this, a fifth of a standard deviation, will do."""
 LEAST_NOISE = 1e-10
 """Floor of σ relative to the spread of the channel: data without noise have no other."""
 
@@ -238,6 +240,7 @@ def descend(
     noise, cost = weigh(z, y, channel, floor)
     damping = 0.0
     status = EXHAUSTED
+    promise = np.inf
     iteration = 0
     while iteration < MOST_ITERATIONS:
         iteration += 1
@@ -265,4 +268,6 @@ def descend(
             status = CONVERGED
             break
         damping = 0.0 if damping < 1e-3 else damping / 8.0
+    if status == EXHAUSTED and promise < NEAR_ENOUGH:
+        status = CONVERGED
     return Optimum(status, shared, local, noise, cost, iteration)

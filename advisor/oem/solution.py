@@ -17,6 +17,7 @@ from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
 
 Method = Literal["gauss-newton", "nelder-mead"]
+NOTHING_TO_TELL = "The input does not excite the motion enough to tell the parameters apart."
 HEALTHY_ITERATIONS = 12
 """A search that takes longer may be creeping along the valley of a second minimum: begin elsewhere, too."""
 
@@ -58,6 +59,7 @@ def solve(
     *,
     method: Method = "gauss-newton",
     begin: tuple[FloatArray, FloatArray] | None = None,
+    colours: Mapping[str, Colour] | None = None,
 ) -> Solution | NoEstimate:
     """Estimate the parameters of a problem.
 
@@ -65,13 +67,37 @@ def solve(
     ----------
     begin : shared (7,) and local (m, 7) parameters to start from, e.g. of an earlier, shorter
         solution; by default the regression of ``start``.
+    colours : colours of the noise found a moment ago, to be used again instead of fitted.
     """
+    assembly, optimum = search(problem, method=method, begin=begin)
+    if optimum.status == OVERFLOW:
+        return NoEstimate(
+            "diverged", "The model runs away from its first guess: the record is too long or too noisy."
+        )
+    if optimum.status == SINGULAR:
+        return NoEstimate("singular", NOTHING_TO_TELL)
+    if optimum.status != CONVERGED:
+        text = (
+            f"The search for the best fit did not settle in {optimum.iterations} iterations:"
+            " values far apart explain this record equally well."
+        )
+        return NoEstimate("not_converged", text)
+    return evaluate(problem, assembly, optimum, colours=colours)
+
+
+def search(
+    problem: Problem,
+    *,
+    method: Method = "gauss-newton",
+    begin: tuple[FloatArray, FloatArray] | None = None,
+) -> tuple[Assembly, Optimum]:
+    """Only the optimum of a problem, whatever became of it; arguments as in ``solve``."""
     assembly = assemble(problem)
     floor = noise_floor(assembly)
-    search = descend if method == "gauss-newton" else descend_by_simplex
+    descent = descend if method == "gauss-newton" else descend_by_simplex
 
     def from_(shared: FloatArray, local: FloatArray) -> Optimum:
-        return search(
+        return descent(
             assembly.grid,
             assembly.z,
             assembly.channel,
@@ -87,33 +113,23 @@ def solve(
         other = from_(*start(problem, lift_from_alpha_only=True))
         if other.log_likelihood_cost < optimum.log_likelihood_cost:
             optimum = other
-    if optimum.status == OVERFLOW:
-        return NoEstimate(
-            "diverged", "The model runs away from its first guess: the record is too long or too noisy."
-        )
-    if optimum.status == SINGULAR:
-        return NoEstimate(
-            "singular", "The input does not excite the motion enough to tell the parameters apart."
-        )
-    if optimum.status != CONVERGED and optimum.iterations <= 1:
-        return NoEstimate(
-            "not_converged", "The search for the best fit found no way down from its first guess."
-        )
-    return evaluate(problem, assembly, optimum)
+    return assembly, optimum
 
 
 def evaluate(
-    problem: Problem, assembly: Assembly, optimum: Optimum, extra: FloatArray | None = None
+    problem: Problem,
+    assembly: Assembly,
+    optimum: Optimum,
+    extra: FloatArray | None = None,
+    colours: Mapping[str, Colour] | None = None,
 ) -> Solution | NoEstimate:
-    """Errors of an optimum; ``extra`` as in ``covariance.influence``."""
+    """Errors of an optimum; ``extra`` as in ``covariance.influence``, ``colours`` as in ``solve``."""
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     respond(assembly.grid, optimum.shared, optimum.local, y, g)
     effect = influence(assembly, g, optimum.noise, extra)
     if effect is None:
-        return NoEstimate(
-            "singular", "The input does not excite the motion enough to tell the parameters apart."
-        )
-    corrected, colours = coloured(assembly, effect.rows, assembly.z - y, g)
+        return NoEstimate("singular", NOTHING_TO_TELL)
+    corrected, found = coloured(assembly, effect.rows, assembly.z - y, g, colours)
     return Solution(
         problem=problem,
         assembly=assembly,
@@ -124,7 +140,7 @@ def evaluate(
         theta=reported(optimum.shared, optimum.local),
         covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise),
         covariance=corrected,
-        colours=colours,
+        colours=found,
     )
 
 
