@@ -7,7 +7,7 @@ together, narrower than the tolerance, and did the estimate predict the newest m
 used it?
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,11 +42,14 @@ class Knowledge:
     """Variance ratio by which contradictions between manoeuvres have widened ``belief``, at least 1."""
     left_out: tuple[int, ...]
     """Indices of manoeuvres that contradict all the others."""
+    not_identifiable: Mapping[str, str]
+    """Parameter to the reason, where no manoeuvre could tell it: a small error is then no knowledge."""
 
     @property
     def share(self) -> FloatArray:
         """Shape (8,). Half-width of each 95 % interval as a share of its tolerance; infinite when unknown."""
         known = np.isfinite(self.belief.std) & np.isfinite(self.belief.theta)
+        known &= [name not in self.not_identifiable for name in PARAMETERS]
         return np.where(known, Z95 * np.where(known, self.belief.std, 0.0) / self.tolerance, np.inf)
 
     @property
@@ -75,5 +78,17 @@ def knowledge(estimates: Sequence[Estimate], plan: CampaignPlan) -> Knowledge:
         distance, dof = disagreement(before.shared, widened(beliefs[-1], excess).shared)
         surprise = distance / float(chdtri(dof, SURPRISING)) if dof else float("nan")
         predicted = surprise < 1.0
-    first = next(e for i, e in enumerate(estimates) if i not in left_out)
-    return Knowledge(belief, tolerances(belief.theta, first, plan), predicted, surprise, widening, left_out)
+    agreeing = [e for i, e in enumerate(estimates) if i not in left_out]
+    return Knowledge(
+        belief,
+        tolerances(belief.theta, agreeing[0], plan),
+        predicted,
+        surprise,
+        widening,
+        left_out,
+        {
+            name: reason
+            for name, reason in agreeing[-1].not_identifiable.items()
+            if all(name in e.not_identifiable for e in agreeing)
+        },
+    )

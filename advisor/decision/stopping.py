@@ -114,7 +114,8 @@ def _information_sentence(known: Knowledge | None, stop: bool) -> str:
             "manoeuvre was predicted."
         )
     if np.isinf(known.percent):
-        return f"CONTINUE: {known.holding_back} cannot be estimated from these manoeuvres."
+        reason = known.not_identifiable.get(known.holding_back, "cannot be estimated from these manoeuvres")
+        return f"CONTINUE: {known.holding_back} {reason.removesuffix('.')}."
     if known.percent >= INFORMATION_LIMIT_PERCENT:
         return (
             f"CONTINUE: the error of {known.holding_back} is {known.percent / 100.0:.1f} times its tolerance."

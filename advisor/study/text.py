@@ -91,8 +91,8 @@ def flaws(found: Flaws) -> list[str]:
         f"  separate computation rejects {found.thrown_away_percent:.0f} % of equally good manoeuvres: a new "
         "cost is as likely above the median of the earlier ones as below.",
         f"  a parameter near zero keeps Eq. (12) from falling: with Z_q = 0 and {NOISE_PERCENT:g} % noise, "
-        f"{found.near_zero_never_percent:.0f} % of {found.near_zero_campaigns} campaigns never end; the rule information "
-        f"ends them after {_count(found.near_zero_information)} (median).",
+        f"{found.near_zero_never_percent:.0f} % of {found.near_zero_campaigns} campaigns never end; the rule "
+        f"information ends them after {_count(found.near_zero_information)} (median).",
         "",
     ]
 

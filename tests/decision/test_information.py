@@ -108,3 +108,11 @@ def test_a_bolder_manoeuvre_does_not_move_the_goal() -> None:
     alone, both = knowledge([gentle], PLAN), knowledge([gentle, bold], PLAN)
     assert both.tolerance[2] == pytest.approx(alone.tolerance[2])
     assert both.percent < alone.percent
+
+
+def test_a_small_error_of_what_no_manoeuvre_could_tell_is_no_knowledge() -> None:
+    blind = replace(estimate(), not_identifiable={"M_alpha": "not identifiable while the servo is unknown"})
+    verdict = flight_test([Flown(blind)] * 3, PLAN)
+    assert verdict.decision == "continue"
+    assert verdict.sentence == "CONTINUE: M_alpha not identifiable while the servo is unknown."
+    assert flight_test([Flown(blind), Flown(estimate()), Flown(estimate())], PLAN).decision == "stop"
