@@ -24,6 +24,9 @@ from advisor.oem.estimator import estimate_jointly
 from advisor.problems import Problem
 
 _PLAUSIBLE_RAD_S = (0.5, 40.0)
+_EXPLAINED = 0.5
+_KNOWN_SHARE = 0.3
+_LEAST_EFFECT = 0.02  # of M_delta_e beside the square of the natural frequency
 _DERIVED_RENEWAL_HZ = 20.0  # ArduPilot refreshes AOA_SSA no faster; on the ground its value stands still
 
 
@@ -106,21 +109,20 @@ class Examiner:
     def _belief(self) -> Belief:
         """The aircraft and its noise as far as they are known: the file's model, else what was flown."""
         flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
+        if not isinstance(flown, Estimate) or not _believable(flown):
+            flown = None
         noise, colour = dict(NOISE), np.ones(len(PARAMETERS))
-        if isinstance(flown, Estimate):
+        if flown is not None:
             noise |= {name: fit.noise for name, fit in flown.fits[0].items()}
             colour = np.maximum(1.0, flown.std / flown.std_cr)
         if {"Z_alpha", "M_alpha", "M_q", "M_delta_e"} <= self._aircraft.model.keys():
             model = ShortPeriod.from_mapping(self._aircraft.model)
             return Belief(model, noise, "the model in the aircraft file", colour)
-        if isinstance(flown, Estimate):
-            model = ShortPeriod(flown.theta)
-            if _PLAUSIBLE_RAD_S[0] < frequency(model) < _PLAUSIBLE_RAD_S[1]:
-                source = f"an estimate from the {len(self._maneuvers)} manoeuvres flown"
-                return Belief(model, noise, source, colour)
-        return Belief(
-            TYPICAL, noise, "a typical aircraft of 10 kg (yours: model in the aircraft file)", colour
-        )
+        if flown is not None:
+            number = len(self._maneuvers)
+            source = f"an estimate from {number} manoeuvre{'s' if number > 1 else ''} flown"
+            return Belief(ShortPeriod(flown.theta), noise, source, colour)
+        return Belief(TYPICAL, noise, "a typical aircraft of 10 kg (yours: model in the aircraft file)")
 
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
         """The channels that identification lives on, with the messages that pace them."""
@@ -176,6 +178,17 @@ class Examiner:
             cost = cost_of_missing("a_z", paced, belief, speed)
             return [Limit("no_accelerometer", text, fix, std_ratio=cost)]
         return []
+
+
+def _believable(flown: Estimate) -> bool:
+    """Whether an estimate may stand for the aircraft: it explains the motion, and knows pace and effect."""
+    low, high = _PLAUSIBLE_RAD_S
+    pace = frequency(ShortPeriod(flown.theta))
+    moved = low < pace < high and abs(flown.value("M_delta_e")) > _LEAST_EFFECT * pace**2
+    explained = all(fit[name].r2 > _EXPLAINED for fit in flown.fits for name in ("alpha", "q"))
+    known = [PARAMETERS.index(name) for name in ("M_alpha", "M_delta_e")]
+    sharp = bool(np.all(flown.std[known] < _KNOWN_SHARE * np.abs(flown.theta[known])))
+    return moved and explained and sharp and not {"M_alpha", "M_delta_e"} & flown.not_identifiable.keys()
 
 
 def _stopping(problem: Problem) -> Limit:

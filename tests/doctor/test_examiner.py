@@ -199,6 +199,19 @@ def test_a_recorded_flight_at_default_rates_is_not_usable() -> None:
     assert found.expectation is not None
 
 
+def test_a_model_is_believed_only_when_the_motion_bears_it_out() -> None:
+    """Elevator steps, but alpha and pitch rate that have nothing to do with them."""
+    columns = flight(seconds=60.0)
+    servo = next(part for part in columns if part.name == "SERVO_OUTPUT_RAW")
+    t = servo.fields["time_usec"] * 1e-6
+    for begin, end, pulse in ((20.0, 21.2, 1450), (21.2, 22.0, 1550), (22.0, 22.4, 1450), (22.4, 22.8, 1550)):
+        servo.fields["servo2_raw"][(t >= begin) & (t < end)] = pulse
+    found = examined(columns)
+    assert "a typical aircraft" in found.belief.source
+    assert found.expectation is not None
+    assert found.expectation.amplitude_deg < 25.0
+
+
 def test_the_document_keeps_the_contract() -> None:
     document = doctor_document(examined_log("arduplane-calm.tlog"))
     assert document["schema"] == "advisor.doctor/1"
