@@ -31,6 +31,7 @@ PROMISING = 1.0
 LARGEST_MEMORY = 0.9995
 SMALLEST_SHARE = 1e-4
 LOG_SMALLEST_SHARE = math.log(SMALLEST_SHARE)
+_NEARLY_ONE = 1.0 - 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +139,8 @@ def _bounded(x: FloatArray) -> tuple[float, float]:
 
 
 def _unbounded(memory: float, share: float) -> FloatArray:
-    return np.array([np.arctanh(memory / LARGEST_MEMORY), np.log(max(share, SMALLEST_SHARE))])
+    inside = float(np.clip(memory / LARGEST_MEMORY, -_NEARLY_ONE, _NEARLY_ONE))
+    return np.array([np.arctanh(inside), np.log(max(share, SMALLEST_SHARE))])
 
 
 def _simplex(x: FloatArray) -> FloatArray:
