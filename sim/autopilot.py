@@ -92,7 +92,7 @@ class Autopilot:
         self._damping = 0.2 * model.frequency() / power
         self._settled_elevator = trim.elevator
         self._settled_throttle = trim.throttle
-        self._integral = 0.0
+        self._integral = self._power = 0.0
 
     def current(self, time_s: float) -> Planned | None:
         """The manoeuvre being flown at ``time_s``, from the change to MANUAL to that back."""
@@ -128,7 +128,7 @@ class Autopilot:
         swing = elevator_input("doublet", 1.0, planned.input.duration_s / 7.0).pull(since)
         throttle = self._settled_throttle + (maneuver.throttle_change if since >= -1e-9 else 0.0)
         return Demand(
-            self._settled_elevator - planned.input.pull(since),
+            self._settled_elevator - planned.input.pull(since) - math.radians(maneuver.trim_off_deg),
             min(max(throttle, 0.0), 1.0),
             min(max(aileron + maneuver.aileron * swing, -1.0), 1.0),
             maneuver.rudder * swing,
@@ -143,7 +143,9 @@ class Autopilot:
         off = motion.theta - self._start.theta - climb
         self._integral = min(max(self._integral + 0.1 * off * period_s, -0.2), 0.2)
         elevator = self._trim.elevator + self._stiffness * (off + self._integral) + self._damping * motion.q
-        throttle = min(max(self._trim.throttle + 0.08 * (airspeed - motion.airspeed), 0.0), 1.0)
+        slow = airspeed - motion.airspeed
+        self._power = min(max(self._power + 0.03 * slow * period_s, -0.5), 0.5)
+        throttle = min(max(self._trim.throttle + 0.1 * slow + self._power, 0.0), 1.0)
         share = period_s / 1.0
         self._settled_elevator += share * (elevator - self._settled_elevator)
         self._settled_throttle += share * (throttle - self._settled_throttle)

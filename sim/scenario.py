@@ -32,7 +32,9 @@ class Maneuver:
     height_m: float | None = None
     """Flown at this height above ground instead of the scenario's."""
     throttle_change: float = 0.0
-    """Throttle moved by this share with the first step: the airspeed changes."""
+    """Throttle moved by this share with the first step."""
+    trim_off_deg: float = 0.0
+    """Elevator pulled off its trim by so much while in MANUAL: the airspeed runs away."""
     aileron: float = 0.0
     """Amplitude (0..1) of an aileron doublet flown with it."""
     rudder: float = 0.0
