@@ -43,6 +43,16 @@ class Influence:
     """Parameters that lie in a direction about which the data say nothing at all."""
 
 
+@dataclass(frozen=True, slots=True)
+class Coloured:
+    """What is known of the noise after a fit."""
+
+    colours: Mapping[str, Colour]
+    """Output name to the colour of its noise."""
+    widening: FloatArray
+    """(8 + k,) factor on each standard deviation for not knowing the colours exactly."""
+
+
 def influence(
     assembly: Assembly, g: FloatArray, noise: FloatArray, extra: FloatArray | None = None
 ) -> Influence | None:
@@ -130,8 +140,8 @@ def coloured(
     rows: FloatArray,
     residual: FloatArray,
     g: FloatArray,
-    known: Mapping[str, Colour] | None = None,
-) -> tuple[FloatArray, dict[str, Colour]]:
+    known: Coloured | None = None,
+) -> tuple[FloatArray, Coloured]:
     """AᵀΓA, shape (8 + k, 8 + k), with the colour of each output pooled over the manoeuvres.
 
     The colour is itself an estimate. Its uncertainty is carried to each variance (Satterthwaite's
@@ -140,7 +150,7 @@ def coloured(
 
     Parameters
     ----------
-    known : colours found a moment ago, to be used again.
+    known : what was found a moment ago, to be used again.
     """
     width = rows.shape[1]
     total = np.zeros((width, width))
@@ -150,16 +160,16 @@ def coloured(
         stretches = [named[output] for named in assembly.rows if output in named]
         if not stretches:
             continue
-        if known is not None and output in known:
-            colour = known[output]
-        else:
-            colour = find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
-        colours[output] = colour
 
-        def part(changed: Colour, stretches: list[slice] = stretches) -> FloatArray:
-            summed: FloatArray = np.sum([product(rows[s], changed) for s in stretches], axis=0)
+        def part(colour: Colour, stretches: list[slice] = stretches) -> FloatArray:
+            summed: FloatArray = np.sum([product(rows[s], colour) for s in stretches], axis=0)
             return summed
 
+        if known is not None:
+            total += part(known.colours[output])
+            continue
+        colour = find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
+        colours[output] = colour
         own = part(colour)
         total += own
         slopes = np.zeros((len(colour.uncertainty), width))
@@ -169,10 +179,15 @@ def coloured(
             step[i] = DIFFERENCE
             slopes[i] = np.diag(part(moved(colour, step)) - part(moved(colour, -step))) / (2.0 * DIFFERENCE)
         spread += np.einsum("ij,ik,kj->j", slopes, colour.uncertainty, slopes)
-    variance = np.diag(total)
-    with_spread = spread > 0.0
-    freedom = np.full(width, np.inf)
-    freedom[with_spread] = np.maximum(2.0 * variance[with_spread] ** 2 / spread[with_spread], LEAST_FREEDOM)
-    widening = stdtrit(np.minimum(freedom, 1e9), 0.975) / GAUSS_975
-    widened: FloatArray = total * np.outer(widening, widening)
-    return widened, colours
+    found = known or Coloured(colours, _widening(np.diag(total), spread))
+    widened: FloatArray = total * np.outer(found.widening, found.widening)
+    return widened, found
+
+
+def _widening(variance: FloatArray, spread: FloatArray) -> FloatArray:
+    """Student's over Gauss's 97.5 % point, for variances whose own variance is ``spread``."""
+    freedom = np.full(len(variance), 1e9)
+    uncertain = spread > 0.0
+    freedom[uncertain] = np.maximum(2.0 * variance[uncertain] ** 2 / spread[uncertain], LEAST_FREEDOM)
+    widening: FloatArray = np.asarray(stdtrit(freedom, 0.975) / GAUSS_975, np.float64)
+    return widening

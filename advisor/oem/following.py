@@ -12,8 +12,11 @@ from advisor.oem.estimator import report
 from advisor.oem.prepare import prepare
 from advisor.oem.solution import Solution, solve
 
-COLOUR_EVERY = 50
+COLOUR_EVERY = 100
 """Refreshes between two fits of the noise's colour."""
+
+CLOSE_ENOUGH = 1e-6
+"""Promised change of log J per sample at which a refresh is done: thousandths of a standard deviation."""
 
 
 class Follower:
@@ -39,7 +42,8 @@ class Follower:
             solution = solve(
                 prepared.problem,
                 begin=(last.optimum.shared, last.optimum.local),
-                colours=last.colours if self._age % COLOUR_EVERY else None,
+                flat=CLOSE_ENOUGH,
+                noise=last.noise if self._age % COLOUR_EVERY else None,
             )
         self._age += 1
         self._last = solution if isinstance(solution, Solution) else None

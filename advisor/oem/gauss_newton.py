@@ -230,6 +230,7 @@ def descend(
     floor: FloatArray,
     shared: FloatArray,
     local: FloatArray,
+    flat: float = FLAT,
 ) -> Optimum:
     """Minimise Σ n_c·log σ_c² from a start. Shapes as in ``Assembly``; ``floor`` (4,) of σ."""
     shared, local = shared.copy(), local.copy()
@@ -255,7 +256,7 @@ def descend(
                     if trial_cost <= cost:
                         accepted = True
                         break
-                if promise < FLAT * len(z):
+                if promise < flat * len(z):
                     return Optimum(CONVERGED, shared, local, noise, cost, iteration)
             damping = max(1e-4, 8.0 * damping)
         if not accepted:
@@ -264,7 +265,7 @@ def descend(
         shared, local, noise, cost = trial, trial_local, trial_noise, trial_cost
         y, y_trial = y_trial, y
         g, g_trial = g_trial, g
-        if promise < FLAT * len(z) and damping < 1e-2:
+        if promise < flat * len(z) and damping < 1e-2:
             status = CONVERGED
             break
         damping = 0.0 if damping < 1e-3 else damping / 8.0

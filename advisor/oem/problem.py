@@ -107,7 +107,7 @@ def assemble(problem: Problem) -> Assembly:
             row[OUTPUTS.index(name), at] = np.arange(n, n + len(signal.t))
             n += len(signal.t)
     steps = np.concatenate([piece.steps for piece in pieces])
-    kinds, kind = np.unique(steps, axis=0, return_inverse=True)
+    kinds, kind = _kinds(steps)
 
     def joined(name: str) -> FloatArray:
         return np.concatenate([getattr(piece, name) for piece in pieces])
@@ -115,7 +115,7 @@ def assemble(problem: Problem) -> Assembly:
     speed = joined("airspeed")
     grid = Grid(
         first=first.astype(np.int64),
-        kind=kind.ravel().astype(np.int64),
+        kind=kind,
         step_s=np.ascontiguousarray(kinds[:, 0]),
         ratio=np.ascontiguousarray(kinds[:, 1]),
         elevator=joined("elevator"),
@@ -140,6 +140,17 @@ def assemble(problem: Problem) -> Assembly:
         owner=np.repeat([m for m, _, _ in signals], sizes),
         free=_free(measured, problem.airspeed_may_be_off and "a_z" in measured),
     )
+
+
+def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
+    """Different steps (U, 2) and which of them each (E, 2) is: equal ones share their matrices.
+
+    Where the speed moves hardly two are equal, so none is looked for.
+    """
+    if np.any(steps[:, 1] != 1.0):
+        return steps, np.arange(len(steps), dtype=np.int64)
+    lengths, kind = np.unique(steps[:, 0], return_inverse=True)
+    return np.column_stack([lengths, np.ones(len(lengths))]), kind.astype(np.int64)
 
 
 def _free(measured: set[str], scaled: bool) -> Index:

@@ -1,6 +1,5 @@
 """Solving a problem: start, descent, errors, what is identifiable."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -8,10 +7,9 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
-from advisor.oem.colour import Colour
-from advisor.oem.covariance import REPORTED, Influence, coloured, cramer_rao, influence
+from advisor.oem.covariance import REPORTED, Coloured, Influence, coloured, cramer_rao, influence
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.gauss_newton import CONVERGED, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend, weigh
+from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend, weigh
 from advisor.oem.problem import Assembly, Problem, assemble
 from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
@@ -40,8 +38,8 @@ class Solution:
     """(8 + k, 8 + k) Cramér-Rao bound; beyond the eight stand the k extra parameters."""
     covariance: FloatArray
     """(8 + k, 8 + k) corrected for coloured residuals."""
-    colours: Mapping[str, Colour]
-    """Output name to the colour of its noise."""
+    noise: Coloured
+    """Colour of each output's noise."""
 
     @property
     def residual(self) -> FloatArray:
@@ -59,7 +57,8 @@ def solve(
     *,
     method: Method = "gauss-newton",
     begin: tuple[FloatArray, FloatArray] | None = None,
-    colours: Mapping[str, Colour] | None = None,
+    noise: Coloured | None = None,
+    flat: float = FLAT,
 ) -> Solution | NoEstimate:
     """Estimate the parameters of a problem.
 
@@ -67,9 +66,10 @@ def solve(
     ----------
     begin : shared (7,) and local (m, 7) parameters to start from, e.g. of an earlier, shorter
         solution; by default the regression of ``start``.
-    colours : colours of the noise found a moment ago, to be used again instead of fitted.
+    noise : what was found of the noise a moment ago, to be used again instead of fitted.
+    flat : promised change of log J per sample at which Gauss-Newton stops.
     """
-    assembly, optimum = search(problem, method=method, begin=begin)
+    assembly, optimum = search(problem, method=method, begin=begin, flat=flat)
     if optimum.status == OVERFLOW:
         return NoEstimate(
             "diverged", "The model runs away from its first guess: the record is too long or too noisy."
@@ -82,7 +82,7 @@ def solve(
             " values far apart explain this record equally well."
         )
         return NoEstimate("not_converged", text)
-    return evaluate(problem, assembly, optimum, colours=colours)
+    return evaluate(problem, assembly, optimum, noise=noise)
 
 
 def search(
@@ -90,23 +90,17 @@ def search(
     *,
     method: Method = "gauss-newton",
     begin: tuple[FloatArray, FloatArray] | None = None,
+    flat: float = FLAT,
 ) -> tuple[Assembly, Optimum]:
     """Only the optimum of a problem, whatever became of it; arguments as in ``solve``."""
     assembly = assemble(problem)
     floor = noise_floor(assembly)
-    descent = descend if method == "gauss-newton" else descend_by_simplex
+    data = (assembly.grid, assembly.z, assembly.channel, assembly.owner, assembly.free, floor)
 
     def from_(shared: FloatArray, local: FloatArray) -> Optimum:
-        return descent(
-            assembly.grid,
-            assembly.z,
-            assembly.channel,
-            assembly.owner,
-            assembly.free,
-            floor,
-            shared,
-            local,
-        )
+        if method == "nelder-mead":
+            return descend_by_simplex(*data, shared, local)
+        return descend(*data, shared, local, flat)
 
     optimum = from_(*(start(problem) if begin is None else begin))
     if begin is None and (optimum.status != CONVERGED or optimum.iterations > HEALTHY_ITERATIONS):
@@ -121,15 +115,15 @@ def evaluate(
     assembly: Assembly,
     optimum: Optimum,
     extra: FloatArray | None = None,
-    colours: Mapping[str, Colour] | None = None,
+    noise: Coloured | None = None,
 ) -> Solution | NoEstimate:
-    """Errors of an optimum; ``extra`` as in ``covariance.influence``, ``colours`` as in ``solve``."""
+    """Errors of an optimum; ``extra`` as in ``covariance.influence``, ``noise`` as in ``solve``."""
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     respond(assembly.grid, optimum.shared, optimum.local, y, g)
     effect = influence(assembly, g, optimum.noise, extra)
     if effect is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
-    corrected, found = coloured(assembly, effect.rows, assembly.z - y, g, colours)
+    corrected, found = coloured(assembly, effect.rows, assembly.z - y, g, noise)
     return Solution(
         problem=problem,
         assembly=assembly,
@@ -140,7 +134,7 @@ def evaluate(
         theta=reported(optimum.shared, optimum.local),
         covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise),
         covariance=corrected,
-        colours=found,
+        noise=found,
     )
 
 

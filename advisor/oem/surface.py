@@ -5,7 +5,7 @@
 A command that is linear between its stamps drives the lag to
 δ(t + h) = u₁ - τ·u̇ + (δ(t) - u₀ + τ·u̇)·exp(-h/τ), so the surface is known without error at
 every stamp of the grid; between two stamps it is taken as linear, on a grid fine enough that this costs
-less than 0.1 % of a step's height at a lag of 0.1 s.
+about 0.1 % of a step's height at a lag of 0.1 s.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 
-LONGEST_STEP_S = 0.008
+LONGEST_STEP_S = 0.0105
 
 
 @dataclass(frozen=True, slots=True)
