@@ -6,7 +6,7 @@ from typing import Literal
 
 from advisor.problems import ConfigurationError
 
-Kind = Literal["udpin", "udpout", "tcp", "tcpin", "serial", "pymavlink"]
+Kind = Literal["udpin", "udpout", "tcp", "tcpin", "unix", "serial", "pymavlink"]
 
 DEFAULT_BAUD = 57600  # telemetry radios and ArduPilot's TELEM1 come set to it
 
@@ -18,7 +18,7 @@ _NETWORK_KINDS: dict[str, Kind] = {
     "tcpout": "tcp",
     "tcpin": "tcpin",
 }
-_LEFT_TO_PYMAVLINK = ("udpbcast", "mcast", "uds", "unix", "ws", "wss", "wsserver")
+_LEFT_TO_PYMAVLINK = ("udpbcast", "mcast", "ws", "wss", "wsserver")
 _EXAMPLES = "udpin:0.0.0.0:14550, udpout:host:14550, tcp:host:5760, tcpin:0.0.0.0:5760 or /dev/ttyUSB0,57600"
 
 
@@ -28,7 +28,7 @@ class Address:
 
     kind: Kind
     host: str
-    """Host to listen on or to call; the device of a serial line; empty: every interface."""
+    """Host to listen on or to call, empty: every interface; device of a line, path of a local socket."""
     port: int
     """Network port; the baud rate of a serial line."""
     text: str
@@ -63,6 +63,8 @@ def parse_connection(text: str) -> Address:
     scheme = scheme.lower()
     if colon and scheme in _NETWORK_KINDS:
         return _network(_NETWORK_KINDS[scheme], rest, text)
+    if scheme in ("uds", "unix") and rest:
+        return Address("unix", rest, 0, text)
     if colon and scheme in _LEFT_TO_PYMAVLINK:
         return Address("pymavlink", rest, 0, text)
     if colon and scheme in ("serial", "serial_flowcontrol"):

@@ -113,8 +113,8 @@ class UdpTransport(Transport):
         return int(self._socket.getsockname()[1])
 
 
-class TcpTransport(Transport):
-    """TCP, calling (``tcp``) or waiting for one caller after the other (``tcpin``)."""
+class StreamTransport(Transport):
+    """TCP, calling (``tcp``) or waiting for one caller after the other (``tcpin``); a local socket."""
 
     def __init__(self, address: Address, timeout_s: float = 2.0) -> None:
         self._listener: socket.socket | None = None
@@ -122,12 +122,21 @@ class TcpTransport(Transport):
         if address.kind == "tcpin":
             self._listener = socket.create_server((address.host, address.port), reuse_port=False)
             self._listener.setblocking(False)
+        elif address.kind == "unix":
+            stream = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+            try:
+                stream.connect(address.host)
+            except OSError:
+                stream.close()
+                raise
+            self._adopt(stream)
         else:
             self._adopt(socket.create_connection((address.host, address.port), timeout=timeout_s))
 
     def _adopt(self, stream: socket.socket) -> None:
         stream.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
-        stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if stream.family != socket.AF_UNIX:
+            stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         stream.setblocking(False)
         self._stream = stream
 
@@ -179,7 +188,7 @@ class TcpTransport(Transport):
     def port(self) -> int | None:
         """The local port."""
         end = self._listener or self._stream
-        return None if end is None else int(end.getsockname()[1])
+        return None if end is None or end.family == socket.AF_UNIX else int(end.getsockname()[1])
 
 
 class SerialTransport(Transport):
@@ -217,12 +226,13 @@ class SerialTransport(Transport):
 
 
 class PymavlinkTransport(Transport):
-    """The rarer kinds (multicast, broadcast, web sockets, local sockets), opened by pymavlink, read raw."""
+    """The rarer kinds (multicast, broadcast, web sockets), opened by pymavlink, read raw."""
 
     def __init__(self, address: Address) -> None:
         from pymavlink import mavutil
 
         self._connection = mavutil.mavlink_connection(address.text)
+        self._may_end = address.text.startswith("ws")
 
     def wait(self, timeout_s: float) -> bool:
         """Whether bytes are there."""
@@ -231,6 +241,8 @@ class PymavlinkTransport(Transport):
     def receive(self) -> list[tuple[Peer, bytes]]:
         """Everything that has arrived."""
         data = bytes(self._connection.recv(_CHUNK))
+        if not data and self._may_end:
+            raise ConnectionCutError("closed by the other side")
         return [((), data)] if data else []
 
     def send(self, data: bytes, to: Peer | None) -> bool:
@@ -255,8 +267,8 @@ def open_transport(address: Address) -> Transport:
     match address.kind:
         case "udpin" | "udpout":
             return UdpTransport(address)
-        case "tcp" | "tcpin":
-            return TcpTransport(address)
+        case "tcp" | "tcpin" | "unix":
+            return StreamTransport(address)
         case "serial":
             return SerialTransport(address)
         case "pymavlink":

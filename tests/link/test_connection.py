@@ -28,6 +28,7 @@ from advisor.problems import ConfigurationError
         ("serial:///dev/ttyUSB0:57600", "serial", "/dev/ttyUSB0", 57600),
         ("serial://COM3:9600", "serial", "COM3", 9600),
         ("mcast:", "pymavlink", "", 0),
+        ("uds:/run/mavlink.sock", "unix", "/run/mavlink.sock", 0),
     ],
 )
 def test_every_spelling_of_pymavlink_and_mavsdk_is_understood(

@@ -142,24 +142,43 @@ def test_a_waiting_tcp_link_takes_one_caller_after_the_other() -> None:
         assert link.statistics.reconnects == 1
 
 
-def test_a_serial_line_is_read_and_its_cable_may_be_pulled() -> None:
-    far, near = pty.openpty()
-    try:
-        with Link(f"{os.ttyname(near)},57600") as link:
-            sender = Sender()
-            os.write(far, b"\x00\x01boot noise" + sender.pack(heartbeat()) + sender.pack(attitude(60)))
-            wait_until(lambda: stamps(link.read()) == [60.0])
-            assert link.statistics.garbage_bytes == 12
-            os.close(near)
-            os.close(far)
-            wait_until(lambda: not link.statistics.connected)
-            assert "connection lost" in notices(link)
-    finally:
-        for end in (far, near):
-            try:
-                os.close(end)
-            except OSError:
-                continue
+def test_a_serial_line_is_read_and_its_cable_may_be_pulled_and_plugged_in_again(tmp_path: Path) -> None:
+    device = tmp_path / "ttyUSB0"
+
+    def plug_in() -> tuple[int, int]:
+        far, near = pty.openpty()
+        device.unlink(missing_ok=True)
+        device.symlink_to(os.ttyname(near))
+        return far, near
+
+    far, near = plug_in()
+    sender = Sender()
+    with Link(f"serial://{device}:57600") as link:
+        os.write(far, b"\x00\x01boot noise" + sender.pack(heartbeat()) + sender.pack(attitude(60)))
+        wait_until(lambda: stamps(link.read()) == [60.0])
+        assert link.statistics.garbage_bytes == 12
+        os.close(near)
+        os.close(far)
+        wait_until(lambda: not link.statistics.connected)
+        assert "connection lost" in notices(link)
+        far, near = plug_in()
+        wait_until(lambda: link.statistics.connected)
+        os.write(far, sender.pack(attitude(9000)))
+        wait_until(lambda: stamps(link.read()) == [9000.0])
+        assert "reconnected after" in notices(link)
+    os.close(near)
+    os.close(far)
+
+
+def test_a_local_socket_is_a_link_too(tmp_path: Path) -> None:
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(tmp_path / "mavlink.sock"))
+        server.listen(1)
+        with Link(f"uds:{tmp_path / 'mavlink.sock'}") as link:
+            caller, _ = server.accept()
+            with caller:
+                caller.sendall(Sender().pack(heartbeat()) + Sender().pack(attitude(40)))
+                wait_until(lambda: stamps(link.read()) == [40.0])
 
 
 def test_silence_is_told_once_and_so_is_its_end(
