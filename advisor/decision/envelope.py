@@ -50,14 +50,13 @@ def incomplete(maneuver: Maneuver, period_s: float) -> list[Reason]:
 
 
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    """Bank, saturation, angle of attack, throttle, other controls; then air speed, which follows."""
+    """Bank, saturation, angle of attack, throttle, other controls."""
     return [
         *_bank(maneuver, aircraft.limits.bank_deg),
         *_saturation(maneuver, aircraft),
         *_alpha(maneuver, aircraft.limits.alpha_deg),
         *_throttle(maneuver),
         *_other_controls(maneuver),
-        *_airspeed(maneuver, aircraft.limits.airspeed_change_percent),
     ]
 
 
@@ -126,7 +125,9 @@ def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:
     ]
 
 
-def _airspeed(maneuver: Maneuver, limit: float) -> list[Reason]:
+def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
+    """Air speed away from where it was before the first step; often it follows from something else."""
+    limit = aircraft.limits.airspeed_change_percent
     channel = maneuver.channels.get("airspeed")
     if channel is None or len(channel) < 2 or not np.median(channel.y) > 0.0:
         return []

@@ -15,9 +15,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.decision.envelope import flown, incomplete, outside, too_quick
+from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+from advisor.flight.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.oem.identifiability import natural_size
 
@@ -49,18 +51,16 @@ def judge_quality(
         Its limits and calibration.
     """
     period_s = natural_period(maneuver, estimate)
-    reasons = [*incomplete(maneuver, period_s), *outside(maneuver, aircraft), *too_quick(maneuver, period_s)]
+    reasons = [*incomplete(maneuver, period_s), *outside(maneuver, aircraft)]
     if any(reason.code == "missing" for reason in reasons):
         return tuple(reasons)
-    if isinstance(estimate, NoEstimate):
-        return (*reasons, *_too_gentle(maneuver, {}))
-    fits = estimate.fits[0]
-    rough = _rough_air(maneuver, fits["q"])
-    badly = [] if rough else _badly_explained(fits)
-    reasons += [*_too_gentle(maneuver, fits), *rough, *badly]
-    if not rough and not badly:
-        reasons += _poor(maneuver, estimate, reasons)
-    return tuple(reasons)
+    fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
+    rough = _rough_air(maneuver, fits)
+    reasons += [*rough, *changed_speed(maneuver, aircraft), *too_quick(maneuver, period_s)]
+    reasons += _too_gentle(maneuver, fits)
+    if isinstance(estimate, NoEstimate) or rough:
+        return tuple(reasons)
+    return (*reasons, *(_badly_explained(fits) or _poor(maneuver, estimate, reasons)))
 
 
 def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
@@ -99,14 +99,19 @@ def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reas
     return [Reason("amplitude", text, peak, limit)]
 
 
-def _rough_air(maneuver: Maneuver, fit: ChannelFit) -> list[Reason]:
+def _rough_air(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reason]:
     """The aircraft moves although the elevator rests: before the first step, late in the free response."""
-    span = maneuver.span
-    rest = (fit.t < span.start_s) | (fit.t > 0.5 * (span.last_step_s + span.end_s))
-    if np.count_nonzero(rest) < 5:
+    span, q = maneuver.span, maneuver.channels["q"]
+    before = q.cut(span.record_from_s, span.start_s)
+    peak = max(_peak(maneuver, "q"), 1e-9)
+    if len(before) < 5 or _beyond_noise(_detrended(before), before.y) < 0.005 * LARGEST_UNREST_PERCENT * peak:
         return []
-    power = float(np.mean(fit.residual[rest] ** 2)) - _white(fit.residual) ** 2
-    unrest = 100.0 * math.sqrt(max(0.0, power)) / max(_peak(maneuver, "q"), 1e-9)
+    unexplained = _detrended(before)
+    if "q" in fits:
+        fit = fits["q"]
+        rest = (fit.t < span.start_s) | (fit.t > 0.5 * (span.last_step_s + span.end_s))
+        unexplained = fit.residual[rest]
+    unrest = 100.0 * _beyond_noise(unexplained, q.y) / peak
     if unrest <= LARGEST_UNREST_PERCENT:
         return []
     text = (
@@ -114,6 +119,17 @@ def _rough_air(maneuver: Maneuver, fit: ChannelFit) -> list[Reason]:
         f"(limit {LARGEST_UNREST_PERCENT:.0f}); fly it in calmer air"
     )
     return [Reason("turbulence", text, unrest, LARGEST_UNREST_PERCENT)]
+
+
+def _detrended(channel: Channel) -> FloatArray:
+    """Values less their straight line."""
+    t = channel.t - channel.t[0]
+    return channel.y - np.polyval(np.polyfit(t, channel.y, 1), t)
+
+
+def _beyond_noise(values: FloatArray, channel: FloatArray) -> float:
+    """Root mean square of what is more than the white noise of the channel."""
+    return math.sqrt(max(0.0, float(np.mean(values**2)) - _white(channel) ** 2))
 
 
 def _badly_explained(fits: Mapping[str, ChannelFit]) -> list[Reason]:
@@ -160,7 +176,7 @@ def _peak(maneuver: Maneuver, name: str) -> float:
     return float(np.ptp(y)) / 2.0 if len(y) else 0.0
 
 
-def _white(values: np.ndarray) -> float:
+def _white(values: FloatArray) -> float:
     """Standard deviation of the part that is new in every sample: from second differences."""
     if len(values) < 3:
         return 0.0

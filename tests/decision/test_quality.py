@@ -1,0 +1,179 @@
+"""Bad manoeuvres flown by the bundled aircraft: each rejected, its own reason first; good ones not."""
+
+from dataclasses import replace
+from functools import cache
+from io import BytesIO
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft, Elevator, Limits
+from advisor.decision.quality import judge_quality, natural_period
+from advisor.flight.events import ManeuverFlown
+from advisor.flight.stream import FlightStream
+from advisor.mavlink.frames import FrameScanner
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.estimator import estimate
+from advisor.oem.identifiability import natural_size
+from sim.effects.fitting import flight_of
+from sim.record import write_tlog
+from sim.scenario import Air, Maneuver, Noise, Scenario
+
+AIRCRAFT = Aircraft(elevator=Elevator(calibration=((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))))
+RATES = {
+    "ATTITUDE": 50.0,
+    "AOA_SSA": 50.0,
+    "SERVO_OUTPUT_RAW": 50.0,
+    "RAW_IMU": 50.0,
+    "VFR_HUD": 50.0,
+    "HEARTBEAT": 10.0,
+}
+
+
+def flown(scenario, aircraft=AIRCRAFT):
+    """(manoeuvre, its estimate, what speaks against it) for everything found in the flight."""
+    log = BytesIO()
+    write_tlog(flight_of(scenario), log)
+    stream = FlightStream(aircraft)
+    events = stream.feed(FrameScanner().feed(log.getvalue())) + stream.finish()
+    found = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+    estimates = [estimate(maneuver, aircraft) for maneuver in found]
+    return [(m, e, judge_quality(m, e, aircraft)) for m, e in zip(found, estimates, strict=True)]
+
+
+BAD_MANOEUVRES = {
+    "amplitude": Maneuver("3211", amplitude_deg=0.2),
+    "steps": Maneuver("3211", unit_s=0.08),
+    "bank": Maneuver("rev", bank_deg=45.0),
+    "throttle": Maneuver("3211", throttle_change=0.4),
+    "aileron": Maneuver("rev", aileron=0.3),
+    "rudder": Maneuver("3211", rudder=0.4),
+    "turbulence": Maneuver("3211", turbulence_m_s=2.0),
+    "gap": Maneuver("3211", outage_s=0.5),
+    "airspeed": Maneuver("rev", unit_s=1.2),
+    "saturation": Maneuver("3211", amplitude_deg=30.0, unit_s=0.2),
+}
+BAD_FLIGHTS = {
+    "rate": (Scenario(rates=RATES | {"AOA_SSA": 8.0}, maneuvers=(Maneuver("3211"),)), AIRCRAFT),
+    "alpha": (
+        Scenario(maneuvers=(Maneuver("3211"),)),
+        Aircraft(elevator=AIRCRAFT.elevator, limits=Limits(alpha_deg=4.0)),
+    ),
+    "amplitude": (Scenario(noise=Noise(percent=15.0), maneuvers=(Maneuver("3211"),)), AIRCRAFT),
+    "fit": (Scenario(effects={"transport_delay": {"delay_s": 0.3}}, maneuvers=(Maneuver("3211"),)), AIRCRAFT),
+}
+
+
+@cache
+def bad_flight():
+    return flown(Scenario(rates=RATES, maneuvers=(Maneuver("3211"), *BAD_MANOEUVRES.values())))
+
+
+@pytest.mark.parametrize("code", BAD_MANOEUVRES)
+def test_a_bad_manoeuvre_is_rejected_with_its_right_reason_first(code):
+    _, _, reasons = bad_flight()[1 + list(BAD_MANOEUVRES).index(code)]
+    assert reasons[0].code == code
+
+
+@pytest.mark.parametrize("code", BAD_FLIGHTS)
+def test_what_spoils_a_whole_flight_is_named_on_its_manoeuvres(code):
+    scenario, aircraft = BAD_FLIGHTS[code]
+    for _, _, reasons in flown(scenario, aircraft):
+        assert reasons[0].code == code
+
+
+def test_a_free_response_cut_short_is_named():
+    maneuver, _, _ = bad_flight()[0]
+    end_s = maneuver.span.last_step_s + 0.3
+    channels = {name: channel.cut(0.0, end_s) for name, channel in maneuver.channels.items()}
+    cut = replace(maneuver, span=replace(maneuver.span, end_s=end_s), channels=channels)
+    (reason,) = judge_quality(cut, estimate(cut, AIRCRAFT), AIRCRAFT)
+    assert reason.code == "free_response"
+
+
+@pytest.mark.parametrize(("kind", "cure"), [("3-2-1-1", "1.7 times the stick"), ("pulse", "fly a 3-2-1-1")])
+def test_a_derivative_known_too_badly_is_named_with_the_cure_for_this_input(kind, cure):
+    maneuver, estimated, _ = bad_flight()[0]
+    flown_as = replace(maneuver, span=replace(maneuver.span, kind=kind))
+    covariance = estimated.covariance.copy()
+    covariance[5, 5] = (0.18 * natural_size(estimated.theta)["M_alpha"]) ** 2
+    (reason,) = judge_quality(flown_as, replace(estimated, covariance=covariance), AIRCRAFT)
+    assert reason.code == "information"
+    assert (reason.value, reason.limit) == (pytest.approx(18.0), 12.0)
+    assert cure in reason.text
+
+
+def test_the_good_manoeuvre_among_bad_ones_is_accepted():
+    assert bad_flight()[0][2] == ()
+
+
+@pytest.mark.parametrize(
+    ("aircraft", "percent"), [("uav", 1.0), ("uav", 5.0), ("linear", 2.5), ("light", 5.0)]
+)
+def test_good_manoeuvres_are_not_rejected(aircraft, percent):
+    both = (Maneuver("3211"), Maneuver("rev"))
+    judged = flown(Scenario(aircraft=aircraft, seed=3, noise=Noise(percent=percent), maneuvers=both))
+    assert [reasons for _, _, reasons in judged] == [(), ()]
+
+
+def test_light_turbulence_is_lived_with():
+    judged = flown(Scenario(air=Air(turbulence_m_s=0.2), maneuvers=(Maneuver("3211"), Maneuver("rev"))))
+    assert [reasons for _, _, reasons in judged] == [(), ()]
+
+
+def test_every_reason_holds_a_number_beside_its_limit_and_says_what_to_do():
+    for _, _, reasons in bad_flight():
+        for reason in reasons:
+            assert np.isfinite([reason.value, reason.limit]).all()
+            assert ";" in reason.text
+            assert any(character.isdigit() for character in reason.text)
+
+
+def test_a_gentle_manoeuvre_is_told_how_much_more_stick_it_needs():
+    _, _, (reason, *_) = bad_flight()[1]
+    assert reason.text.startswith("too gentle, ")
+    assert "times the stick" in reason.text
+    assert reason.value < reason.limit
+
+
+def test_following_the_advice_on_amplitude_makes_the_manoeuvre_good():
+    _, _, (reason, *_) = bad_flight()[1]
+    factor = float(reason.text.split("about ")[1].split(" times")[0])
+    gentle = BAD_MANOEUVRES["amplitude"].amplitude_deg
+    again = flown(
+        Scenario(rates=RATES, maneuvers=(Maneuver("3211"), Maneuver("3211", amplitude_deg=factor * gentle)))
+    )
+    assert again[1][2] == ()
+
+
+def test_without_an_estimate_the_data_are_judged_all_the_same():
+    maneuver, _, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("bank")]
+    reasons = judge_quality(maneuver, NoEstimate("not_converged", "the fit did not converge"), AIRCRAFT)
+    assert reasons[0].code == "bank"
+
+
+def test_a_manoeuvre_without_angle_of_attack_says_so_and_nothing_else():
+    maneuver, estimated, _ = bad_flight()[0]
+    without = {name: channel for name, channel in maneuver.channels.items() if name != "alpha"}
+    (reason,) = judge_quality(replace(maneuver, channels=without), estimated, AIRCRAFT)
+    assert reason.code == "missing"
+
+
+def test_the_natural_period_is_that_of_the_aircraft_flown():
+    maneuver, estimated, _ = bad_flight()[0]
+    # Bundled UAV: natural frequency about 8.5 rad/s at its usual speed.
+    assert natural_period(maneuver, estimated) == pytest.approx(0.85, abs=0.1)
+    assert natural_period(maneuver, NoEstimate("x", "x")) == pytest.approx(0.75, abs=0.05)
+
+
+@pytest.mark.study
+def test_good_manoeuvres_are_rejected_in_at_most_two_percent_of_cases():
+    judged = [
+        reasons
+        for aircraft in ("uav", "linear", "light")
+        for percent in (1.0, 2.5, 5.0)
+        for seed in range(5)
+        for _, _, reasons in flown(Scenario(aircraft=aircraft, seed=seed, noise=Noise(percent=percent)))
+    ]
+    assert len(judged) == 9 * 5 * 7
+    assert np.mean([bool(reasons) for reasons in judged]) <= 0.02
