@@ -195,6 +195,12 @@ class Link:
         while True:
             try:
                 return open_transport(self.address)
+            except ImportError as error:
+                raise UnusableInputError(
+                    "no_connection",
+                    f"{self.address.text} needs the Python package {error.name}.",
+                    f"Install it with: pip install {error.name}",
+                ) from None
             except OSError as error:
                 if time.monotonic() >= give_up_s or self.address.kind.startswith(("udp", "tcpin")):
                     raise UnusableInputError(
