@@ -28,10 +28,15 @@ class Instruments:
 class Expectation:
     """What a manoeuvre would give."""
 
-    std: FloatArray
-    """(8,) Cramér-Rao bounds, order of ``PARAMETERS``."""
+    covariance: FloatArray
+    """(8, 8) Cramér-Rao bound, order of ``PARAMETERS``."""
     alpha_excursion: float
     """Largest deviation of α from where it began, rad."""
+
+    @property
+    def std(self) -> FloatArray:
+        """(8,) expected errors."""
+        return np.sqrt(np.diag(self.covariance))
 
 
 def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Expectation | None:
@@ -71,6 +76,6 @@ def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Exp
     effect = influence(assembly, g, noise)
     if effect is None:
         return None
-    variance = np.diag(cramer_rao(assembly, effect.rows, noise))
+    covariance = cramer_rao(assembly, effect.rows, noise)
     alpha = y[assembly.rows[0]["alpha"]]
-    return Expectation(np.sqrt(variance), float(np.max(np.abs(alpha - begin[0]))))
+    return Expectation(covariance, float(np.max(np.abs(alpha - begin[0]))))

@@ -4,11 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 
+from advisor.decision.foresight import Instruments, expect
 from advisor.flight.messages import FloatArray
 from advisor.oem.batch import Batch, solve_many
-from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
-from advisor.oem.problem import Problem, Record, Signal
-from advisor.oem.solution import solve
+from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.oem.problem import Signal
+from advisor.oem.surface import Servo
 from advisor.study.flying import Flight
 
 Advance = Callable[[int], None]
@@ -31,22 +32,23 @@ def estimate_copies(
         A copy could not be estimated.
     """
     z = flight.response + noise * rng.standard_normal((copies, *flight.response.shape))
-    elevator = Signal(flight.t, flight.elevator)
-    batch = solve_many(elevator, flight.t, z[:, :, 0], z[:, :, 1])
+    batch = solve_many(Signal(flight.t, flight.elevator), flight.t, z[:, :, 0], z[:, :, 1])
     if batch.failed:
         raise ArithmeticError(f"{batch.failed} of {copies} simulated manoeuvres could not be estimated")
-    correlation = _correlation(elevator, flight, z[0])
+    correlation = _correlation(flight, batch)
     return [_estimate(flight, z[i], batch, i, correlation) for i in range(copies)]
 
 
-def _correlation(elevator: Signal, flight: Flight, z: FloatArray) -> FloatArray:
+def _correlation(flight: Flight, batch: Batch) -> FloatArray:
     """(8, 8) correlation of the errors: a matter of the input, so that one copy speaks for all."""
-    outputs = {"alpha": Signal(flight.t, z[:, 0]), "q": Signal(flight.t, z[:, 1])}
-    solution = solve(Problem((Record(elevator, outputs),)))
-    if isinstance(solution, NoEstimate):
-        raise ArithmeticError(f"a simulated manoeuvre could not be estimated: {solution.text}")
-    std = np.sqrt(np.diag(solution.covariance_cr))
-    return np.asarray(solution.covariance_cr / np.outer(std, std))
+    step = float(flight.t[1] - flight.t[0])
+    noise = (float(batch.noise[0, 0]), float(batch.noise[0, 1]))
+    expected = expect(
+        batch.theta[0], Signal(flight.t, flight.elevator), Instruments((step, step), noise, Servo())
+    )
+    if expected is None:
+        raise ArithmeticError("this input cannot tell the parameters apart")
+    return np.asarray(expected.covariance / np.outer(expected.std, expected.std))
 
 
 def _estimate(flight: Flight, z: FloatArray, batch: Batch, i: int, correlation: FloatArray) -> Estimate:
