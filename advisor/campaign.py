@@ -1,5 +1,6 @@
 """The flight test as a pure state machine: columns of messages in, events and a state out."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -10,7 +11,14 @@ from advisor.decision.history import Flown
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.flight.events import FlightEvent, ManeuverFlown, Notice, Rebooted, VehicleFound
+from advisor.flight.events import (
+    FlightEvent,
+    ManeuverFlown,
+    ModeChanged,
+    Notice,
+    Rebooted,
+    VehicleFound,
+)
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
@@ -111,12 +119,13 @@ class Campaign:
 
     def mark(self, text: str) -> None:
         """Set a mark in the event log at the newest vehicle time."""
-        self._notices.append(f"mark at {self._stream.now_s:.1f} s: {text}")
+        self._log(f"mark: {text}", self._stream.now_s)
 
     def note(self, number: int, text: str) -> None:
         """Write a note beside a manoeuvre."""
         self._index(number)
         self._notes[number] = (*self._notes.get(number, ()), text)
+        self._log(f"note on manoeuvre {number}: {text}", self._stream.now_s)
         self._decide()
 
     def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
@@ -129,12 +138,17 @@ class Campaign:
                     self._history.append(assess(maneuver, self._aircraft))
                     self._decide()
                     told.append(ManeuverJudged(self._judged[-1], self._flight_test))
+                    ended_s = maneuver.span.end_s
+                    self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
+                    self._log(self._flight_test.sentence, ended_s)
+                case ModeChanged(mode, at_s):
+                    self._log(f"mode {mode}", at_s)
                 case Notice(_, text):
-                    self._notices.append(text)
+                    self._log(text)
                 case VehicleFound(vehicle):
-                    self._notices.append(f"following {vehicle}")
+                    self._log(f"following {vehicle}")
                 case Rebooted(boot):
-                    self._notices.append(f"the vehicle rebooted: flight {boot + 1} begins")
+                    self._log(f"the vehicle rebooted: flight {boot + 1} begins")
         if self._tell is not None:
             for happened in told:
                 self._tell(happened)
@@ -161,8 +175,11 @@ class Campaign:
         i = self._index(number)
         self._history[i] = replace(self._history[i], excluded_because=because)
         what = "included again" if because is None else f"excluded: {because}"
-        self._notices.append(f"manoeuvre {number} {what}")
+        self._log(f"manoeuvre {number} {what}", self._stream.now_s)
         self._decide()
+
+    def _log(self, text: str, at_s: float = math.nan) -> None:
+        self._notices.append(f"{at_s:.1f} s: {text}" if math.isfinite(at_s) else text)
 
     def _index(self, number: int) -> int:
         return [maneuver.number for maneuver in self._maneuvers].index(number)

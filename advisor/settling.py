@@ -8,7 +8,7 @@ import numpy as np
 from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
-from advisor.oem.estimator import estimate
+from advisor.oem.following import Follower
 
 SPAN_S = 0.5
 """The standard deviations are compared over this much further response."""
@@ -28,7 +28,7 @@ class Settling:
     """Estimates again whenever the manoeuvre being flown has grown."""
 
     def __init__(self, aircraft: Aircraft) -> None:
-        self._aircraft = aircraft
+        self._follower = Follower(aircraft)
         self._number: int | None = None
         self._newest_s = -np.inf
         self._stds: deque[tuple[float, np.ndarray]] = deque()
@@ -46,7 +46,7 @@ class Settling:
         if newest_s <= self._newest_s:
             return self._settled
         self._newest_s = newest_s
-        estimated = estimate(flying, self._aircraft)
+        estimated = self._follower.refresh(flying)
         if isinstance(estimated, Estimate):
             self._stds.append((newest_s, estimated.std_cr))
             self._settled = Settled(estimated, self._enough(newest_s))

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.xdist_group("links")
 
 def facts(state: CampaignState) -> list[object]:
     """Everything that was decided, with every number as it is."""
-    told: list[object] = [state.flight_test, state.estimate_from]
+    told: list[object] = [state.flight_test, state.estimate_from, state.channels]
     for judged in state.maneuvers:
         assert isinstance(judged.estimate, Estimate)
         told += [judged.verdict, judged.maneuver.span, judged.estimate.cost]

@@ -104,7 +104,7 @@ def _announcing(judged: Callable[[int, str, str | None], object]) -> Listener:
     def tell(event: object) -> None:
         if isinstance(event, ManeuverJudged):
             verdict = event.flight_test
-            stop = f"STOP TESTING: {verdict.sentence}" if verdict.decision == "stop" else None
+            stop = verdict.sentence if verdict.decision == "stop" else None
             judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop)
 
     return tell

@@ -77,8 +77,6 @@ class AnalysisText:
         vehicle = self.state.vehicle
         yield Text(f"{self.file}: {vehicle if vehicle else 'no vehicle'}", style="bold")
         yield self._channels()
-        for notice in self.state.notices:
-            yield Text(f"note: {notice}")
         yield Text()
         for judged in self.state.maneuvers:
             yield Text(maneuver_line(judged), style="green" if judged.verdict.accepted else "red")
