@@ -1,5 +1,6 @@
 """How quantities are called and written for people: symbols, degrees, digits that mean something."""
 
+import re
 from dataclasses import dataclass
 from math import degrees, floor, isfinite, log10
 
@@ -63,6 +64,16 @@ def signed(value: float, decimals: int) -> str:
     if not isfinite(value):
         return "-"
     return f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")
+
+
+def without_word(sentence: str) -> str:
+    """A verdict's sentence without the word before it, where the word stands in large letters already."""
+    return re.sub(r"^[A-Z ]+: ", "", sentence)
+
+
+def headline(sentence: str) -> str:
+    """What comes before the first colon or full stop: enough for a glance."""
+    return re.split(r"[:;.](?:\s|$)", sentence, maxsplit=1)[0]
 
 
 def percent(value: float | None) -> str:

@@ -15,7 +15,7 @@ from advisor.tui.source import Source
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
 
-_PATIENCE = 200
+_PATIENCE = 1000
 
 
 @dataclass

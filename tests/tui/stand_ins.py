@@ -26,6 +26,7 @@ class StagedCampaign:
         self._on_feed = on_feed
         self._stage = 0
         self.fed: list[int] = []
+        self.feeding = False
         self.calls: list[tuple[object, ...]] = []
         self._excluded: dict[int, str] = {}
         self._known: dict[object, tuple[JudgedManeuver, ...]] = {}
@@ -45,7 +46,9 @@ class StagedCampaign:
         return self._known[key]
 
     def feed(self, batch: Sequence[Columns]) -> list[object]:
+        self.feeding = True
         self._on_feed()
+        self.feeding = False
         self._stage += 1
         self.fed += sorted(int(k) for piece in batch for k in piece.order)
         return []

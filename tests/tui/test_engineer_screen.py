@@ -29,7 +29,7 @@ async def filled(here: Stage, count: int) -> None:
 
 
 async def test_the_table_shows_each_manoeuvre_with_what_every_rule_says():
-    async with stage(flights.state(4), settings=ENGINEER, size=WIDE) as here:
+    async with stage(flights.state(4), settings=ENGINEER, size=(80, 24)) as here:
         await filled(here, 4)
         rows = table(here, "Maneuvers")
         assert rows[0][:4] == ["1", "1:45", "3-2-1-1", "✓ GOOD"]
@@ -102,7 +102,7 @@ async def test_all_rules_are_plotted_each_as_a_share_of_its_limit():
 
 
 async def test_excluding_asks_for_a_reason_and_records_it():
-    async with stage(flights.state(3), settings=ENGINEER, size=WIDE) as here:
+    async with stage(flights.state(3), settings=ENGINEER, size=(80, 24)) as here:
         await filled(here, 3)
         await here.press("up", "x")
         assert isinstance(here.app.focused, Input)
@@ -115,7 +115,7 @@ async def test_excluding_asks_for_a_reason_and_records_it():
 
 
 async def test_an_exclusion_without_a_reason_is_not_made():
-    async with stage(flights.state(3), settings=ENGINEER, size=WIDE) as here:
+    async with stage(flights.state(3), settings=ENGINEER, size=(80, 24)) as here:
         await filled(here, 3)
         await here.press("x", "enter")
         assert isinstance(here.app.focused, Input)
@@ -124,7 +124,7 @@ async def test_an_exclusion_without_a_reason_is_not_made():
 
 
 async def test_notes_and_marks_reach_the_campaign():
-    async with stage(flights.state(3), settings=ENGINEER, size=WIDE) as here:
+    async with stage(flights.state(3), settings=ENGINEER, size=(80, 24)) as here:
         await filled(here, 3)
         await here.press("n", *"hm", "enter", "m", *"flaps", "enter")
         await here.until(lambda: ("note", 3, "hm") in here.campaign.calls)

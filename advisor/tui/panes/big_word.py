@@ -7,6 +7,7 @@ from advisor.tui.letters import block_letters
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
+from advisor.tui.words import without_word
 
 TONES = ("good", "warn", "bad", "quiet")
 
@@ -42,4 +43,4 @@ class Why(Part, Lines):
 
     def show(self, view: View) -> None:
         """Write the advice's sentence."""
-        self.write(advise(view).sentence)
+        self.write(without_word(advise(view).sentence))

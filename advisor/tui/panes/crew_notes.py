@@ -4,7 +4,7 @@ from advisor.aircraft import PARAMETERS as NAMES
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
-from advisor.tui.words import PARAMETERS
+from advisor.tui.words import PARAMETERS, headline
 
 
 def alpha_in_words(view: View) -> str:
@@ -45,6 +45,6 @@ class CrewNotes(Part, Lines):
             f"in the air  {flying_in_words(view)}",
             f"α           {alpha_in_words(view)}",
             f"link        {_link_in_words(view)}",
-            *(f"! {warning}" for warning in verdict.warnings),
+            *(f"! {headline(warning)}" for warning in verdict.warnings),
         ]
         self.write("\n".join(lines))

@@ -52,11 +52,11 @@ def _rule_lines(verdict: FlightTestVerdict) -> list[str]:
     lines = []
     for rule, progress in verdict.by_rule.items():
         known = [value for value in progress.history_percent if value is not None]
-        now = percent(known[-1]) if known else "too few manoeuvres"
+        now = percent(known[-1]) if known else "too few"
         says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
         mark, limit = "►" if rule == verdict.rule else " ", percent(progress.limit_percent)
         lines.append(f"{mark} {rule:<12} {now:>8}  (limit {limit})  {says}")
-    return lines
+    return lines + [f"! {warning}" for warning in verdict.warnings]
 
 
 def _chart(verdict: FlightTestVerdict | None) -> Chart:

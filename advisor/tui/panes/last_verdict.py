@@ -7,6 +7,7 @@ from advisor.campaign_state import JudgedManeuver
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
+from advisor.tui.words import without_word
 
 
 def symbol_and_word(judged: JudgedManeuver) -> tuple[str, str]:
@@ -34,6 +35,6 @@ class LastVerdict(Part, Vertical):
         judged = view.state.maneuvers[-1]
         symbol, name = symbol_and_word(judged)
         word.write(f"{symbol} {name}   manoeuvre {judged.maneuver.number}: {judged.maneuver.span.kind}")
-        sentence.write(judged.excluded_because or judged.verdict.sentence)
+        sentence.write(judged.excluded_because or without_word(judged.verdict.sentence))
         self.set_class(judged.verdict.accepted, "-good")
         self.set_class(not judged.verdict.accepted, "-warn")

@@ -76,7 +76,7 @@ def _cells(name: str, model: object, selected: object, prior: float | None) -> t
     quantity = PARAMETERS[name]
     before = signed(prior * quantity.factor, 3) if prior is not None else "-"
     return (
-        f"{quantity.symbol} {quantity.unit}",
+        f"{quantity.symbol} {quantity.unit}".removesuffix(" -"),
         _value(name, model),
         _value(name, selected),
         before,

@@ -9,7 +9,7 @@ from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.view import View
-from advisor.tui.words import channel
+from advisor.tui.words import channel, without_word
 
 
 class Verdict(Pane):
@@ -38,7 +38,7 @@ white). A line with **!** does not reject the manoeuvre but belongs on its verdi
 def _lines(judged: JudgedManeuver) -> list[str]:
     verdict, estimate = judged.verdict, judged.estimate
     symbol, word = symbol_and_word(judged)
-    lines = [f"{symbol} {word}  manoeuvre {judged.maneuver.number}: {verdict.sentence}"]
+    lines = [f"{symbol} {word}  manoeuvre {judged.maneuver.number}: {without_word(verdict.sentence)}"]
     if judged.excluded_because:
         lines.append(f"excluded by hand: {judged.excluded_because}")
     lines += [f"  {r.code}: {r.value:.3g} (limit {r.limit:.3g})  {r.text}" for r in verdict.reasons]
@@ -47,7 +47,8 @@ def _lines(judged: JudgedManeuver) -> list[str]:
             q = channel(name)
             rms = f"{fit.rms * q.factor:.3g} {q.unit}"
             lines.append(f"  {q.symbol}: R² {fit.r2:.3f}, TIC {fit.tic:.3f}, rms {rms}, lag-1 {fit.lag1:.2f}")
-        lines += [f"! {note}" for note in estimate.notes]
     else:
         lines.append(f"no estimate: {estimate.text}")
-    return lines + [f"! {caution}" for caution in verdict.cautions]
+    notes = estimate.notes if isinstance(estimate, Estimate) else ()
+    lines += [f"! {caution}" for caution in dict.fromkeys((*notes, *verdict.cautions))]
+    return lines + [f"note: {note}" for note in judged.notes]

@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 from advisor.flight.messages import FloatArray
 
 BLANK = 0x2800
-# Bit of each dot in a cell, row by row, as Unicode lays out U+2800..U+28FF.
-_BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], dtype=np.uint8)
+BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], dtype=np.uint8)
+"""Bit of each dot in a cell, row by row, as Unicode lays out U+2800..U+28FF."""
 
 
 class Canvas:
@@ -61,7 +61,7 @@ class Canvas:
         """The rows as strings, blanks where nothing was drawn."""
         rows, columns = self.ink.shape
         cells = self._dots.reshape(rows, 4, columns, 2)
-        codes = (cells * _BITS[None, :, None, :]).sum(axis=(1, 3), dtype=np.uint32) + BLANK
+        codes = (cells * BITS[None, :, None, :]).sum(axis=(1, 3), dtype=np.uint32) + BLANK
         codes[codes == BLANK] = ord(" ")
         return [str(row) for row in codes.view(f"<U{columns}").ravel()]
 

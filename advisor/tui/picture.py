@@ -1,0 +1,118 @@
+"""Pictures of both screens, taken from the running application.
+
+    python -m advisor.tui.picture logs/arduplane-calm.tlog --after 5 --out docs
+
+plays the log until so many manoeuvres are judged and the next is in the air, and writes
+``pilot.svg`` and ``engineer.svg``.
+"""
+
+import argparse
+import asyncio
+import re
+from collections.abc import Sequence
+from html import escape, unescape
+from math import inf
+from pathlib import Path
+
+from advisor.campaign import Campaign
+from advisor.config import load_aircraft
+from advisor.flight.messages import Columns
+from advisor.mavlink.logs import open_log
+from advisor.tui.app import AdvisorApp
+from advisor.tui.plot.canvas import BITS, BLANK
+from advisor.tui.replay import LogPlayer
+from advisor.tui.settings import Face, Settings
+
+SIZES: dict[Face, tuple[int, int]] = {"pilot": (100, 30), "engineer": (180, 50)}
+_CELL_WIDTH, _CELL_HEIGHT, _BASELINE = 12.2, 24.4, 18.5
+_TEXT = re.compile(
+    r'<text class="(?P<ink>[^"]*)" x="(?P<x>[^"]*)" y="(?P<y>[^"]*)" textLength="[^"]*"(?P<rest>[^>]*)>'
+    r"(?P<text>[^<]*)</text>"
+)
+_FONTS = re.compile(r"@font-face \{.*?\}", re.DOTALL)
+_BLOCK = "█"
+
+
+def drawn(svg: str) -> str:
+    """The picture with dots and blocks drawn and no font fetched: it looks the same wherever it is seen."""
+    return _TEXT.sub(_piece, _FONTS.sub("", svg))
+
+
+def _piece(match: re.Match[str]) -> str:
+    """One run of characters: shapes as shapes, words where they begin."""
+    text = unescape(match["text"])
+    x, top = float(match["x"]), float(match["y"]) - _BASELINE
+    if set(text) <= {_BLOCK, "\xa0"}:
+        return _group(match["ink"], [_bar(x, top, *bar.span()) for bar in re.finditer(_BLOCK + "+", text)])
+    if all(c > chr(BLANK) and c < "\u2900" for c in text):
+        return _group(match["ink"], [dot for k, c in enumerate(text) for dot in _dots(x, top, k, c)])
+    words = text.lstrip("\xa0")
+    x += (len(text) - len(words)) * _CELL_WIDTH
+    words = words.rstrip("\xa0")
+    attributes = (
+        f'class="{match["ink"]}" x="{x:.1f}" y="{match["y"]}" textLength="{len(words) * _CELL_WIDTH:.1f}"'
+    )
+    return f"<text {attributes}{match['rest']}>{escape(words)}</text>"
+
+
+def _group(ink: str, shapes: list[str]) -> str:
+    return f'<g class="{ink}">{"".join(shapes)}</g>'
+
+
+def _bar(x: float, top: float, begin: int, end: int) -> str:
+    left, width = x + begin * _CELL_WIDTH, (end - begin) * _CELL_WIDTH
+    # A little higher than a cell, lest the background shine through between rows.
+    return f'<rect x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" height="{_CELL_HEIGHT + 0.6:.1f}"/>'
+
+
+def _dots(x: float, top: float, cell: int, character: str) -> list[str]:
+    bits = ord(character) - BLANK
+    return [
+        f'<circle cx="{x + (cell + 0.25 + 0.5 * column) * _CELL_WIDTH:.1f}" '
+        f'cy="{top + (0.125 + 0.25 * row) * _CELL_HEIGHT:.1f}" r="1.8"/>'
+        for row in range(4)
+        for column in range(2)
+        if bits & int(BITS[row, column])
+    ]
+
+
+async def picture(log: Path, aircraft_file: Path | None, face: Face, after: int, theme: str) -> str:
+    """One screen as SVG, with manoeuvre ``after + 1`` in the air, or at the end of the log."""
+    aircraft = load_aircraft(aircraft_file)
+
+    def load() -> Sequence[Columns]:
+        return [columns for batch in open_log(log) for columns in batch]
+
+    player = LogPlayer(log.name, load, inf)
+    app = AdvisorApp(player, lambda: Campaign(aircraft, settle=True), aircraft, Settings(theme, face))
+    async with app.run_test(size=SIZES[face]) as pilot:
+        app.conductor.jump(after + 1)
+        state = app.view.state
+        while app.view.health.condition != "ended":
+            await pilot.pause(0.02)
+            state = app.view.state
+            if len(state.maneuvers) >= after and state.flying and state.settling:
+                player.pause(True)
+                break
+        await pilot.pause(0.3)
+        return drawn(app.export_screenshot(title=f"advisor replay {log.name}"))
+
+
+def main() -> None:
+    """Write both pictures."""
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    options.add_argument("log", type=Path)
+    options.add_argument("--aircraft", type=Path)
+    options.add_argument("--after", type=int, default=5)
+    options.add_argument("--theme", default="dark")
+    options.add_argument("--out", type=Path, default=Path("docs"))
+    chosen = options.parse_args()
+    for face in SIZES:
+        svg = asyncio.run(picture(chosen.log, chosen.aircraft, face, chosen.after, chosen.theme))
+        (chosen.out / f"{face}.svg").write_text(svg, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,135 @@
+"""Keys can be found, explained and changed; what they do is also in the palette."""
+
+import pytest
+from textual.widgets import DataTable, Markdown
+from textual.widgets._footer import FooterKey
+
+from advisor.tui import keys
+from advisor.tui.explaining import keys_at_hand
+from advisor.tui.panes.pane import Pane
+from advisor.tui.replay import LogPlayer
+from advisor.tui.screens.engineer import PANES, EngineerScreen
+from advisor.tui.screens.explain import Explain
+from advisor.tui.screens.pilot import PilotScreen
+from advisor.tui.settings import Settings
+from advisor.tui.source import LinkHealth
+from tests.tui import flights
+from tests.tui.stage import Stage, stage
+from tests.tui.stand_ins import HandFedSource, columns
+
+ENGINEER = Settings(screen="engineer")
+
+
+def footer(here: Stage) -> set[str]:
+    return {key.description for key in here.app.screen.query(FooterKey)}
+
+
+async def test_the_footer_names_the_keys_of_the_screen():
+    async with stage(settings=ENGINEER) as here:
+        await here.until(lambda: {"Pilot", "Engineer", "Help", "Quit", "Exclude", "Note"} <= footer(here))
+
+
+async def test_a_live_link_has_no_keys_of_a_replay():
+    async with stage(settings=ENGINEER) as here:
+        names = {key.name for key in keys_at_hand(here.app)}
+        assert names.isdisjoint({"pause", "jump", "faster"})
+
+
+async def test_one_key_switches_between_the_two_screens():
+    async with stage() as here:
+        assert isinstance(here.app.screen, PilotScreen)
+        await here.press("e")
+        assert isinstance(here.app.screen, EngineerScreen)
+        await here.press("p")
+        assert isinstance(here.app.screen, PilotScreen)
+
+
+async def test_help_explains_the_pane_that_has_the_focus():
+    async with stage(settings=ENGINEER, size=(80, 24)) as here:
+        for number, pane in enumerate(PANES, 1):
+            await here.press(str(number), "question_mark")
+            await here.until(lambda: isinstance(here.app.screen, Explain))
+            text = here.app.screen.query_one(Markdown).source
+            assert text.startswith((pane.HELP or "").splitlines()[0])
+            assert "| `x` | Exclude | exclude |" in text
+            await here.press("escape")
+            assert isinstance(here.app.screen, EngineerScreen)
+
+
+@pytest.mark.parametrize("pane", PANES, ids=lambda pane: pane.__name__)
+def test_every_pane_has_help_of_its_own(pane: type[Pane]):
+    assert len(pane.HELP or "") > 100
+
+
+async def test_a_number_key_shows_its_pane_and_focuses_it():
+    async with stage(settings=ENGINEER, size=(80, 24)) as here:
+        for number, pane in enumerate(PANES, 1):
+            await here.press(str(number))
+            around = here.app.focused.ancestors_with_self
+            assert any(isinstance(node, pane) and node.display for node in around)
+
+
+async def test_every_action_can_be_given_another_key():
+    async with stage(settings=Settings(screen="engineer", keys={"pilot": "f5", "exclude": "d"})) as here:
+        await here.press("p")
+        assert isinstance(here.app.screen, EngineerScreen)
+        shown = {key.name: key.shown for key in keys_at_hand(here.app)}
+        assert (shown["pilot"], shown["exclude"]) == ("f5", "d")
+        await here.press("f5")
+        assert isinstance(here.app.screen, PilotScreen)
+
+
+def test_every_binding_has_a_name_of_its_own():
+    bindings = [*keys.EVERYWHERE, *keys.REPLAY, *keys.SELDOM, *keys.ENGINEER]
+    assert len(keys.ACTIONS) == len(bindings)
+
+
+async def test_the_palette_offers_every_action():
+    async with stage(settings=ENGINEER) as here:
+        offered = {command.title for command in here.app.get_system_commands(here.app.screen)}
+        assert {"Pilot", "Exclude", "Note", "Theme", "Mark"} <= offered
+
+
+async def test_a_live_link_is_left_only_when_asked_twice():
+    async with stage() as here:
+        await here.press("q")
+        assert here.app.is_running
+        assert here.app._exit is False
+        await here.press("q")
+        await here.until(lambda: here.app._exit)
+
+
+async def test_a_flight_that_is_over_is_left_at_once():
+    source = HandFedSource()
+    source.condition = LinkHealth("ended", "The flight is over.")
+    async with stage(flights.state(2), source=source) as here:
+        await here.until(lambda: here.app.view.health.condition == "ended")
+        await here.press("q")
+        await here.until(lambda: here.app._exit)
+
+
+async def test_a_replay_is_paused_stepped_and_sped_up_by_keys():
+    player = LogPlayer("a.tlog", lambda: [columns(range(5000), [k / 50.0 for k in range(5000)])])
+    async with stage(flights.state(2), source=player) as here:
+        await here.press("space")
+        await here.until(lambda: "paused" in here.words("ReplayBar"))
+        at_s = player.playback().position_s
+        await here.press("full_stop")
+        await here.until(lambda: player.playback().position_s > at_s)
+        assert player.playback().position_s == pytest.approx(at_s + 0.1)
+        await here.press("plus", "plus", "minus", "space")
+        await here.until(lambda: "replay  2 ×" in here.words("ReplayBar"))
+
+
+async def test_jumping_asks_for_a_manoeuvre(monkeypatch: pytest.MonkeyPatch):
+    player = LogPlayer("a.tlog", lambda: [columns(range(5000), [k / 50.0 for k in range(5000)])])
+    async with stage(flights.state(2), source=player) as here:
+        asked: list[int] = []
+        monkeypatch.setattr(here.app.conductor, "jump", asked.append)
+        await here.press("j", "x", "7", "enter", "right_square_bracket", "left_square_bracket")
+        assert asked == [7, 3, 2]
+
+
+async def test_the_manoeuvre_table_takes_the_arrow_keys_from_the_start():
+    async with stage(settings=ENGINEER) as here:
+        assert isinstance(here.app.focused, DataTable)

@@ -1,0 +1,126 @@
+"""Every size, every theme, no colour: something readable stands everywhere."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from textual.color import Color
+from textual.widgets import DataTable
+
+from advisor.tui.panes.big_word import BigWord
+from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.pane import Pane
+from advisor.tui.plot.widget import Plot
+from advisor.tui.settings import Settings
+from advisor.tui.themes import NAMES, THEMES
+from tests.tui import flights
+from tests.tui.stage import Stage, shown, stage
+
+SIZES = [(80, 24), (120, 40), (320, 90)]
+NOTHING = replace(flights.state(0), vehicle=None, channels={}, notices=())
+
+
+def text(widget: Plot) -> str:
+    """What a plot has painted."""
+    return "\n".join(widget.render_line(y).text for y in range(widget.size.height))
+
+
+def panes(here: Stage) -> list[Pane]:
+    return [pane for pane in here.app.screen.query(Pane) if pane.display]
+
+
+def inside(here: Stage, pane: Pane) -> bool:
+    """Whether a pane lies on the screen with room for something."""
+    return here.app.screen.region.contains_region(pane.region) and pane.region.area > 60
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("state", [NOTHING, flights.state(5, in_the_air=True)], ids=["nothing", "flown"])
+async def test_no_pane_is_blank_at_any_size(size: tuple[int, int], state):
+    async with stage(state, size=size, settings=Settings(screen="engineer")) as here:
+        for number in range(2, 9):
+            await here.press(str(number))
+            for pane in panes(here):
+                assert inside(here, pane), (pane, pane.region)
+                said = [str(w.render()) for w in pane.query(Lines) if shown(w)]
+                said += [text(plot) for plot in pane.query(Plot) if shown(plot)]
+                said += [str(pane.border_subtitle)]
+                said += ["row" for table in pane.query(DataTable) if table.row_count]
+                assert any(len(words.strip()) > 2 for words in said), pane
+                assert all(text(plot).strip() for plot in pane.query(Plot) if shown(plot)), pane
+
+
+@pytest.mark.parametrize(("size", "count"), [((80, 24), 2), ((120, 40), 4), ((200, 60), 8)])
+async def test_wider_terminals_show_more_panes_at_once(size: tuple[int, int], count: int):
+    async with stage(size=size, settings=Settings(screen="engineer")) as here:
+        assert len(panes(here)) == count
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+async def test_the_pilot_reads_the_word_in_block_letters_at_any_size(size: tuple[int, int]):
+    async with stage(flights.state(7), size=size) as here:
+        await here.until(lambda: here.app.screen.query_one(BigWord).word == "STOP TESTING")
+        word = here.app.screen.query_one(BigWord)
+        assert "█" in str(word.render())
+        for part in here.app.screen.query(Lines):
+            assert not shown(part) or here.app.screen.region.contains_region(part.region)
+
+
+@pytest.mark.parametrize("size", [(80, 24), (200, 60)], ids=str)
+async def test_every_axis_carries_its_unit(size: tuple[int, int]):
+    async with stage(flights.state(5), size=size, settings=Settings(screen="engineer")) as here:
+        for number in range(2, 9):
+            await here.press(str(number))
+            for plot in here.app.screen.query(Plot):
+                if shown(plot) and plot.chart.series and plot.size.height >= 4:
+                    lines = text(plot).split("\n")
+                    assert plot.chart.y_label in lines[0]
+                    assert lines[-1].rstrip().endswith(plot.chart.x_label)
+
+
+@pytest.mark.parametrize("theme", NAMES)
+async def test_every_theme_paints_both_screens(theme: str):
+    async with stage(flights.state(3), settings=Settings(theme=theme)) as here:
+        await here.press("e")
+        assert here.app.theme == theme
+        plot = next(iter(here.app.screen.query(Plot)))
+        inks = {str(plot.get_component_styles(f"plot--{ink}").color.hex) for ink in ("measured", "fitted")}
+        assert len(inks) == 2
+
+
+@pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+def test_text_stands_out_from_its_background_in_every_theme(theme):
+    background = Color.parse(theme.background)
+    for name in ("foreground", "success", "warning", "error", "primary"):
+        assert contrast(Color.parse(getattr(theme, name)), background) >= 4.5, name
+
+
+def contrast(a: Color, b: Color) -> float:
+    """Contrast ratio of WCAG 2.1, 1 to 21; 4.5 is its level AA for text."""
+    high, low = sorted((luminance(a), luminance(b)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+def luminance(colour: Color) -> float:
+    parts = [c / 255.0 for c in (colour.r, colour.g, colour.b)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+async def test_the_theme_key_goes_round():
+    async with stage() as here:
+        seen = [here.app.theme]
+        for _ in NAMES:
+            await here.press("t")
+            seen.append(here.app.theme)
+        assert seen == [*NAMES, NAMES[0]]
+
+
+async def test_without_colour_everything_is_grey(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with stage(flights.state(3)) as here:
+        await here.until(lambda: "✗" in here.words())
+        svg = here.app.export_screenshot()
+        colours = set(re.findall(r"fill: #([0-9a-f]{6})", svg))
+        assert colours
+        assert all(abs(int(c[:2], 16) - int(c[4:], 16)) <= 4 for c in colours), colours
