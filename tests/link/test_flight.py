@@ -54,20 +54,13 @@ def amid(records: list[Record], strangers: list[bytes]) -> list[Record]:
 
 
 def test_how_the_stream_is_cut_into_batches_changes_no_digit(flight: list[Record]) -> None:
-    assert flown(flight, batch=7) == flown(flight, batch=len(flight))
-
-
-def test_jitter_of_200_ms_with_overtaking_and_duplicates_changes_no_verdict(
-    flight: list[Record], undisturbed: list[tuple[bool, ...]]
-) -> None:
-    assert len(undisturbed) == 7
-    disturbed = through_a_poor_radio(flight, seed=1, loss=0.0, jitter_s=0.2, twice=0.05)
-    assert verdicts(disturbed) == undisturbed
+    assert flown(flight, batch=23) == flown(flight, batch=len(flight))
 
 
 def test_a_fifth_of_the_packets_lost_and_200_ms_of_jitter_change_no_verdict(
     flight: list[Record], undisturbed: list[tuple[bool, ...]]
 ) -> None:
+    assert len(undisturbed) == 7
     # Parameters come by a protocol that repeats what is lost; everything else is sent once.
     asked = [record for record in flight if message_id(record) == PARAM_VALUE]
     sent = [record for record in flight if message_id(record) != PARAM_VALUE]
