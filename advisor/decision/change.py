@@ -35,6 +35,8 @@ LEAST_SIGMA = 3.0
 """A derivative is named as moved from this many standard deviations on."""
 LEAST_SHARE = 0.08
 """... and from this share of its value on: an aircraft is never twice the same to a few per cent."""
+UNEVEN = 0.03
+"""Share of its value by which a derivative may differ and still count as explained by a cause."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,14 +128,16 @@ def _moved(before: Shared, after: Shared, widening: float) -> tuple[Moved, ...]:
     return tuple(sorted(found, key=lambda m: -abs(m.sigma)))
 
 
-# Each cause multiplies the coefficients Z_α, 1 + Z_q, Z_δe, M_α, M_q, M_δe by powers of one factor.
-# The first two are shifts of the aircraft, the next three of the elevator or the air, the last two of
-# an instrument that reads (1 + k) times the truth: substitute the reading in Eqs. (1) and (2).
+# Each cause multiplies the coefficients Z_α, 1 + Z_q, Z_δe, M_α, M_q, M_δe by powers of one factor:
+# shifts of the aircraft first, then of elevator and air, last of an instrument that reads (1 + k)
+# times the truth (substitute the reading in Eqs. (1) and (2)).
 _CAUSES = {
     "a shift of the centre of gravity": (0, 0, 0, 1, 0, 0),
-    "a loss or gain of lift, as from icing": (1, 0, 0, 0, 0, 0),
-    "the elevator's effectiveness or its calibration": (0, 0, 1, 0, 0, 1),
+    "a loss or gain of lift, as from ice on the wing": (1, 0, 0, 0, 0, 0),
+    "weaker lift, stiffness and control together, as from ice on wing and tail": (1, 0, 1, 1, 0, 1),
+    "another mass": (1, 0, 1, 1, 1, 1),
     "a loss of the elevator's moment": (0, 0, 0, 0, 0, 1),
+    "the elevator's effectiveness or its calibration": (0, 0, 1, 0, 0, 1),
     "another air speed than recorded": (1, 0, 1, 2, 1, 2),
     "the scale of the angle of attack": (0, 1, 1, -1, 0, 0),
     "the scale of the pitch rate": (0, -1, 0, 1, 0, 1),
@@ -151,10 +155,13 @@ def _misfit(before: Shared, after: Shared, powers: FloatArray) -> float:
     """χ² left when ``before`` is multiplied by the best factor to these powers."""
     one = np.array([1.0 if PARAMETERS[k] == "Z_q" else 0.0 for k in DERIVATIVES])
     start, target = before.theta + one, after.theta + one
+    uneven = np.diag((UNEVEN * target) ** 2)
     exponent = 0.0
     for _ in range(20):
         factors = np.exp(exponent * powers)
-        information = information_of(after.covariance + before.covariance * np.outer(factors, factors))
+        information = information_of(
+            after.covariance + before.covariance * np.outer(factors, factors) + uneven
+        )
         slope, residual = powers * start * factors, target - start * factors
         curvature = float(slope @ information @ slope)
         if not curvature > 0.0:
@@ -170,7 +177,7 @@ def _told(last: int, first: int, confirmed: bool, moved: tuple[Moved, ...], look
     if confirmed:
         sentence = (
             f"Something changed after manoeuvre {last}: {what}{cause}. "
-            f"Estimates from before and after do not belong together."
+            f"Exclude the manoeuvres up to {last} to go on with the aircraft as it is now."
         )
     else:
         sentence = (

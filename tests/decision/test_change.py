@@ -70,7 +70,9 @@ def test_a_change_of_a_few_per_cent_is_not_worth_a_warning(rng: np.random.Genera
     ("powers", "looks_like"),
     [
         ((0, 0, 0, 1, 0, 0), "centre of gravity"),
-        ((1, 0, 0, 0, 0, 0), "icing"),
+        ((1, 0, 0, 0, 0, 0), "ice on the wing"),
+        ((1, 0, 1, 1, 0, 1), "ice on wing and tail"),
+        ((1, 0, 1, 1, 1, 1), "another mass"),
         ((0, 0, 1, 0, 0, 1), "elevator's effectiveness or its calibration"),
         ((1, 0, 1, 2, 1, 2), "air speed"),
         ((0, 1, 1, -1, 0, 0), "scale of the angle of attack"),
@@ -100,6 +102,15 @@ def test_a_scale_error_of_the_angle_of_attack_moves_the_parameters_as_its_cause_
     misread = ShortPeriod(*theta)
     response = respond(misread, truth.elevator, truth.trim * [k, 1.0], 1.0 / scene.rate_hz)
     np.testing.assert_allclose(response, truth.response * [k, 1.0], atol=1e-9)
+
+
+def test_a_cause_is_named_although_the_rest_of_the_aircraft_is_uneven_by_a_few_per_cent() -> None:
+    uneven = THETA * [1.0, 1.02, 1.0, 1.03, 1.0, 0.7, 0.98, 1.03]
+    history = [Flown(estimate(theta, std_percent=0.1)) for theta in (THETA, THETA, uneven, uneven)]
+    change = find_change(history)
+    assert change is not None
+    assert [m.parameter for m in change.moved] == ["M_alpha"]
+    assert "centre of gravity" in change.looks_like
 
 
 def test_unusable_manoeuvres_are_no_evidence_of_a_change(rng: np.random.Generator) -> None:
