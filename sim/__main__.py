@@ -1,7 +1,7 @@
 """``python -m sim``: fly the bundled aircraft on a link, or record its telemetry."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -148,10 +148,10 @@ def reveal(folder: Path, answers: Path, key: Path | None, details: bool) -> None
         click.echo(line)
 
 
-def run() -> None:
+def run(arguments: Sequence[str] | None = None) -> None:
     """Run the command; mistakes of the user's end with exit code 2 and a sentence each."""
     try:
-        main(prog_name="python -m sim", standalone_mode=True)
+        main(arguments, prog_name="python -m sim")
     except ScenarioError as error:
         for problem in error.problems:
             click.echo(f"error: {problem}", err=True)

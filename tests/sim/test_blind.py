@@ -24,7 +24,7 @@ from sim.tlog import read_tlog
 @pytest.fixture(scope="module")
 def cases(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sealed") / "cases"
-    generate(3, 5, folder, ("none", "parameters"))
+    generate(2, 5, folder, ("none", "parameters"))
     return folder
 
 
@@ -85,7 +85,7 @@ def test_a_report_lists_every_figure_with_its_interval(cases, tmp_path):
     finally:
         (cases / "COMMITMENT").unlink()
     nothing = sum(case["group"] == "none" for case in key_of(cases).values())
-    assert "3 cases, 3 answered" in text
+    assert "2 cases, 2 answered" in text
     assert f"n={nothing}" in next(line for line in text.splitlines() if line.startswith("false alarms"))
 
 

@@ -50,7 +50,7 @@ CONTRACT = [
 
 CHANNELS = ("alpha", "q", "a_z", "theta", "airspeed")
 PLAIN = Scenario(
-    maneuvers=tuple(Maneuver(name, throttle_change=0.15) for name in ("3211", "rev", "3211", "rev")),
+    maneuvers=tuple(Maneuver(name, throttle_change=0.15) for name in ("3211", "rev")),
     noise=Noise(),
     speed="held",
     height_m=8.0,
