@@ -30,45 +30,40 @@ _TEXT = re.compile(
     r"(?P<text>[^<]*)</text>"
 )
 _FONTS = re.compile(r"@font-face \{.*?\}", re.DOTALL)
-_BLOCK = "█"
+_RUNS = re.compile(
+    r"(?P<blocks>█+)|(?P<dots>[\u2801-\u28ff]+)|[^█\u2801-\u28ff\xa0]+(?:\xa0[^█\u2801-\u28ff\xa0]+)*"
+)
 
 
 def drawn(svg: str) -> str:
     """The picture with dots and blocks drawn and no font fetched: it looks the same wherever it is seen."""
-    return _TEXT.sub(_piece, _FONTS.sub("", svg))
+    return _TEXT.sub(_shapes, _FONTS.sub("", svg))
 
 
-def _piece(match: re.Match[str]) -> str:
-    """One run of characters: shapes as shapes, words where they begin."""
-    text = unescape(match["text"])
-    x, top = float(match["x"]), float(match["y"]) - _BASELINE
-    if set(text) <= {_BLOCK, "\xa0"}:
-        return _group(match["ink"], [_bar(x, top, *bar.span()) for bar in re.finditer(_BLOCK + "+", text)])
-    if all(c > chr(BLANK) and c < "\u2900" for c in text):
-        return _group(match["ink"], [dot for k, c in enumerate(text) for dot in _dots(x, top, k, c)])
-    words = text.lstrip("\xa0")
-    x += (len(text) - len(words)) * _CELL_WIDTH
-    words = words.rstrip("\xa0")
-    attributes = (
-        f'class="{match["ink"]}" x="{x:.1f}" y="{match["y"]}" textLength="{len(words) * _CELL_WIDTH:.1f}"'
-    )
-    return f"<text {attributes}{match['rest']}>{escape(words)}</text>"
+def _shapes(line: re.Match[str]) -> str:
+    """A piece of a line of the terminal: words where they begin, blocks and dots as shapes."""
+    drawn_runs = []
+    for run in _RUNS.finditer(unescape(line["text"])):
+        x, width = float(line["x"]) + run.start() * _CELL_WIDTH, len(run[0]) * _CELL_WIDTH
+        top = float(line["y"]) - _BASELINE
+        if run["blocks"]:
+            # A little higher than a cell, lest the background shine through between rows.
+            size = f'width="{width:.1f}" height="{_CELL_HEIGHT + 0.6:.1f}"'
+            drawn_runs.append(f'<rect x="{x:.1f}" y="{top:.1f}" {size}/>')
+        elif run["dots"]:
+            drawn_runs += [
+                dot for k, cell in enumerate(run[0]) for dot in _dots(x + k * _CELL_WIDTH, top, cell)
+            ]
+        else:
+            place = f'x="{x:.1f}" y="{line["y"]}" textLength="{width:.1f}"'
+            drawn_runs.append(f"<text {place}{line['rest']}>{escape(run[0])}</text>")
+    return f'<g class="{line["ink"]}">{"".join(drawn_runs)}</g>'
 
 
-def _group(ink: str, shapes: list[str]) -> str:
-    return f'<g class="{ink}">{"".join(shapes)}</g>'
-
-
-def _bar(x: float, top: float, begin: int, end: int) -> str:
-    left, width = x + begin * _CELL_WIDTH, (end - begin) * _CELL_WIDTH
-    # A little higher than a cell, lest the background shine through between rows.
-    return f'<rect x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" height="{_CELL_HEIGHT + 0.6:.1f}"/>'
-
-
-def _dots(x: float, top: float, cell: int, character: str) -> list[str]:
-    bits = ord(character) - BLANK
+def _dots(x: float, top: float, cell: str) -> list[str]:
+    bits = ord(cell) - BLANK
     return [
-        f'<circle cx="{x + (cell + 0.25 + 0.5 * column) * _CELL_WIDTH:.1f}" '
+        f'<circle cx="{x + (0.25 + 0.5 * column) * _CELL_WIDTH:.1f}" '
         f'cy="{top + (0.125 + 0.25 * row) * _CELL_HEIGHT:.1f}" r="1.8"/>'
         for row in range(4)
         for column in range(2)

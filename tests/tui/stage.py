@@ -3,6 +3,8 @@
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from time import monotonic
+from typing import Any
 
 from textual.pilot import Pilot
 from textual.widget import Widget
@@ -15,8 +17,6 @@ from advisor.tui.source import Source
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
 
-_PATIENCE = 1000
-
 
 @dataclass
 class Stage:
@@ -24,17 +24,17 @@ class Stage:
 
     app: AdvisorApp
     pilot: Pilot[None]
-    campaign: StagedCampaign
+    campaign: Any
     source: Source
 
-    async def until(self, condition: Callable[[], bool]) -> None:
-        """Let the application work until something is so; at most a few seconds."""
-        for _ in range(_PATIENCE):
-            if condition():
-                await self.pilot.pause()
-                return
+    async def until(self, condition: Callable[[], bool], patience_s: float = 20.0) -> None:
+        """Let the application work until something is so."""
+        end = monotonic() + patience_s
+        while not condition():
+            if monotonic() > end:
+                raise AssertionError("It did not come to that.")
             await self.pilot.pause(0.02)
-        raise AssertionError("It did not come to that.")
+        await self.pilot.pause()
 
     async def press(self, *keys: str) -> None:
         """Press keys and let their effects happen."""

@@ -1,0 +1,33 @@
+"""The application on a real link: the bundled aircraft flies as a process of its own, over UDP."""
+
+from advisor.aircraft import Aircraft
+from advisor.campaign import Campaign
+from advisor.demo import Demonstration
+from advisor.tui.app import AdvisorApp
+from advisor.tui.live import LinkSource
+from advisor.tui.panes.big_word import BigWord
+from advisor.tui.settings import Settings
+from tests.tui.stage import Stage
+
+
+async def test_a_flight_over_a_real_link_is_followed_to_the_stop():
+    flight = Demonstration("linear", speed=10.0, seed=1)
+    source = LinkSource(lambda: flight, "demonstration", flight.over)
+    campaigns: list[Campaign] = []
+
+    def make() -> Campaign:
+        campaigns.append(Campaign(Aircraft(), settle=True))
+        return campaigns[-1]
+
+    app = AdvisorApp(source, make, Aircraft(), Settings(screen="engineer"))
+    async with app.run_test(size=(80, 24)) as pilot:
+        here = Stage(app, pilot, campaigns, source)
+        await here.until(lambda: len(app.view.state.maneuvers) >= 1, patience_s=60.0)
+        assert str(app.view.state.vehicle) == "ardupilot 1/1"
+        assert app.view.health.condition in ("good", "poor")
+        assert app.screen.query_one("Maneuvers DataTable").row_count >= 1
+        await here.press("p")
+        await here.until(lambda: app.view.state.flight_test.decision == "stop", patience_s=60.0)
+        await here.until(lambda: app.screen.query_one(BigWord).word in ("STOP TESTING", "RECOVER"))
+        assert "✓ GOOD" in here.words("#verdict-word")
+        assert campaigns[0].problems == []
