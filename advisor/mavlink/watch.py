@@ -6,6 +6,12 @@ from advisor.mavlink.ratewatch import RateWatch
 
 SILENCE_S = 5.0
 
+_REFUSED = {
+    "unsigned": "unsigned packets are refused; the vehicle must sign with this key",
+    "forged": "packets signed with another key are refused",
+    "replayed": "signed packets with an old time are refused: a replay, or a vehicle whose clock is not set",
+}
+
 
 class LinkWatch:
     """Turns what arrives, and what does not, into sentences; times are the reader's monotonic seconds."""
@@ -16,6 +22,7 @@ class LinkWatch:
         self._silence_told = False
         self._cut_s: float | None = None
         self._others_told: set[int] = set()
+        self._refusals_told: set[str] = set()
         self._rates = RateWatch()
         self.reconnects = 0
 
@@ -48,6 +55,9 @@ class LinkWatch:
         for system in sorted(intake.other_vehicles - self._others_told):
             said.append(f"vehicle {system} is heard too and ignored; choose with --target-system")
         self._others_told |= intake.other_vehicles
+        refused = intake.counters.refused.keys() - self._refusals_told
+        said += [f"{self._connection}: {_REFUSED[why]}" for why in sorted(refused)]
+        self._refusals_told |= refused
         return said
 
     def _heard(self, now_s: float) -> list[str]:

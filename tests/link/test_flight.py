@@ -48,8 +48,8 @@ def amid(records: list[Record], strangers: list[bytes]) -> list[Record]:
     mixed = []
     for i, record in enumerate(records):
         mixed.append(record)
-        if i % 3 == 0:
-            mixed.append(Record(record.stamp_us, strangers[(i // 3) % len(strangers)]))
+        if i % 9 == 0:
+            mixed.append(Record(record.stamp_us, strangers[(i // 9) % len(strangers)]))
     return mixed
 
 

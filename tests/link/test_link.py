@@ -310,6 +310,9 @@ def test_with_a_key_only_what_the_vehicle_signed_is_heard_and_recorded(port: int
         assert stamps(heard) == [60.0]
         assert values(heard, "RADIO_STATUS", "rssi") == [100.0]
         assert link.statistics.refused == {"unsigned": 1, "replayed": 2}
+        told = notices(link)
+        assert "unsigned packets are refused" in told
+        assert "with an old time are refused" in told
     recorded = FrameScanner().feed((tmp_path / "own.tlog").read_bytes())
     assert stamps(recorded) == [60.0]
     genuine.close()
