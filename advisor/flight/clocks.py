@@ -20,6 +20,8 @@ _SILENCE_MS = 10_000
 """A master stamp newer than the last by more than this waits for confirmation."""
 _CONFIRM = 3
 """Stamps in a row that make a jump believed: backwards it is a reboot, forwards a silence."""
+_TIME_OF_DAY_S = 1e9
+"""No counter since boot comes this far: it counts from 1970."""
 _NEAR_S = 5.0
 """How far a stamp may lie from the master when its message arrives."""
 
@@ -109,12 +111,14 @@ def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
     -------
     FloatArray
         Shape (n,), s since boot; NaN where no number of wraps brings the stamp near the master
-        (another clock, or a message of an earlier boot).
+        (another clock, or a message of an earlier boot). A stamp that says nothing of the boot,
+        zero or the time of day, gives way to the master.
     """
     wrap_s = 2.0**32 * tick_s
     raw_s = ticks.astype(np.float64) * tick_s
     t = raw_s + wrap_s * np.round((master_s - raw_s) / wrap_s)
-    return np.where(np.abs(t - master_s) <= _NEAR_S, t, np.nan)
+    placed = np.where(np.abs(t - master_s) <= _NEAR_S, t, np.nan)
+    return np.where((ticks == 0) & (master_s > _NEAR_S) | (raw_s > _TIME_OF_DAY_S), master_s, placed)
 
 
 def _signed(difference_ms: int) -> int:

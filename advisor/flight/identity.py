@@ -29,6 +29,7 @@ class Identity:
         self._finder = VehicleFinder(target_system)
         self._firmware: dict[int, str] = {}
         self._parameters: dict[tuple[int, int], dict[str, float]] = {}
+        self._said = ""
         self.mode = ""
         """Flight mode of the newest heartbeat."""
         self.simulated = False
@@ -69,7 +70,7 @@ class Identity:
             if columns.name == "HEARTBEAT":
                 events += self._heartbeat(columns)
             elif columns.name == "PARAM_VALUE":
-                self._parameter(columns)
+                events += self._parameter(columns)
             elif columns.name == "AUTOPILOT_VERSION":
                 self._version(columns)
             elif columns.name == "STATUSTEXT":
@@ -81,8 +82,7 @@ class Identity:
         known = len(self._finder.others)
         if self._finder.hear(columns):
             assert self._finder.vehicle is not None
-            events.append(VehicleFound(self._finder.vehicle))
-            self._settle_surfaces()
+            events += [VehicleFound(self._finder.vehicle), *self._settle_surfaces()]
         if len(self._finder.others) > known:
             others = ", ".join(str(n) for n in sorted(self._finder.others))
             events.append(
@@ -96,7 +96,7 @@ class Identity:
             self.mode = mode_name(vehicle, int(columns.fields["custom_mode"][0]))
         return events
 
-    def _parameter(self, columns: Columns) -> None:
+    def _parameter(self, columns: Columns) -> list[FlightEvent]:
         known = self._parameters.setdefault((columns.system, columns.component), {})
         changed = False
         for raw, value in zip(
@@ -108,9 +108,10 @@ class Identity:
                 changed = True
         vehicle = self._finder.vehicle
         if changed and vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
-            self._settle_surfaces()
+            return self._settle_surfaces()
+        return []
 
-    def _settle_surfaces(self) -> None:
+    def _settle_surfaces(self) -> list[FlightEvent]:
         vehicle = self._finder.vehicle
         assert vehicle is not None
         parameters = self._parameters.get((vehicle.system, vehicle.component), {})
@@ -121,6 +122,11 @@ class Identity:
             "rudder": find_surface(RUDDER, parameters),
         }
         self.surfaces = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
+        said = self.elevator.said if isinstance(self.elevator, Surface) else ""
+        if not said or said == self._said:
+            return []
+        self._said = said
+        return [Notice("elevator_scale", said)]
 
     def _version(self, columns: Columns) -> None:
         packed = int(columns.fields["flight_sw_version"][0])

@@ -26,12 +26,15 @@ _SQUARE_3211 = 0.4
 """The same for a pattern whose timing already gives it away."""
 _SHARP = 0.2
 """Longest time from a fifth to four fifths of a step, as a share of the shortest level; a sine takes 0.23."""
-_SHARP_3211 = 0.33
-"""The same for the pattern, where reversals go from side to side; there a sine takes 0.41."""
+_SHARP_3211 = (0.33, 0.5)
+"""The same for the pattern, where reversals go from side to side; there a sine takes 0.41. The second holds
+for a measured surface, drawn out by its servo, when much quiet before it speaks for a test input."""
 _HAND_S = (0.1, 0.25)
 """A hand needs at least the one for that part of a step, and at most the other."""
 _QUIET_S = {"pulse": 1.5, "doublet": 0.9, "multisine": 0.9, "other": 0.9}
 """Inputs that a correction might resemble are told from it by the quiet before them: this long."""
+_JUST_BEGUN_S = 0.1
+"""Enough quiet where the record itself begins only then."""
 _SLOWEST_STEP_S = 0.25
 """Samples farther apart than this hide the shape of an input."""
 _LEAST_LEVEL = 0.4
@@ -105,11 +108,15 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
     if abs(float(np.mean(d[before:first]))) > 0.5 * _BAND * amplitude:
         return None
     shape = _classify(t, d, first, last, trim, amplitude, quiet)
-    if shape is None or shape.is_3211:
-        return shape if shape is not None and _is_sharp(t, d, shape) else None
-    if t[first] - t[before] < _QUIET_S[shape.kind] or amplitude < 8.0 * quiet:
+    if shape is None:
         return None
-    if shape.kind != "multisine" and _is_sharp(t, d, shape):
+    rested_s = float(t[first] - t[before])
+    if shape.is_3211:
+        clear = rested_s >= _QUIET_S["other"] and amplitude >= 10.0 * quiet
+        return shape if _is_sharp(t, d, shape, _SHARP_3211[int(clear)]) else None
+    if rested_s < _QUIET_S[shape.kind] or amplitude < 8.0 * quiet:
+        return None
+    if shape.kind != "multisine" and _is_sharp(t, d, shape, _SHARP):
         return shape
     return replace(shape, kind="multisine") if _is_multisine(shape) else None
 
@@ -134,8 +141,9 @@ def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, 
     else:
         first = int(away[0])
         before = 0
+    rested = _JUST_BEGUN_S if before == 0 else 0.8 * RESTING_S
     before = max(before, int(np.searchsorted(t, t[first] - 1.7)))
-    if first - before < 2 or t[first] - t[before] < 0.8 * RESTING_S:
+    if first - before < 2 or t[first] - t[before] < rested:
         return None
     return before, first, last
 
@@ -203,13 +211,11 @@ def _squareness(t: FloatArray, d: FloatArray, levels: FloatArray, onsets: FloatA
     return on / max(1, int(edges[-1] - edges[0]))
 
 
-def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape) -> bool:
-    """Whether the elevator steps from level to level rather than swings."""
+def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape, share: float) -> bool:
+    """Whether the elevator steps from level to level, in this share of the shortest, or swings."""
     shortest = float(np.min(np.diff([onset for onset, _ in shape.steps])))
     least, most = _HAND_S
-    longest = (
-        max(least, _SHARP_3211 * shortest) if shape.is_3211 else min(most, max(least, _SHARP * shortest))
-    )
+    longest = max(least, share * shortest) if shape.is_3211 else min(most, max(least, share * shortest))
     longest += 1.5 * float(np.median(np.diff(t)))
     old = 0.0
     for onset, new in shape.steps:

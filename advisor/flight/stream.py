@@ -94,6 +94,7 @@ class FlightStream:
         self._segmenter = Segmenter()
         self._waiting: list[tuple[float, int, float | None]] = []
         self._elevator_s = -np.inf
+        self._elevator_source: str | None = None
         self._ended: list[Span] = []
         self._announced_s: float | None = None
         self._modes = [(-np.inf, self._who.mode)]
@@ -243,9 +244,10 @@ class FlightStream:
             now = np.searchsorted(orders, columns.order, side="right") - 1
             t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
             for new in self._decode(columns, t, pitch[now], vehicle):
-                self._tracks.append(new)
                 if new.channel == "elevator":
                     elevator.append(new)
+                else:
+                    self._tracks.append(new)
         if np.isnan(self._first_s) and len(master.t):
             self._first_s = float(master.t[0])
         self._master_s, self._theta = float(clock[-1]), float(pitch[-1])
@@ -267,12 +269,18 @@ class FlightStream:
     def _feed_elevator(self, decoded: Sequence[Decoded]) -> list[FlightEvent]:
         """Give the segmenter its samples in the order of their stamps, and cut what has ended."""
         events: list[FlightEvent] = []
-        arrived = sorted(
-            (order, t, y)
-            for new in decoded
-            for order, t, y in zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
-        )
-        for order, t, y in arrived:
+        if self._elevator_source is None:
+            # Some vehicles report their outputs in two messages: the first to speak is listened to.
+            first = min(
+                (new for new in decoded if len(new.t)), key=lambda new: int(new.order[0]), default=None
+            )
+            self._elevator_source = first.source if first else None
+        arrived: list[tuple[int, float, float]] = []
+        for new in decoded:
+            if new.source == self._elevator_source:
+                self._tracks.append(new)
+                arrived += zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
+        for order, t, y in sorted(arrived):
             heapq.heappush(self._waiting, (t, order, y))
             self._elevator_s = max(self._elevator_s, t)
             while self._waiting[0][0] <= self._elevator_s - _LATE_S:

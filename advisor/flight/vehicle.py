@@ -76,6 +76,14 @@ class VehicleFinder:
         return False
 
 
+def closes_pitch_loop(mode: str) -> bool:
+    """Whether the autopilot moves the elevator by itself in this mode, as far as the mode is known.
+
+    Elevator, angle of attack and pitch rate are then correlated by the loop.
+    """
+    return mode in {*_PLANE_MODES.values(), *_PX4_MODES.values()} - {"MANUAL", "INITIALISING"}
+
+
 def mode_name(vehicle: Vehicle, custom: int) -> str:
     """Flight mode as the autopilot's users know it.
 

@@ -86,6 +86,24 @@ def test_a_first_step_with_the_trailing_edge_up_is_a_3211_and_the_other_its_reve
         assert span.kind == kind
 
 
+def test_a_measured_surface_drawn_out_by_its_servo_is_recognised():
+    t = np.arange(0.0, 20.0, 0.02)
+    command = DEG * steps(t, 6.0, 0.4, PATTERNS["3-2-1-1"])
+    surface = np.zeros(len(t))
+    for i in range(1, len(t)):
+        surface[i] = surface[i - 1] + (command[i - 1] - surface[i - 1]) * (1.0 - np.exp(-0.02 / 0.1))
+    (span,) = found(Stream(t, surface))
+    assert span.kind == "3-2-1-1"
+    assert span.start_s == pytest.approx(6.0, abs=0.1)
+
+
+def test_a_record_that_begins_just_before_the_input_will_do():
+    whole = flown_at([5.0], 20.0)
+    (span,) = found(Stream(whole.t[whole.t > 4.8], whole.u[whole.t > 4.8]))
+    assert span.kind == "3-2-1-1"
+    assert span.record_from_s == pytest.approx(4.82, abs=0.03)
+
+
 def test_a_pulse_is_found_when_nothing_moves_around_it():
     for seed in SEEDS:
         (span,) = found(drawn(seed, "pulse"))

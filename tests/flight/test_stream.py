@@ -243,7 +243,30 @@ def test_stirring_the_stick_on_the_ground_is_no_manoeuvre():
     wire._sent = [(*m[:5], {**m[5], "airspeed": 0.5}) if m[2] == "VFR_HUD" else m for m in wire._sent]
     _, events = flown(wire)
     assert maneuvers(events) == []
-    assert [e.code for e in events if isinstance(e, Notice)] == ["on_ground"]
+    assert "on_ground" in [e.code for e in events if isinstance(e, Notice)]
+
+
+def test_an_assumed_scale_of_the_elevator_is_said_once():
+    wire = Wire()
+    fly(wire, 1000.0, 50.0, ONE, 14.0)
+    notices = [e for e in flown(wire)[1] if isinstance(e, Notice)]
+    calibrated = Aircraft(elevator=Elevator(calibration=((1000, 25.0), (2000, -25.0))))
+    assert [e.code for e in notices] == ["elevator_scale"]
+    assert "25 deg" in notices[0].text
+    assert not any(isinstance(e, Notice) for e in flown(wire, calibrated)[1])
+
+
+def test_outputs_reported_in_two_messages_are_read_from_the_first_to_speak():
+    wire, single = Wire(), Wire()
+    fly(wire, 1000.0, 50.0, ONE, 14.0)
+    fly(single, 1000.0, 50.0, ONE, 14.0)
+    for k in range(700):
+        wire.send("ACTUATOR_OUTPUT_STATUS", 1000.0105 + k / 50, time_usec=round(1e6 * (50.005 + k / 50)),
+                  active=15, actuator=[0.1] * 32)  # fmt: skip
+    (maneuver,) = maneuvers(flown(wire)[1])
+    (reference,) = maneuvers(flown(single)[1])
+    assert maneuver.channels["elevator"].source == "SERVO_OUTPUT_RAW.servo2_raw"
+    assert np.array_equal(maneuver.channels["elevator"].y, reference.channels["elevator"].y)
 
 
 def test_the_manoeuvre_being_flown_can_be_watched():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from advisor.flight.vehicle import Vehicle, VehicleFinder, is_aircraft, mode_name
+from advisor.flight.vehicle import Vehicle, VehicleFinder, closes_pitch_loop, is_aircraft, mode_name
 from tests.flight.columns import Wire, heartbeat
 
 GCS, GIMBAL, ONBOARD, PLANE = 6, 26, 18, 1
@@ -62,3 +62,11 @@ def test_the_link_and_the_core_agree_on_what_an_aircraft_is():
     assert is_aircraft(PX4, 22)
     assert not is_aircraft(INVALID, PLANE)
     assert not is_aircraft(ARDUPILOT, GCS)
+
+
+def test_only_known_modes_other_than_manual_are_said_to_close_the_pitch_loop():
+    assert closes_pitch_loop("CRUISE")
+    assert closes_pitch_loop("STABILIZED")
+    assert not closes_pitch_loop("MANUAL")
+    assert not closes_pitch_loop("mode 77")
+    assert not closes_pitch_loop("")
