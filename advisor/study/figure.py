@@ -12,6 +12,7 @@ from advisor.study.campaigns import Outcome
 from advisor.study.paper import ORDER
 
 LIMIT_PERCENT = 25.0
+TICKS_PERCENT = (2, 5, 10, 25, 50, 100, 200)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,7 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
+        from matplotlib.ticker import FixedLocator, FormatStrFormatter, NullLocator
     except ImportError as error:
         raise ConfigurationError(
             "--figure needs matplotlib: pip install 'inflight-advisor[report]'."
@@ -67,11 +69,15 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
             )
         axis.axhline(LIMIT_PERCENT, color="black", linestyle="--", linewidth=1.0, label="limit 25 %")
         axis.set(title=rule, xlabel="manoeuvres flown", yscale="log", xlim=(2.7, len(ORDER) + 0.3))
-        axis.grid(visible=True, which="both", alpha=0.2)
+        axis.yaxis.set_major_locator(FixedLocator(TICKS_PERCENT))
+        axis.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+        axis.yaxis.set_minor_locator(NullLocator())
+        axis.grid(visible=True, alpha=0.2)
     axes[0].set_ylabel("criterion, Eq. (12), in %")
-    axes[-1].legend(loc="upper right", fontsize=8)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, fontsize=8)
     try:
-        figure.savefig(path, dpi=150)
+        # Without a date the same study gives the same file.
+        figure.savefig(path, dpi=150, metadata={"Date": None} if path.suffix == ".svg" else None)
     except ValueError as error:
         raise ConfigurationError(f"--figure {path}: {error}") from error
 
