@@ -13,6 +13,8 @@ from advisor.decision.verdict import RuleResult
 
 ALLOWED_INCREASE = 2.0
 """The factor of Eq. (10)."""
+LEAST_COST = 1e-24
+"""det R of residuals of 1 µrad and 1 µrad/s: below every instrument's resolution a cost says nothing."""
 
 Costs = Sequence[float | None]
 
@@ -20,7 +22,8 @@ Costs = Sequence[float | None]
 def continuous_improvement(costs: Costs) -> tuple[RuleResult, ...]:
     """Eq. (10): J(θ̂ᵢ) < 2·J(θ̂ᵢ₋₁), with i − 1 the last manoeuvre this rule *accepted*.
 
-    The first usable manoeuvre has nothing to be compared with and is accepted.
+    The first usable manoeuvre has nothing to be compared with and is accepted. Costs below
+    `LEAST_COST`, of data without noise, count as equal.
 
     Parameters
     ----------
@@ -33,7 +36,7 @@ def continuous_improvement(costs: Costs) -> tuple[RuleResult, ...]:
         accepted = cost is not None and (limit is None or cost < limit)
         results.append(RuleResult(accepted, limit))
         if accepted and cost is not None:
-            limit = ALLOWED_INCREASE * cost
+            limit = ALLOWED_INCREASE * max(cost, LEAST_COST)
     return tuple(results)
 
 

@@ -38,6 +38,10 @@ def test_a_poor_first_manoeuvre_does_not_shut_out_the_good_ones_after_it() -> No
     assert accepted(separate_computation([100.0, 1.0, 0.9])) == [True, True, True]
 
 
+def test_data_without_noise_are_not_rejected_for_the_last_digit_of_their_cost() -> None:
+    assert accepted(continuous_improvement([5e-36, 2e-27, 8e-31])) == [True, True, True]
+
+
 def test_separate_computation_asks_for_less_than_the_median_of_all_earlier_ones() -> None:
     results = separate_computation([3.0, 1.0, 2.0, 1.5])
     assert [result.limit for result in results] == [None, 3.0, 2.0, 2.0]
