@@ -65,21 +65,36 @@ def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
     """The estimates brought to their mean air speed, where every one of them knows its own.
 
     Each parameter goes with its power of V (``SPEED_EXPONENTS``), gravity's part g/V of Z_0 apart.
-    Estimates that already stand at one speed, or do not know theirs, are left as they are.
+    Estimates that already stand at one speed, or do not know theirs, are left as they are. The colour
+    of the residuals is a matter of instruments and air, which the manoeuvres share: how much it widens
+    the Cramér-Rao bounds is the median over them, steadier than each manoeuvre's own.
     """
+    widening = _widening_by_colour(estimates)
     known = [e.airspeed_m_s for e in estimates if e.airspeed_m_s is not None and e.airspeed_m_s > 0.0]
     if not known or len(known) < len(estimates):
-        return [Belief(e.theta, e.covariance) for e in estimates]
+        return [Belief(e.theta, e.covariance_cr * widening) for e in estimates]
     reference = float(np.mean(known))
-    return [_at_speed(e, v, reference) for e, v in zip(estimates, known, strict=True)]
+    return [_at_speed(e, v, reference, widening) for e, v in zip(estimates, known, strict=True)]
 
 
-def _at_speed(estimate: Estimate, speed: float, reference: float) -> Belief:
+def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
+    """(8, 8) factor on the Cramér-Rao bounds: median ratio of corrected to plain errors, squared."""
+    if not estimates:
+        return np.ones((len(PARAMETERS), len(PARAMETERS)))
+    plain = np.array([e.std_cr for e in estimates])
+    corrected = np.array([e.std for e in estimates])
+    usable = np.isfinite(plain) & np.isfinite(corrected) & (plain > 0.0)
+    ratio = np.divide(corrected, plain, out=np.ones_like(plain), where=usable)
+    median = np.median(ratio, axis=0)
+    return np.outer(median, median)
+
+
+def _at_speed(estimate: Estimate, speed: float, reference: float, widening: FloatArray) -> Belief:
     scale = (reference / speed) ** _SPEED_POWER
     gravity = np.zeros(len(PARAMETERS))
     gravity[PARAMETERS.index("Z_0")] = _GRAVITY
     theta = (estimate.theta - gravity / speed) * scale + gravity / reference
-    return Belief(theta, estimate.covariance * np.outer(scale, scale))
+    return Belief(theta, estimate.covariance_cr * widening * np.outer(scale, scale))
 
 
 def pool_shared(beliefs: Sequence[Belief]) -> Shared:

@@ -1,5 +1,7 @@
 """Manoeuvres combined by their information: equal to least squares over all of them at once."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -107,6 +109,15 @@ def test_estimates_at_different_speeds_are_brought_to_their_mean_speed() -> None
     both = [estimate(at_25[v], airspeed_m_s=v) for v in (20.0, 30.0)]
     for belief in beliefs_at_one_speed(both):
         np.testing.assert_allclose(belief.theta, at_25[25.0], rtol=1e-12)
+
+
+def test_the_colour_of_the_residuals_is_shared_by_the_manoeuvres() -> None:
+    # One manoeuvre's own colour came out six times too small, by chance: the others correct it.
+    white = estimate().covariance_cr
+    colours = [1.0, 6.0, 6.5, 5.5, 6.0]
+    coloured = [replace(estimate(), covariance=k**2 * white) for k in colours]
+    for belief in beliefs_at_one_speed(coloured):
+        np.testing.assert_allclose(belief.covariance, 36.0 * white)
 
 
 def test_without_every_air_speed_nothing_is_scaled() -> None:
