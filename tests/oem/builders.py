@@ -51,14 +51,18 @@ def simulate(theta: Array, x0: Sequence[float], t_input: Array, u: Array, t: Arr
     z = np.array([*x0, 0.0])
     rows = [z]
     value = np.interp(stamps, t_input, u)
+    m = np.zeros((6, 6))
+    m[0] = [theta[1], 1 + theta[2], 0, theta[3], 0, theta[0]]
+    m[1] = [theta[5], theta[6], 0, theta[7], 0, theta[4]]
+    m[2, 1] = 1.0
+    m[3, 4] = 1.0
+    steps: dict[float, Array] = {}
     for k, h in enumerate(np.diff(stamps)):
-        m = np.zeros((6, 6))
-        m[0] = [theta[1], 1 + theta[2], 0, theta[3], 0, theta[0]]
-        m[1] = [theta[5], theta[6], 0, theta[7], 0, theta[4]]
-        m[2, 1] = 1.0
-        m[3, 4] = 1.0
+        key = round(float(h), 13)
+        if key not in steps:
+            steps[key] = expm(m * h)
         full = np.array([*z, value[k], (value[k + 1] - value[k]) / h, 1.0])
-        z = (expm(m * h) @ full)[:3]
+        z = (steps[key] @ full)[:3]
         rows.append(z)
     return np.array(rows)[where]
 

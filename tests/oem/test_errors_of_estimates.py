@@ -1,0 +1,67 @@
+import numpy as np
+import pytest
+from scipy.linalg import toeplitz
+
+from advisor.oem.colour import Colour, Stretch, find_colour, product
+from benchmarks.accuracy import noise, study
+
+RNG = np.random.default_rng(11)
+COLUMNS = np.column_stack([np.ones(600), np.linspace(-1, 1, 600), np.sin(np.arange(600) / 90.0)])
+
+
+def stretch(memory, share, seed, n=600):
+    """A residual: coloured and white noise, less what the columns can explain of it."""
+    rng = np.random.default_rng(seed)
+    v = noise(rng, (n, 1), memory)[:, 0] + np.sqrt(share) * rng.standard_normal(n)
+    explained = COLUMNS @ np.linalg.lstsq(COLUMNS, v, rcond=None)[0]
+    return Stretch(v - explained, COLUMNS)
+
+
+@pytest.mark.parametrize(("memory", "share"), [(0.5, 0.0), (0.8, 0.0), (0.95, 0.0), (0.97, 1.0)])
+def test_the_colour_of_noise_is_found_though_the_fit_has_eaten_part_of_it(memory, share):
+    found = [find_colour([stretch(memory, share, seed)]) for seed in range(12)]
+    assert np.mean([c.memory for c in found]) == pytest.approx(memory, abs=0.04)
+    # What matters is the noise's power at low frequencies.
+    slow = [c.variance * ((1 + c.memory) / (1 - c.memory) + c.white_share) for c in found]
+    assert np.median(slow) == pytest.approx((1 + memory) / (1 - memory) + share, rel=0.25)
+
+
+def test_white_noise_is_called_white():
+    found = [find_colour([stretch(0.0, 0.0, seed)]) for seed in range(20)]
+    assert sum(c.memory == 0.0 for c in found) >= 18
+    assert np.mean([c.variance for c in found]) == pytest.approx(1.0, rel=0.05)
+
+
+def test_several_stretches_tell_the_colour_better_than_one():
+    one = find_colour([stretch(0.9, 0.0, 0)])
+    many = find_colour([stretch(0.9, 0.0, seed) for seed in range(8)])
+    assert many.uncertainty[1, 1] < one.uncertainty[1, 1] / 4
+
+
+def test_the_coloured_product_is_that_with_the_full_matrix():
+    rows = RNG.standard_normal((80, 3))
+    colour = Colour(2.5, 0.8, 0.3, np.zeros((3, 3)))
+    gamma = 2.5 * (toeplitz(0.8 ** np.arange(80)) + 0.3 * np.eye(80))
+    np.testing.assert_allclose(product(rows, colour), rows.T @ gamma @ rows, rtol=1e-10)
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.95])
+def test_intervals_hold_the_truth_and_plain_ones_do_not_when_noise_is_coloured(memory):
+    row = study(120, memory, 1, seed=4)
+    assert row.failed == 0
+    assert 0.91 < row.corrected.mean() < 0.98
+    assert (row.plain.mean() > 0.91) == (memory == 0.0)
+
+
+@pytest.mark.study
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("together", [1, 3])
+@pytest.mark.parametrize("memory", [0.0, 0.5, 0.8, 0.95])
+def test_two_thousand_manoeuvres_reach_the_bound_and_hold_their_intervals(memory, together):
+    row = study(2000, memory, together)
+    assert row.failed == 0
+    assert np.all((row.corrected > 0.93) & (row.corrected < 0.97)), row.corrected
+    if memory == 0.0:
+        # A mean square of 2,000 draws scatters by 3.2 %.
+        assert np.all(np.abs(row.efficiency - 1.0) < 0.05 + 2 * 0.032), row.efficiency
+        assert abs(row.efficiency.mean() - 1.0) < 0.05
