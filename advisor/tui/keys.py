@@ -30,11 +30,13 @@ SELDOM: list[BindingType] = [
     _key("m", "mark", "Mark", id="mark", show=True),
 ]
 
+PANES = ("manoeuvres", "verdict", "parameters", "fit", "live", "criterion", "channels and link", "log")
+
 ENGINEER: list[BindingType] = [
     _key("x", "exclude", "Exclude", id="exclude", show=True),
     _key("n", "note", "Note", id="note", show=True),
     _key("o", "next_output", "Next output", id="next_output"),
-    *(_key(str(k), f"choose({k})", f"Pane {k}", id=f"pane_{k}") for k in range(1, 9)),
+    *(_key(str(k), f"choose({k})", f"Pane: {name}", id=f"pane_{k}") for k, name in enumerate(PANES, 1)),
 ]
 
 ACTIONS = frozenset(

@@ -1,8 +1,10 @@
 """Runs the real application headless over a campaign and a source under the test's control."""
 
+import re
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from html import unescape
 from time import monotonic
 from typing import Any
 
@@ -16,6 +18,8 @@ from advisor.tui.settings import Settings
 from advisor.tui.source import Source
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
+
+_TEXT = re.compile(r'<text class="[^"]*-r\d+" x="([\d.]+)" y="([\d.]+)"[^>]*>([^<]*)<')
 
 
 @dataclass
@@ -40,6 +44,13 @@ class Stage:
         """Press keys and let their effects happen."""
         await self.pilot.press(*keys)
         await self.pilot.pause()
+
+    def page(self) -> str:
+        """The characters on the screen, row by row."""
+        rows: dict[float, str] = {}
+        for x, y, text in _TEXT.findall(self.app.export_screenshot()):
+            rows[float(y)] = rows.get(float(y), "").ljust(round(float(x) / 12.2)) + unescape(text)
+        return "\n".join(rows[y].replace("\xa0", " ").rstrip() for y in sorted(rows))
 
     def words(self, selector: str = "Lines") -> str:
         """Everything that a part of the screen says."""

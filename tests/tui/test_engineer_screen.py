@@ -44,7 +44,7 @@ async def test_the_eight_parameters_stand_with_intervals_beside_the_prior_model(
         assert set(rows) == {"Z_0", "Z_α", "Z_q", "Z_δe", "M_0", "M_α", "M_q", "M_δe"}
         assert rows["M_α"][0].startswith("−4")
         assert " ± 3.7" in rows["M_α"][0]
-        assert rows["M_α"][2] == "−52.800"
+        assert rows["M_α"][2] == "−52.8"
         assert rows["M_α"][3].endswith("σ")
 
 

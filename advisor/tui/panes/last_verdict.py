@@ -4,6 +4,7 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from advisor.campaign_state import JudgedManeuver
+from advisor.tui.letters import HEIGHT, block_letters
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
@@ -21,20 +22,21 @@ class LastVerdict(Part, Vertical):
     """The newest manoeuvre's verdict."""
 
     def compose(self) -> ComposeResult:
-        """A line that names it, and its sentence."""
-        yield Lines(id="verdict-word")
-        yield Lines(id="verdict-sentence")
+        """The word, large where there is room; a line that names the manoeuvre, and the sentence."""
+        yield Lines(id="verdict-block")
+        yield Lines("no manoeuvre yet", id="verdict-word")
+        yield Lines("The verdict stands here a few seconds after a manoeuvre ends.", id="verdict-sentence")
 
     def show(self, view: View) -> None:
-        """Write the newest verdict, or why there is none."""
-        word, sentence = self.query_one("#verdict-word", Lines), self.query_one("#verdict-sentence", Lines)
+        """Write the newest verdict, once there is one."""
         if not view.state.maneuvers:
-            word.write("no manoeuvre yet")
-            sentence.write("The verdict stands here a few seconds after a manoeuvre ends.")
             return
         judged = view.state.maneuvers[-1]
         symbol, name = symbol_and_word(judged)
-        word.write(f"{symbol} {name}   manoeuvre {judged.maneuver.number}: {judged.maneuver.span.kind}")
-        sentence.write(judged.excluded_because or without_word(judged.verdict.sentence))
+        title = f"{symbol} {name}   manoeuvre {judged.maneuver.number}: {judged.maneuver.span.kind}"
+        sentence = judged.excluded_because or without_word(judged.verdict.sentence)
+        self.query_one("#verdict-block", Lines).write(block_letters(name, self.size.width, HEIGHT))
+        self.query_one("#verdict-word", Lines).write(title)
+        self.query_one("#verdict-sentence", Lines).write(sentence)
         self.set_class(judged.verdict.accepted, "-good")
         self.set_class(not judged.verdict.accepted, "-warn")

@@ -10,7 +10,7 @@ from advisor.tui.panes.history import history_chart
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.view import View
-from advisor.tui.words import PARAMETERS, signed
+from advisor.tui.words import PARAMETERS, decimals_for, signed
 
 _COLUMNS = ("parameter", "model ± 95 %", "selected ± 95 %", "prior", "off by")
 
@@ -74,14 +74,22 @@ verdict pane says why.
 
 def _cells(name: str, model: object, selected: object, prior: float | None) -> tuple[str, ...]:
     quantity = PARAMETERS[name]
-    before = signed(prior * quantity.factor, 3) if prior is not None else "-"
     return (
         f"{quantity.symbol} {quantity.unit}".removesuffix(" -"),
         _value(name, model),
         _value(name, selected),
-        before,
+        _prior(name, model, prior),
         _off_by(name, model, prior),
     )
+
+
+def _prior(name: str, estimate: object, prior: float | None) -> str:
+    """The prior in as many digits as the estimate deserves."""
+    if prior is None:
+        return "-"
+    factor = PARAMETERS[name].factor
+    half = 1.96 * factor * float(estimate.std[NAMES.index(name)]) if isinstance(estimate, Estimate) else 0.0
+    return signed(prior * factor, decimals_for(half))
 
 
 def _value(name: str, estimate: object) -> str:

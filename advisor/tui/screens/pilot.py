@@ -1,6 +1,7 @@
 """The pilot's screen: one glance, one word."""
 
 from textual.app import ComposeResult
+from textual.events import Resize
 from textual.widgets import Footer
 
 from advisor.tui.panes.big_word import BigWord, Why
@@ -10,6 +11,8 @@ from advisor.tui.panes.last_verdict import LastVerdict
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.screens.face import Face
+
+_TALL = 38
 
 
 class PilotScreen(Face):
@@ -40,3 +43,7 @@ The large word is what to do now:
         yield CrewNotes()
         yield ReplayBar()
         yield Footer(compact=True)
+
+    def on_resize(self, event: Resize) -> None:
+        """On a tall terminal the verdict is written large too."""
+        self.set_class(event.size.height >= _TALL, "-tall")
