@@ -39,10 +39,9 @@ def _options(conditions: Conditions) -> Iterator[Choice]:
     frequency = ShortPeriod(conditions.theta).natural_frequency
     if not np.isfinite(frequency) or frequency <= 0.0:
         return
-    nose_up_first = conditions.last.span.steps[0][1] > 0.0
     for order in ORDERS:
         for unit in units_to_try(frequency):
-            option = StepInput(order, float(unit), conditions.largest_rad, nose_up_first)
+            option = StepInput(order, float(unit), conditions.largest_rad, not conditions.nose_up_first)
             choice = _as_large_as_allowed(option, conditions)
             if choice is not None:
                 yield choice

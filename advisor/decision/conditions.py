@@ -42,7 +42,8 @@ class Conditions:
     """Largest excursion of α allowed."""
     travel_rad: float
     """Elevator travel from trim to the nearer stop: what 100 % stick means."""
-    last: Maneuver
+    nose_up_first: bool
+    """Direction of the last manoeuvre's first step."""
     last_std: FloatArray
     """(8,) errors of the last manoeuvre's estimate."""
 
@@ -56,15 +57,14 @@ def find_conditions(history: Sequence[Flown], aircraft: Aircraft) -> Conditions 
     fits = estimate.fits[0]
     span, elevator = last.span, last.channels["elevator"]
     theta = knowledge([e for e, _ in flown], aircraft.campaign).belief.theta
-    lead = elevator.cut(span.record_from_s, span.start_s)
-    trim = float(np.median(lead.y)) if len(lead) else float(elevator.y[0])
+    trim = _trim(last)
     travel = _travel(aircraft, trim)
     largest_seen = max(_excursion(e) for e, _ in flown)
     alpha = max(largest_seen, min(BOLDER * largest_seen, LINEAR_RAD))
     if aircraft.limits.alpha_deg is not None:
         start = float(np.median(fits["alpha"].fitted[:5]))
         alpha = max(ALPHA_MARGIN * (np.radians(aircraft.limits.alpha_deg) - start), 0.25 * largest_seen)
-    largest = max(abs(level) for _, m in flown for _, level in m.span.steps)
+    largest = max(float(np.max(np.abs(_about_trim(m)))) for _, m in flown)
     return Conditions(
         theta=theta,
         trim_rad=trim,
@@ -79,9 +79,26 @@ def find_conditions(history: Sequence[Flown], aircraft: Aircraft) -> Conditions 
         largest_rad=min(BOLDER * largest, ALPHA_MARGIN * travel),
         alpha_rad=float(alpha),
         travel_rad=travel,
-        last=last,
+        nose_up_first=_nose_up_first(last),
         last_std=estimate.std,
     )
+
+
+def _trim(maneuver: Maneuver) -> float:
+    """Elevator before the first step, rad."""
+    elevator, span = maneuver.channels["elevator"], maneuver.span
+    lead = elevator.cut(span.record_from_s, span.start_s)
+    return float(np.median(lead.y)) if len(lead) else float(elevator.y[0])
+
+
+def _about_trim(maneuver: Maneuver) -> FloatArray:
+    return maneuver.channels["elevator"].y - _trim(maneuver)
+
+
+def _nose_up_first(maneuver: Maneuver) -> bool:
+    """Whether the first large movement is trailing edge up."""
+    moved = _about_trim(maneuver)
+    return bool(moved[np.argmax(np.abs(moved) >= 0.5 * np.max(np.abs(moved)))] < 0.0)
 
 
 def _excursion(estimate: Estimate) -> float:

@@ -140,15 +140,13 @@ def _flown(scene: Scene, flight: Flight, noise: FloatArray, rng: np.random.Gener
     (estimate,) = estimate_copies(flight, noise, 1, rng)
     moving = np.flatnonzero(np.abs(flight.elevator - flight.elevator[0]) > 1e-9)
     start, end = flight.t[moving[0]], flight.t[min(moving[-1] + 1, len(flight.t) - 1)]
-    level = float(flight.elevator[moving[len(moving) // 20 + 1]] - flight.elevator[0])
-    largest = float(np.max(np.abs(flight.elevator - flight.elevator[0])))
     span = Span(
         record_from_s=0.0,
         start_s=float(start),
         last_step_s=float(end),
         end_s=float(flight.t[-1]),
         kind="other",
-        steps=((float(start), np.sign(level) * largest), (float(end), 0.0)),
+        steps=(),
         closed_by="quiet",
     )
     elevator = Channel("elevator", flight.t, flight.elevator)
