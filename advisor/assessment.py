@@ -1,17 +1,37 @@
 """One manoeuvre on its own: its estimate, what speaks against it, what belongs on its verdict."""
 
-from advisor.aircraft import Aircraft
+import math
+
+from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.decision.history import Flown
 from advisor.decision.quality import judge_quality
 from advisor.flight.kinematics import check_alpha
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.vehicle import closes_pitch_loop
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
+from advisor.oem.filter_error import filter_error_estimate, turbulence_in
+
+COLOURED = 0.5
+"""Lag-1 correlation of a residual below which nothing drives it."""
+UNEXPLAINED = 0.02
+"""Share of the pitch rate's variance that moving air leaves unexplained at the least."""
 
 
 def assess(maneuver: Maneuver, aircraft: Aircraft) -> Flown:
     """Estimate a manoeuvre and examine it, before any rule compares it with others."""
     estimated = estimate(maneuver, aircraft)
+    opinion, air = _second_opinion(maneuver, estimated, aircraft)
+    return Flown(
+        estimated,
+        judge_quality(maneuver, estimated, aircraft),
+        (*_cautions(maneuver, aircraft), *air),
+        maneuver=maneuver,
+        second_opinion=opinion,
+    )
+
+
+def _cautions(maneuver: Maneuver, aircraft: Aircraft) -> list[str]:
     cautions = []
     if closes_pitch_loop(maneuver.mode):
         cautions.append(
@@ -24,5 +44,30 @@ def assess(maneuver: Maneuver, aircraft: Aircraft) -> Flown:
     check = check_alpha(maneuver, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m)
     if check.finding != "consistent":
         cautions.append(check.sentence)
-    reasons = judge_quality(maneuver, estimated, aircraft)
-    return Flown(estimated, reasons, tuple(cautions), maneuver=maneuver)
+    return cautions
+
+
+def _second_opinion(
+    maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft
+) -> tuple[Estimate | None, tuple[str, ...]]:
+    """Filter error where the air moved: output error takes what the air does for noise of the instruments."""
+    if isinstance(estimated, NoEstimate):
+        return None, ()
+    fit = estimated.fits[0]["q"]
+    if fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED:
+        return None, ()
+    found = turbulence_in(estimated, maneuver.channels["alpha"].provenance != "derived")
+    if not found.present:
+        return None, ()
+    size = f"gusts of {math.degrees(found.gust_angle):.1f} deg"
+    if estimated.airspeed_m_s is not None:
+        size += f" ({found.gust_angle * estimated.airspeed_m_s:.1f} m/s)"
+    opinion = filter_error_estimate([maneuver], aircraft, estimated, found)
+    if isinstance(opinion, NoEstimate):
+        return None, (f"turbulence, {size}: output error is out of its validity, and filter error failed",)
+    values = ", ".join(
+        f"{name} {opinion.value(name):.3g} ± {2.0 * opinion.std[PARAMETERS.index(name)]:.2g} "
+        f"instead of {estimated.value(name):.3g}"
+        for name in ("M_alpha", "M_delta_e")
+    )
+    return opinion, (f"turbulence, {size}: output error is out of its validity; filter error gives {values}",)

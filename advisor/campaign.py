@@ -164,6 +164,7 @@ class Campaign:
                 verdict,
                 flown.excluded_because,
                 self._notes.get(maneuver.number, ()),
+                flown.second_opinion,
             )
             for maneuver, flown, verdict in zip(self._maneuvers, self._history, verdicts, strict=True)
         )

@@ -24,6 +24,8 @@ class Flown:
     """Set when an engineer took it out by hand."""
     maneuver: Maneuver | None = None
     """What was flown, for advice on what to fly next."""
+    second_opinion: Estimate | None = None
+    """Filter error's estimate, where the air moved."""
 
     @property
     def usable(self) -> Estimate | None:

@@ -324,7 +324,7 @@ def filter_error_estimate(
             break
     if not np.all(np.isfinite(theta)):
         return NoEstimate("not_converged", "The filter error estimate did not settle.")
-    covariance: FloatArray = np.linalg.pinv(information, rcond=1e-12, hermitian=True)
+    covariance = np.asarray(np.linalg.pinv(information, rcond=1e-12, hermitian=True), float)
     note = (
         f"Filter error: gusts of {np.degrees(found.gust_angle):.2f} deg allowed for." if found.present
         else "Filter error: no moving air found, noise of the instruments only."

@@ -91,6 +91,7 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
             for name, fit in (estimate.fits[0].items() if estimate else ())
         },
         "estimates": parameters(judged.estimate),
+        "second_opinion": parameters(judged.second_opinion),
         "not_identifiable": dict(estimate.not_identifiable) if estimate else {},
         "rules": {name: _rule(result) for name, result in verdict.rules.items()},
     }
