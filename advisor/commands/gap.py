@@ -1,0 +1,87 @@
+"""``advisor gap``: why does the real aircraft not fly like our simulator."""
+
+import json
+from pathlib import Path
+
+import click
+
+from advisor.commands.options import (
+    UNUSABLE,
+    aircraft_option,
+    json_option,
+    read_aircraft,
+    target_system_option,
+)
+from advisor.problems import ConfigurationError, UnusableInputError
+
+
+@click.command
+@click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
+@aircraft_option
+@target_system_option
+@click.option("--holdout", type=click.IntRange(1), help="Manoeuvres, the last ones, kept out of every fit.")
+@click.option("--out", type=click.Path(path_type=Path), help="Where to write the improved simulator.")
+@click.option("--foresee", is_flag=True, help="No flight: what would this plan show? Needs an aircraft file.")
+@click.option(
+    "--plan", default="3211,rev,rev,3211,rev,3211,rev", show_default=True, help="Manoeuvres to fly."
+)
+@click.option("--rate", "rate_hz", type=float, default=50.0, show_default=True, help="Stream rate in Hz.")
+@click.option("--amplitude-deg", type=float, default=2.0, show_default=True, help="Elevator step.")
+@click.option("--without", default="", help="Channels the plan will not have, e.g. a_z,theta.")
+@json_option
+def command(
+    logs: tuple[Path, ...],
+    aircraft_file: Path | None,
+    target_system: int | None,
+    holdout: int | None,
+    out: Path | None,
+    foresee: bool,
+    plan: str,
+    rate_hz: float,
+    amplitude_deg: float,
+    without: str,
+    as_json: bool,
+) -> int:
+    """Diagnose the sim-to-real gap: where it lies, which effect causes it, how far it shrinks.
+
+    \b
+    Example:
+      advisor gap flight.tlog --aircraft my-aircraft.yaml
+      advisor gap flight-1.tlog flight-2.tlog --holdout 3 --json
+      advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
+    """
+    aircraft = read_aircraft(aircraft_file)
+    if foresee:
+        from advisor.report.gap_plan import print_foresight
+
+        return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
+    if not logs:
+        raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
+    from advisor.gap.document import gap_document
+    from advisor.report.gap import diagnose_logs, improved_name, write_improved
+
+    show = None if as_json else _progress
+    try:
+        found = diagnose_logs(logs, aircraft, holdout, target_system, show or (lambda *_: None))
+    except UnusableInputError as error:
+        if as_json:
+            click.echo(json.dumps(gap_document(None, [error.problem]), indent=1))
+        click.echo(str(error.problem), err=True)
+        return UNUSABLE
+    improved = None
+    if found.verdict in ("effect", "parameters"):
+        improved = str(write_improved(found, aircraft, out or Path(improved_name(found, aircraft_file))))
+    if as_json:
+        click.echo(json.dumps(gap_document(found, (), improved), allow_nan=False, indent=1))
+    else:
+        from rich.console import Console
+
+        from advisor.report.gap_screen import GapScreen
+
+        click.echo(err=True)
+        Console(highlight=False).print(GapScreen(found, improved))
+    return 0
+
+
+def _progress(what: str, share: float) -> None:
+    click.echo(f"\r\033[K{100 * share:3.0f} %  {what}", nl=False, err=True)

@@ -1,0 +1,81 @@
+"""Is the air moving? Turbulence and gusts, told from coloured instrument noise by their pattern.
+
+A gust enters the vane, the lift and the moment at once; noise of instruments, however coloured, does
+not. Judged by the Kalman likelihood of ``advisor.oem.filter_error``; the course of the gust itself comes
+from the probe of the air.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fit import Fitted, Problem
+from advisor.gap.floor import white_noise
+from advisor.gap.probes import KNOTS_S, disturbance_course
+from advisor.oem.filter_error import CHANNELS, Rows, find_turbulence
+
+_LEAST_GAIN = 40.0
+"""Log likelihood by which moving air must beat coloured instruments."""
+_MOST_MANEUVERS = 5
+"""Enough to recognise turbulence by."""
+
+
+@dataclass(frozen=True)
+class Air:
+    """Air that moves, as the data show it."""
+
+    angle_std: float
+    """Standard deviation of the gust angle w/V, rad."""
+    gain: float
+    gust: bool
+    """One or few bumps in otherwise still air, not turbulence."""
+    gust_number: int
+    """Manoeuvre with the largest gust."""
+    gust_angle: float
+    """Largest departure of the air's angle, rad."""
+    gust_at_s: float
+    """Vehicle time of its peak."""
+
+
+def moving_air(problem: Problem, fitted: Fitted, alpha_is_derived: bool) -> Air | None:
+    """The air's motion when it is there; None when noise of the instruments explains the residual as well."""
+    if "alpha" not in problem.channels or "q" not in problem.channels:
+        return None
+    rows = [_rows(problem, fitted, i) for i in range(len(problem.flights))]
+    loudest = sorted(range(len(rows)), key=lambda i: -float(np.mean(fitted.left[i] ** 2)))[:_MOST_MANEUVERS]
+    white = white_noise(problem.flights)
+    d = fitted.point.derivatives
+    found = find_turbulence(
+        [rows[i] for i in loudest], np.array([d[0], d[1], d[3], d[4]]),
+        np.array([white.get(c, 1.0) for c in CHANNELS]), not alpha_is_derived,
+    )  # fmt: skip
+    if found.gain < _LEAST_GAIN or found.gust_angle < 0.001:
+        return None
+    courses = disturbance_course(
+        problem, fitted, "air unseen" if alpha_is_derived else "air", found.gust_angle
+    )
+    joined = np.concatenate(courses)
+    typical = float(np.median(np.abs(joined - np.median(joined)))) / 0.6745
+    peaks = [float(np.max(np.abs(a))) for a in courses]
+    number = int(np.argmax(peaks))
+    at = int(np.argmax(np.abs(courses[number])))
+    flight = problem.flights.flights[number]
+    return Air(
+        angle_std=found.gust_angle, gain=found.gain,
+        # Gaussian air of this many samples reaches four times its spread, a lone gust far more.
+        gust=peaks[number] > 6.0 * typical, gust_number=flight.number,
+        gust_angle=float(courses[number][at]), gust_at_s=flight.started_s + KNOTS_S * (at + 1),
+    )  # fmt: skip
+
+
+def _rows(problem: Problem, fitted: Fitted, i: int) -> Rows:
+    """Residuals of one manoeuvre merged in order of time."""
+    flight = problem.flights.flights[i]
+    t = np.concatenate([flight.outputs[c].t for c in problem.channels])
+    channel = np.concatenate(
+        [np.full(len(flight.outputs[c].t), CHANNELS.index(c), dtype=np.int64) for c in problem.channels]
+    )
+    order = np.argsort(t, kind="stable")
+    left: FloatArray = fitted.left[i]
+    return Rows(t[order], channel[order], left[order], float(np.mean(flight.slow[0])))

@@ -1,0 +1,41 @@
+"""The air speed during a manoeuvre: the slow, noisy instrument made smooth by the accelerometers.
+
+V̇ = a_x cos α + a_z sin α − g sin(θ − α) is integrated; a parabola in time, fitted to the measured
+air speed, takes the integral's drift out. The instrument gives the level, the accelerometers the shape.
+"""
+
+import numpy as np
+
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+from advisor.gap.simulate import GRAVITY_M_S2
+
+
+def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
+    """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,)."""
+    found = maneuver.channels
+    t, y = found["airspeed"].t - start_s, found["airspeed"].y
+    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
+        return _smoothed(grid, t, y)
+
+    def at(name: str) -> FloatArray:
+        return np.interp(grid, found[name].t - start_s, found[name].y)
+
+    alpha = at("alpha")
+    rate = at("a_x") * np.cos(alpha) + at("a_z") * np.sin(alpha) - GRAVITY_M_S2 * np.sin(at("theta") - alpha)
+    shape = np.concatenate(([0.0], np.cumsum(np.diff(grid) * (rate[1:] + rate[:-1]) / 2.0)))
+    inside = (t >= grid[0]) & (t <= grid[-1])
+    if np.count_nonzero(inside) < 6:
+        return _smoothed(grid, t, y)
+    drift = np.polyfit(t[inside], y[inside] - np.interp(t[inside], grid, shape), 2)
+    rebuilt = shape + np.polyval(drift, grid)
+    apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
+    # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
+    return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else _smoothed(grid, t, y)
+
+
+def _smoothed(grid: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
+    """Moving mean over half a second of the linear interpolation."""
+    fine = np.interp(grid, t, y)
+    width = max(1, round(0.5 / float(grid[1] - grid[0]))) | 1
+    return np.convolve(np.pad(fine, width // 2, mode="edge"), np.full(width, 1.0 / width), mode="valid")

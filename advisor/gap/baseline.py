@@ -1,0 +1,110 @@
+"""Where the search begins: the plain model fitted to the data without a guess from the user."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates import input
+from advisor.gap.data import Flight, Flights
+from advisor.gap.fit import Fitted, Point, Problem, fit
+from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
+from advisor.gap.screen import Screen
+from advisor.gap.simulate import GRAVITY_M_S2
+
+_CLEARLY = 10.0
+"""Twice the log likelihood by which a held command must win over a linear one."""
+
+
+def base_entries(aircraft: Aircraft) -> FloatArray:
+    """Shape (entries,): what the aircraft file says lies between command and surface."""
+    base = np.zeros(len(ENTRIES))
+    base[INDEX["lag_s"]] = aircraft.elevator.lag_s or 0.0
+    base[INDEX["delay_s"]] = aircraft.elevator.delay_s or 0.0
+    base[INDEX["vane_arm_m"]] = aircraft.alpha.vane_arm_m or 0.0
+    base[INDEX["imu_arm_m"]] = aircraft.accelerometer.arm_m or 0.0
+    return base
+
+
+def believed_derivatives(aircraft: Aircraft) -> FloatArray | None:
+    """Shape (6,): what the aircraft file says of the derivatives; None unless it has them all."""
+    if any(name not in aircraft.model for name in DERIVATIVES):
+        return None
+    return np.array([aircraft.model[name] for name in DERIVATIVES])
+
+
+def first_guess(flights: Flights, aircraft: Aircraft) -> Point:
+    """Derivatives by equation error (regression of the rates), or the aircraft file's own."""
+    own = np.zeros((len(flights), 4))
+    own[:, 2] = [-GRAVITY_M_S2 / np.mean(f.slow[0]) for f in flights.flights]
+    rows_q, rate_q, rows_a, rate_a = [], [], [], []
+    for f in flights.flights:
+        r, y, ra, ya = _regression(f)
+        rows_q.append(r)
+        rate_q.append(y)
+        rows_a.append(ra)
+        rate_a.append(ya)
+    ridge = 1e-6
+    moment = _ridge(np.vstack(rows_q), np.concatenate(rate_q), ridge)
+    force = (
+        _ridge(np.vstack(rows_a), np.concatenate(rate_a), ridge)
+        if "alpha" in flights.channels
+        else np.zeros(2)
+    )
+    guess = np.array([force[0], 0.0, force[1], moment[0], moment[1], moment[2]])
+    guess[0] = min(guess[0], -0.1)
+    guess[4] = min(guess[4], -0.05)
+    believed = believed_derivatives(aircraft)
+    return Point(guess if believed is None else believed.copy(), own)
+
+
+def _regression(f: Flight) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Rows and rates of both equations on a 20 ms grid, in integral form over 0.2 s to spare derivatives."""
+    t = np.arange(0.0, f.duration_s, 0.02)
+    q = np.interp(t, f.outputs["q"].t, f.outputs["q"].y)
+    d = np.interp(t, f.t_u, f.u) - f.u_trim
+    if "alpha" in f.outputs:
+        a = np.interp(t, f.outputs["alpha"].t, f.outputs["alpha"].y) - f.trim[0]
+    else:
+        a = np.concatenate(([0.0], np.cumsum(q[1:] * 0.02))) * 0.0
+    span = 10
+
+    def windowed(y: FloatArray) -> FloatArray:
+        total = np.concatenate(([0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * 0.02)))
+        return total[span:] - total[:-span]
+
+    X = np.column_stack([windowed(a), windowed(q), windowed(d)])
+    X = X - X.mean(axis=0)
+    dq, da = q[span:] - q[:-span], a[span:] - a[:-span]
+    ya = da - windowed(q)
+    return X, dq - dq.mean(), X[:, [0, 2]], ya - ya.mean()
+
+
+def _ridge(X: FloatArray, y: FloatArray, ridge: float) -> FloatArray:
+    scale = np.sqrt(np.mean(X**2, axis=0)) + 1e-12
+    Xs = X / scale
+    return np.asarray(np.linalg.solve(Xs.T @ Xs + ridge * len(X) * np.eye(X.shape[1]), Xs.T @ y) / scale)
+
+
+def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]:
+    """The plain model, with the command held or linear between its stamps as the data decide.
+
+    The choice is made with a delay and a lag in the model, else a held command would pass for a
+    delay of half a sample, or a delay for a held command.
+    """
+    linear = Problem(flights, base_entries(aircraft), believed=believed_derivatives(aircraft))
+    fitted = fit(linear, first_guess(flights, aircraft))
+    delay, lag = (v for v in input.variants() if v.effect in ("transport_delay", "actuator_lag"))
+    screen = Screen(linear, fitted)
+    best = min(
+        (s for s in map(screen.try_one, (delay, lag)) if s is not None), key=lambda s: s.cost, default=None
+    )
+    if best is None:
+        return linear, fitted
+    other = lag if best.variant is delay else delay
+    start = best.point.with_effect(other, (0.005,))
+    held = replace(linear, held=True)
+    if fit(held, start, best.noise, 8).cost < fit(linear, start, best.noise, 8).cost - _CLEARLY:
+        return held, fit(held, fitted.point, fitted.noise)
+    return linear, fitted

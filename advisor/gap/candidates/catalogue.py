@@ -1,0 +1,46 @@
+"""All variants that these data allow, and what each effect is called and belongs to."""
+
+from advisor.gap.candidates import force, input, moment, sensors, timing
+from advisor.gap.data import Flights
+from advisor.gap.variant import Variant
+
+BLOCKS = (
+    "input", "force_equation", "moment_equation", "air", "alpha_sensor", "pitch_rate_sensor", "accelerometer",
+    "attitude_sensor", "timing",
+)  # fmt: skip
+BLOCK_OF = {
+    "actuator_lag": "input", "actuator_rate_limit": "input", "actuator_backlash": "input",
+    "actuator_deadband": "input", "transport_delay": "input",
+    "elevator_nonlinearity": "moment_equation", "nonlinear_pitching_moment": "moment_equation",
+    "thrust_moment": "moment_equation", "cg_shift": "moment_equation", "alpha_dot": "moment_equation",
+    "nonlinear_lift": "force_equation", "unsteady_lift": "force_equation", "mass_change": "force_equation",
+    "icing": "force_equation", "airspeed_variation": "force_equation", "ground_effect": "force_equation",
+    "turbulence": "air", "gust": "air",
+    "alpha_lag": "alpha_sensor", "alpha_scale": "alpha_sensor", "alpha_bias": "alpha_sensor",
+    "alpha_vane_offset": "alpha_sensor",
+    "pitch_rate_bias": "pitch_rate_sensor", "pitch_rate_scale": "pitch_rate_sensor",
+    "structural_mode": "pitch_rate_sensor", "accelerometer_offset": "accelerometer",
+    "alpha_skew": "timing", "pitch_rate_skew": "timing", "accelerometer_skew": "timing",
+    "attitude_skew": "timing",
+}  # fmt: skip
+_CHANNEL_OF = {
+    "alpha_lag": "alpha", "alpha_scale": "alpha", "alpha_vane_offset": "alpha", "alpha_skew": "alpha",
+    "accelerometer_offset": "a_z", "accelerometer_skew": "a_z", "attitude_skew": "theta",
+}  # fmt: skip
+
+
+def variants_for(flights: Flights) -> list[Variant]:
+    """Everything that can be tried: the channels it acts on are there, and its input moved."""
+    within = [*input.variants(), *sensors.variants(), *timing.variants()]
+    between = [*moment.variants(flights), *force.variants(flights)]
+    return [v for v in (*within, *between) if _possible(v, flights)]
+
+
+def _possible(v: Variant, flights: Flights) -> bool:
+    if not v.needs <= flights.has or _CHANNEL_OF.get(v.effect, flights.channels[0]) not in flights.channels:
+        return False
+    if v.effect == "thrust_moment":
+        return any(float(f.slow[3].max() - f.slow[3].min()) > 0.02 for f in flights.flights)
+    if v.effect == "ground_effect":
+        return any(float(f.slow[4].max() - f.slow[4].min()) > 0.2 for f in flights.flights)
+    return True

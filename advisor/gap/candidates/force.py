@@ -1,0 +1,76 @@
+"""The force equation: curved and unsteady lift, mass, ice, the ground."""
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.between import breaks, divide, ramps_and_steps
+from advisor.gap.data import Flights
+from advisor.gap.layout import DERIVATIVES, INDEX
+from advisor.gap.variant import Values, Variant
+
+BLOCK = "force_equation"
+_ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
+
+
+def variants(flights: Flights) -> list[Variant]:
+    """Effects of the block; those between manoeuvres depend on how many were flown."""
+    return [
+        Variant(
+            "nonlinear_lift",
+            BLOCK,
+            ("Z_alpha2", "Z_alpha3"),
+            ((0.0, 0.0),),
+            (0.5, 5.0),
+            ((-500.0, 500.0), (-1e4, 1e4)),
+            0.0,
+            entries=("Z_alpha2", "Z_alpha3"),
+        ),
+        Variant(
+            "unsteady_lift",
+            BLOCK,
+            ("share", "lag_s"),
+            ((0.1, 0.1), (0.3, 0.4)),
+            (0.005, 0.01),
+            ((0.0, 0.95), (0.01, 3.0)),
+            0.01,
+            entries=("lift_share", "lift_lag_s"),
+        ),
+        *ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES)),
+        *_icing(flights),
+        Variant(
+            "ground_effect",
+            BLOCK,
+            ("Z_h", "M_h", "scale_m"),
+            ((0.0, 0.0, 1.0), (0.0, 0.0, 5.0)),
+            (0.02, 0.2, 0.1),
+            ((-50.0, 50.0), (-500.0, 500.0), (0.1, 50.0)),
+            0.0,
+            entries=("Z_h", "M_h", "scale_m"),
+            needs=frozenset({"height"}),
+        ),
+    ]
+
+
+def _icing(flights: Flights) -> list[Variant]:
+    """Lift slope and controls weaken at once, each by its own share, somewhere between two manoeuvres."""
+    if len(flights) < 3:
+        return []
+    found = []
+    for j, at_s in breaks(flights):
+
+        def apply(p: FloatArray, values: Values, _: Flights, j: int = j) -> None:
+            for name, value in zip(_ICED, values, strict=True):
+                p[j:, INDEX[name]] *= 1.0 + value
+
+        found.append(
+            Variant(
+                "icing",
+                BLOCK,
+                _ICED,
+                ((0.0, 0.0, 0.0, 0.0),),
+                (0.005,) * 4,
+                ((-0.9, 0.02), (-0.9, 0.3), (-0.9, 0.3), (-0.9, 0.02)),
+                0.01,
+                apply_with=apply,
+                fixed={"at_s": at_s},
+            )
+        )
+    return found

@@ -1,0 +1,55 @@
+"""The moment equation: curved moments, thrust line, rate of α, a wandering centre of gravity."""
+
+from advisor.gap.candidates.between import ramps_and_steps, scale
+from advisor.gap.data import Flights
+from advisor.gap.variant import Variant
+
+BLOCK = "moment_equation"
+
+
+def variants(flights: Flights) -> list[Variant]:
+    """Effects of the block; those between manoeuvres depend on how many were flown."""
+    return [
+        Variant(
+            "elevator_nonlinearity",
+            BLOCK,
+            ("M_delta2", "M_delta3"),
+            ((0.0, 0.0),),
+            (5.0, 100.0),
+            ((-2e4, 2e4), (-2e6, 2e6)),
+            0.0,
+            entries=("M_delta2", "M_delta3"),
+        ),
+        Variant(
+            "nonlinear_pitching_moment",
+            BLOCK,
+            ("M_alpha2", "M_alpha3"),
+            ((0.0, 0.0),),
+            (5.0, 50.0),
+            ((-5e3, 5e3), (-1e5, 1e5)),
+            0.0,
+            entries=("M_alpha2", "M_alpha3"),
+        ),
+        Variant(
+            "thrust_moment",
+            BLOCK,
+            ("M_throttle",),
+            ((0.0,),),
+            (0.05,),
+            ((-100.0, 100.0),),
+            0.0,
+            entries=("M_throttle",),
+            needs=frozenset({"throttle"}),
+        ),
+        Variant(
+            "alpha_dot",
+            BLOCK,
+            ("M_alpha_dot",),
+            ((0.0,),),
+            (0.02,),
+            ((-20.0, 0.0),),
+            0.0,
+            entries=("M_alpha_dot",),
+        ),
+        *ramps_and_steps("cg_shift", BLOCK, flights, scale("M_alpha")),
+    ]

@@ -1,0 +1,83 @@
+"""The instruments: the α channel, the rate gyro, the place of the accelerometer."""
+
+import numpy as np
+
+from advisor.gap.variant import Variant
+
+_MODES_HZ = (2.5, 4.0, 6.0, 8.5)
+
+
+def variants() -> list[Variant]:
+    """Effects of the three sensors; a constant offset of α is judged apart, from the climb rate."""
+    return [
+        Variant(
+            "alpha_lag",
+            "alpha_sensor",
+            ("lag_s",),
+            ((0.02,), (0.1,)),
+            (1e-3,),
+            ((-0.02, 1.0),),
+            0.004,
+            entries=("alpha_lag_s",),
+        ),
+        Variant(
+            "alpha_scale",
+            "alpha_sensor",
+            ("scale",),
+            ((0.0,),),
+            (0.002,),
+            ((-0.8, 3.0),),
+            0.01,
+            entries=("alpha_scale",),
+        ),
+        Variant(
+            "alpha_vane_offset",
+            "alpha_sensor",
+            ("arm_m",),
+            ((0.0,),),
+            (0.02,),
+            ((-20.0, 20.0),),
+            0.02,
+            entries=("vane_arm_m",),
+        ),
+        Variant(
+            "pitch_rate_bias",
+            "pitch_rate_sensor",
+            ("bias_rad_s",),
+            ((0.0,),),
+            (5e-4,),
+            ((-0.5, 0.5),),
+            0.0003,
+            entries=("q_bias",),
+        ),
+        Variant(
+            "pitch_rate_scale",
+            "pitch_rate_sensor",
+            ("scale",),
+            ((0.0,),),
+            (0.002,),
+            ((-0.8, 3.0),),
+            0.01,
+            entries=("q_scale",),
+        ),
+        Variant(
+            "structural_mode",
+            "pitch_rate_sensor",
+            ("gain", "rate_gain", "omega_rad_s", "damping"),
+            tuple((0.0, 0.0, 2.0 * np.pi * hz, 0.05) for hz in _MODES_HZ),
+            (0.02, 0.02, 0.1, 0.005),
+            ((-50.0, 50.0), (-50.0, 50.0), (6.0, 80.0), (0.003, 0.5)),
+            0.0,
+            entries=("mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping"),
+        ),
+        Variant(
+            "accelerometer_offset",
+            "accelerometer",
+            ("arm_m",),
+            ((0.0,),),
+            (0.01,),
+            ((-10.0, 10.0),),
+            0.02,
+            entries=("imu_arm_m",),
+        ),
+    ]

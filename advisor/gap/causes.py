@@ -1,0 +1,138 @@
+"""From judged candidates to causes people can read: probability, parameters, ties."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.kinematics import SMALLEST_BIAS_RAD, KinematicCheck
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.catalogue import BLOCK_OF
+from advisor.gap.fit import Fitted, Problem, fit
+from advisor.gap.holdout import HeldOut, hold_out
+from advisor.gap.measure import gap_of
+from advisor.gap.result import Cause, Value
+from advisor.gap.score import LEAST_GAIN, Judged
+from advisor.gap.ties import tied_with
+from advisor.gap.waterfall import Stage
+
+TEMPERATURE = 3.0
+"""Log likelihoods of a model that is itself approximate count for less: divided by this before they
+become probabilities. Set on development data so that stated and observed frequencies agree."""
+_SPEED_SMALLEST = 0.03
+
+
+def causes_of(
+    stages: Sequence[Stage], floor: FloatArray, unexplained: float, channels: Sequence[str]
+) -> tuple[Cause, ...]:
+    """What was added, in order, then the alternatives to the first addition."""
+    added = [s.added for s in stages if s.added is not None]
+    first = stages[0].considered
+    shares = probabilities(first, unexplained)
+    causes = []
+    removed = sum(max(j.removed, 1e-6) for j in added)
+    for stage, judged in zip(stages, added, strict=False):
+        confidence = probabilities(stage.considered, unexplained).get(judged.effect, 0.5)
+        share = (
+            1.0 if len(added) == 1 else 0.5 + 0.5 * judged.removed / removed if judged is added[0] else 0.0
+        )
+        if judged is not added[0]:
+            share = max(judged.removed, 1e-6) / removed * 0.5
+        causes.append(_cause(judged, stage.considered, confidence * share, floor, channels, True))
+    taken = {c.effect for c in causes}
+    rest = max(1.0 - sum(c.probability for c in causes), 0.0)
+    others = [j for j in first if j.effect not in taken and j.gain > 0.0]
+    total = sum(shares[j.effect] for j in others)
+    for j in others:
+        p = min(shares[j.effect], rest * shares[j.effect] / total) if total > 0.0 else 0.0
+        causes.append(_cause(j, first, p, floor, channels, False))
+    return tuple(causes[:5])
+
+
+def probabilities(considered: Sequence[Judged], unexplained: float) -> dict[str, float]:
+    """Effect to probability; what is missing to 1 is for no effect and for one without a name."""
+    if not considered:
+        return {}
+    scores = np.array([*[j.gain for j in considered], LEAST_GAIN]) / TEMPERATURE
+    weights = np.exp(scores - np.max(scores))
+    weights = (1.0 - 0.9 * unexplained) * weights / np.sum(weights)
+    return {j.effect: float(w) for j, w in zip(considered, weights, strict=False)}
+
+
+def parameters_of(judged: Judged) -> dict[str, Value]:
+    """Parameters as the aircraft file spells them."""
+    v = judged.variant
+    found = {n: Value(float(x), float(s)) for n, x, s in zip(v.names, judged.value, judged.std, strict=True)}
+    if v.inverted:
+        x = max(float(judged.value[0]), 1e-9)
+        found[v.names[0]] = Value(1.0 / x, float(judged.std[0]) / x**2)
+    if judged.effect == "structural_mode":
+        to_hz = 1.0 / (2.0 * np.pi)
+        found = {
+            "frequency_hz": Value(found["omega_rad_s"].value * to_hz, found["omega_rad_s"].std * to_hz),
+            "damping": found["damping"], "gain": found["rate_gain"], "displacement_gain": found["gain"],
+        }  # fmt: skip
+    for name, value in v.fixed.items():
+        found[name] = Value(value, 0.0)
+    return found
+
+
+def _cause(
+    judged: Judged,
+    considered: Sequence[Judged],
+    probability: float,
+    floor: FloatArray,
+    channels: Sequence[str],
+    present: bool,
+) -> Cause:
+    ties, way = tied_with(judged, considered, channels)
+    left = float(np.mean(gap_of(judged.held_out.mean_square, floor)))
+    return Cause(
+        judged.effect, BLOCK_OF[judged.effect], probability, parameters_of(judged), ties, way, left, present
+    )
+
+
+def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, float], ...]:
+    """Blocks by the best any of their effects does, 1 for the best."""
+    scores: dict[str, float] = {}
+    for cause in causes:
+        if cause.present:
+            scores.setdefault(cause.block, 1.0)
+    best = max((j.gain for j in first.considered), default=0.0)
+    for j in first.considered:
+        block = BLOCK_OF[j.effect]
+        if best > 0.0 and j.gain > 0.0:
+            scores[block] = max(scores.get(block, 0.0), round(j.gain / best, 4))
+    return tuple(sorted(scores.items(), key=lambda item: -item[1]))
+
+
+def alpha_bias_cause(check: KinematicCheck, floor: FloatArray, problem: Problem) -> Cause | None:
+    """A constant offset of α, from the climb rate: the dynamics cannot tell it from Z_0 and M_0."""
+    if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
+        return None
+    if abs(check.bias_rad) < max(SMALLEST_BIAS_RAD, 4.0 * check.bias_std_rad):
+        return None
+    return Cause(
+        "alpha_bias", "alpha_sensor", 0.9, {"bias_rad": Value(check.bias_rad, check.bias_std_rad)},
+        ("an offset of the attitude's zero", "steady up- or downwash"),
+        "level the attitude reference on the ground; fly in still air", 0.0, True,
+    )  # fmt: skip
+
+
+def airspeed_cause(problem: Problem, fitted: Fitted, last: HeldOut, floor: FloatArray) -> Cause | None:
+    """What ignoring the change of speed would cost: derivatives held constant, everything refitted."""
+    flights = problem.flights
+    if not flights.speed_measured or flights.speed_moves < _SPEED_SMALLEST:
+        return None
+    constant = tuple(
+        replace(f, trim=np.array([f.trim[0], f.trim[1], f.trim[2], 0.0])) for f in flights.flights
+    )
+    frozen = replace(problem, flights=replace(flights, flights=constant))
+    without = hold_out(frozen, fit(frozen, fitted.point, fitted.noise, iterations=4))
+    cost = float(np.mean((without.mean_square - last.mean_square) / floor**2))
+    if cost < 0.05:
+        return None
+    return Cause(
+        "airspeed_variation", "force_equation", 0.9, {"change": Value(flights.speed_moves, 0.01)}, (), "",
+        float(np.mean(gap_of(last.mean_square, floor))), True,
+    )  # fmt: skip

@@ -1,0 +1,185 @@
+"""Manoeuvres made ready: command at its stamps, slow inputs on the grid, outputs untouched."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+from advisor.gap.airspeed import airspeed_on
+from advisor.gap.layout import OUTPUTS
+from advisor.gap.simulate import GRAVITY_M_S2
+
+STEP_S = 0.005
+LEAST_SAMPLES = 30
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """One output channel of one manoeuvre."""
+
+    t: FloatArray
+    """Shape (n,). Seconds since the record's start."""
+    y: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """One manoeuvre made ready. Times count from the start of its record."""
+
+    number: int
+    started_s: float
+    """Vehicle time of the record's start."""
+    first_step_s: float
+    last_step_s: float
+    h: float
+    n: int
+    t_u: FloatArray
+    u: FloatArray
+    """The elevator command at its stamps, rad."""
+    u_trim: float
+    slow: FloatArray
+    """Shape (5, n): speed, a_x, bank, throttle, height on the grid."""
+    trim: FloatArray
+    """Shape (4,): α and θ at the start, reference speed, 1 when derivatives scale with speed."""
+    outputs: Mapping[str, Measured]
+    edges: FloatArray
+    """Shape (m, 2). Jumps of the command: middle of the interval between stamps, jump × its length."""
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the record."""
+        return self.n * self.h
+
+
+@dataclass(frozen=True, slots=True)
+class Flights:
+    """All manoeuvres of a diagnosis with what they have in common."""
+
+    flights: tuple[Flight, ...]
+    channels: tuple[str, ...]
+    """Outputs every manoeuvre has."""
+    speed_measured: bool
+    reference_m_s: float
+    speed_moves: float
+    """Largest relative departure of the speed from its mean over all manoeuvres."""
+    alpha_is_derived: bool
+    """α is an autopilot's estimate from inertial sensors, blind to gusts, not a vane."""
+    has: frozenset[str]
+    """Slow channels that were measured: airspeed, a_x, bank, throttle, height."""
+
+    def __len__(self) -> int:
+        return len(self.flights)
+
+
+def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed: bool = True) -> Flights:
+    """Make the manoeuvres ready; those without elevator or pitch rate are left out."""
+    usable = [m for m in maneuvers if _usable(m)]
+    speeds = [
+        m.channels["airspeed"].y
+        for m in usable
+        if "airspeed" in m.channels and len(m.channels["airspeed"]) > 1
+    ]
+    measured = bool(usable) and len(speeds) == len(usable) and float(np.min(np.concatenate(speeds))) > 1.0
+    if measured:
+        reference = aircraft.reference_airspeed_m_s or float(np.mean([np.mean(s) for s in speeds]))
+        moves = float(max(np.max(np.abs(s / np.mean(np.concatenate(speeds)) - 1.0)) for s in speeds))
+    else:
+        reference, moves = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 20.0, 0.0
+    scaled = measured and scale_with_speed
+    flights = tuple(_ready(m, aircraft, reference, measured, scaled) for m in usable)
+    common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
+    channels = tuple(name for name in OUTPUTS if name in common)
+    has = frozenset(
+        name
+        for name in ("airspeed", "a_x", "bank", "throttle", "height", "climb_rate")
+        if usable and all(name in m.channels and len(m.channels[name]) > 1 for m in usable)
+    )
+    derived = any(m.channels["alpha"].provenance == "derived" for m in usable if "alpha" in m.channels)
+    return Flights(flights, channels, measured, reference, moves, derived, has)
+
+
+def _usable(maneuver: Maneuver) -> bool:
+    found = maneuver.channels
+    return all(name in found and len(found[name]) >= LEAST_SAMPLES for name in ("elevator", "q"))
+
+
+def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, scaled: bool) -> Flight:
+    start = max(m.channels["elevator"].t[0], m.channels["q"].t[0])
+    end = min(m.channels["elevator"].t[-1], m.channels["q"].t[-1])
+    n = int(np.ceil((end - start) / STEP_S)) + 1
+    grid: FloatArray = (np.arange(n, dtype=np.float64) + 0.5) * STEP_S
+    first = m.span.start_s - start
+
+    def on_grid(name: str, otherwise: float) -> FloatArray:
+        channel = m.channels.get(name)
+        if channel is None or len(channel) < 2:
+            return np.full(n, otherwise)
+        return np.asarray(np.interp(grid, channel.t - start, channel.y))
+
+    speed = airspeed_on(grid, m, start) if measured else np.full(n, reference)
+    theta_at = on_grid("theta", 0.0)
+    a_x = smooth(on_grid("a_x", GRAVITY_M_S2 * float(np.sin(theta_at[0]))), 0.05)
+    bank = smooth(on_grid("bank", 0.0), 0.1)
+    throttle = on_grid("throttle", 0.0)
+    height = on_grid("height", 1e3)
+    slow = np.vstack([speed, a_x, bank, throttle - float(np.mean(throttle[:20])), height])
+    outputs = _outputs(m, start, end)
+    t_u, u = m.channels["elevator"].t - start, m.channels["elevator"].y
+    lead = (t_u >= 0.0) & (t_u < max(first - 0.02, 0.1))
+    u_trim = float(np.median(u[lead])) if np.any(lead) else float(u[0])
+
+    def at_start(name: str, otherwise: float) -> float:
+        if name not in outputs:
+            return otherwise
+        out = outputs[name]
+        return float(np.mean(out.y[out.t <= max(first, out.t[0] + 0.1)]))
+
+    trim = np.array(
+        [at_start("alpha", 0.0), at_start("theta", at_start("alpha", 0.0)), reference, float(scaled)]
+    )
+    if "theta" in outputs:
+        trim[1] = float(np.mean(outputs["theta"].y[:3]))
+    return Flight(
+        m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, u, u_trim, slow, trim,
+        outputs, _edges(t_u, u),
+    )  # fmt: skip
+
+
+def _outputs(m: Maneuver, start: float, end: float) -> dict[str, Measured]:
+    outputs = {}
+    for name in OUTPUTS:
+        channel = m.channels.get(name)
+        if channel is None or len(channel) < LEAST_SAMPLES:
+            continue
+        cut = channel.cut(start, end)
+        t, y = renewed(cut.t - start, cut.y)
+        if len(t) >= LEAST_SAMPLES:
+            outputs[name] = Measured(t, y)
+    return outputs
+
+
+def renewed(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Only samples that bring a new value, when a channel repeats old ones under fresh stamps."""
+    new = np.concatenate(([True], np.diff(y) != 0.0))
+    return (t[new], y[new]) if np.mean(new) < 0.7 else (t, y)
+
+
+def _edges(t: FloatArray, u: FloatArray) -> FloatArray:
+    """Jumps of the command: where in the interval between two stamps they happened is not in the log."""
+    jump = np.diff(u)
+    size = np.ptp(u)
+    if size <= 0.0:
+        return np.empty((0, 2))
+    steep = np.flatnonzero(np.abs(jump) > 0.15 * size)
+    # A jump may be spread over two intervals; each is uncertain by its own length.
+    return np.column_stack([(t[steep] + t[steep + 1]) / 2.0, jump[steep] * (t[steep + 1] - t[steep])])
+
+
+def smooth(y: FloatArray, seconds: float) -> FloatArray:
+    """Centred moving average over ``seconds`` of a series on the grid."""
+    width = max(1, round(seconds / STEP_S)) | 1
+    padded = np.pad(y, width // 2, mode="edge")
+    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")

@@ -1,0 +1,95 @@
+"""What a model is worth on manoeuvres it has not seen.
+
+About the optimum the fit is linear, so leaving a fold out moves the shared numbers by
+(H − H_f)⁻¹ g_f and needs no simulation. Of a manoeuvre kept out only its own numbers are refitted.
+Folds are interleaved and rotated, because a gust or a change may fall into any one of them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cho_solve
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fit import Fitted, Linear, Problem, bounds_of, factor, row_weights
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Residuals of every manoeuvre as predicted by a fit of the others."""
+
+    left: tuple[FloatArray, ...]
+    """Per manoeuvre, stacked channels."""
+    mean_square: FloatArray
+    """Shape (channels,)."""
+    by_maneuver: FloatArray
+    """Shape (manoeuvres, channels): mean squares."""
+
+
+def folds_of(n: int) -> list[list[int]]:
+    """Three interleaved folds; as many as there are manoeuvres when fewer."""
+    k = min(3, n)
+    return [list(range(j, n, k)) for j in range(k)]
+
+
+def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None) -> HeldOut:
+    """Rotate every fold out. With a single manoeuvre the fit itself is returned: nothing can be kept out."""
+    n = len(problem.flights)
+    chosen = folds_of(n) if folds is None else folds
+    weights = 1.0 / fitted.noise
+    blocks = [_reduced(problem, i, block, weights) for i, block in enumerate(fitted.linear)]
+    total_H = np.sum([b[0] for b in blocks], axis=0)
+    total_g = np.sum([b[1] for b in blocks], axis=0)
+    lower, upper = bounds_of(fitted.point)
+    lefts: list[FloatArray] = [np.empty(0)] * n
+    for fold in chosen:
+        step = np.zeros(len(total_g))
+        if len(fold) < n:
+            H = total_H - np.sum([blocks[i][0] for i in fold], axis=0)
+            g = total_g - np.sum([blocks[i][1] for i in fold], axis=0)
+            step = solve_scaled(H, g)
+            shared = fitted.point.shared
+            step = np.clip(shared + step, lower, upper) - shared
+        for i in fold:
+            lefts[i] = after(problem, i, fitted.linear[i], weights, step)
+    powers = mean_squares(problem, lefts)
+    counts = np.array(
+        [[len(f.outputs[c].t) for c in problem.channels] for f in problem.flights.flights], float
+    )
+    return HeldOut(tuple(lefts), np.sum(powers * counts, axis=0) / np.sum(counts, axis=0), powers)
+
+
+def mean_squares(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+    """Shape (manoeuvres, channels)."""
+    return np.array(
+        [
+            [float(np.mean(left[rows] ** 2)) for rows in problem.rows(f)]
+            for f, left in zip(problem.flights.flights, lefts, strict=True)
+        ]
+    )
+
+
+def solve_scaled(H: FloatArray, g: FloatArray) -> FloatArray:
+    """H⁻¹ g with H scaled to a unit diagonal; directions the data say nothing about stay put."""
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    return np.asarray(np.linalg.lstsq(H / np.outer(scale, scale), g / scale, rcond=1e-9)[0] / scale)
+
+
+def after(problem: Problem, i: int, block: Linear, weights: FloatArray, step: FloatArray) -> FloatArray:
+    """Residual of a manoeuvre after a step of the shared numbers, its own numbers refitted."""
+    w = row_weights(problem, i, weights)
+    left = block.left - block.shared @ step
+    A = block.own * w[:, None]
+    own = cho_solve(factor(problem, i, block.own, block.prior, weights), A.T @ (left * w))
+    return np.asarray(left - block.own @ own)
+
+
+def _reduced(problem: Problem, i: int, block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Information and gradient of the shared numbers from one manoeuvre, own numbers eliminated."""
+    w = row_weights(problem, i, weights)[:, None]
+    A, X = block.own * w, np.column_stack([block.shared, block.left]) * w
+    AX = A.T @ X
+    inner = X.T @ X - AX.T @ cho_solve(factor(problem, i, block.own, block.prior, weights), AX)
+    k = block.shared.shape[1]
+    return inner[:k, :k], inner[:k, k]

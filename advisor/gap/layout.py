@@ -1,0 +1,33 @@
+"""The vector of numbers the gap's simulation is driven by: what each entry is, zero meaning "absent".
+
+Six shared derivatives of Eqs. (1)-(2), four numbers free in every manoeuvre (initial states and
+trim), and one entry per parameter of every candidate effect. All effect entries are zero in the
+plain model, so adding an effect means freeing its entries and nothing else.
+"""
+
+DERIVATIVES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
+NUISANCES = ("alpha_start", "q_start", "Z_trim", "M_trim")
+"""Free in every manoeuvre: deviation of α and q at its start, and the trim terms of Eqs. (1)-(2)
+at the trimmed α and δe instead of at zero."""
+EFFECT_ENTRIES = (
+    # input
+    "delay_s", "lag_s", "slowness_s_rad", "half_play_rad", "play_side", "half_deadband_rad",
+    # moment equation
+    "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_throttle", "M_alpha_dot", "M_h",
+    # force equation
+    "Z_alpha2", "Z_alpha3", "lift_share", "lift_lag_s", "Z_h", "scale_m",
+    # step inside a manoeuvre
+    "step_at_s", "step_Z_alpha", "step_Z_delta_e", "step_M_alpha", "step_M_delta_e",
+    # sensors
+    "alpha_lag_s", "alpha_scale", "alpha_bias_rad", "vane_arm_m", "q_bias", "q_scale",
+    "mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping", "imu_arm_m",
+    # stamps
+    "alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s",
+)  # fmt: skip
+ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
+INDEX = {name: i for i, name in enumerate(ENTRIES)}
+
+OUTPUTS = ("alpha", "q", "a_z", "theta")
+"""What is simulated and compared, in this order."""
+SKEWS = ("alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s")
+"""Entry that shifts the stamps of each output."""

@@ -1,0 +1,93 @@
+"""A flight that was not flown: manoeuvres made up from the aircraft file, to foresee what they can show."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.messages import FloatArray
+from advisor.flight.record import Channel
+from advisor.gap.baseline import base_entries, believed_derivatives
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.data import prepare
+from advisor.gap.fit import Fitted, Point, Problem, linearise, solve_blocks
+from advisor.gap.foresee import Foreseen, foresee
+from advisor.gap.layout import OUTPUTS
+from advisor.gap.simulate import GRAVITY_M_S2
+from advisor.problems import ConfigurationError
+
+STEPS = {
+    "3211": ((3, 0.8), (2, -1.0), (1, 1.1), (1, -1.5)),
+    "rev": ((3, -0.8), (2, 1.0), (1, -1.1), (1, 1.5)),
+    "doublet": ((2, 1.0), (2, -1.0)),
+    "pulse": ((1, 1.0),),
+}
+"""Steps of each input: units of time and share of the amplitude."""
+TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "theta": np.radians(0.1)}
+"""Standard deviations taken for instruments nobody has measured yet."""
+_APART_S = 30.0
+
+
+def foresee_plan(
+    aircraft: Aircraft, plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: Sequence[str] = ()
+) -> list[Foreseen]:
+    """For every effect the smallest size this plan could detect, and what it would be confused with.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft file has no complete ``model``, or the plan names an unknown input.
+    """
+    derivatives = believed_derivatives(aircraft)
+    if derivatives is None:
+        missing = ", ".join(name for name in PARAMETERS if name not in aircraft.model)
+        raise ConfigurationError(f"foresee needs the aircraft file's model: {missing} missing.")
+    unknown = [name for name in plan if name not in STEPS]
+    if unknown:
+        raise ConfigurationError(f"plan: {unknown[0]!r} is none of {', '.join(STEPS)}.")
+    frequency = float(np.sqrt(max(-derivatives[3] + derivatives[0] * derivatives[4], 1.0)))
+    unit = min(max(2.0 / frequency, 0.2), 1.5)
+    speed = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 25.0
+    maneuvers = [
+        _maneuver(n, name, unit, np.radians(amplitude_deg) * (1.0, 0.6)[n % 2], rate_hz, speed, without)
+        for n, name in enumerate(plan)
+    ]
+    flights = prepare(maneuvers, aircraft)
+    problem = Problem(flights, base_entries(aircraft), believed=derivatives)
+    own = np.zeros((len(flights), 4))
+    own[:, 2] = -GRAVITY_M_S2 / speed
+    point = Point(derivatives, own)
+    noise = np.array([TYPICAL_NOISE[c] for c in flights.channels])
+    linear = linearise(problem, point)
+    _, _, information, lefts = solve_blocks(problem, linear, 1.0 / noise, 0.0)
+    fitted = Fitted(point, noise, 0.0, tuple(lefts), information, linear, 0)
+    return foresee(problem, fitted, variants_for(flights), noise)
+
+
+def _maneuver(
+    n: int, name: str, unit: float, amplitude: float, rate_hz: float, speed: float, without: Sequence[str]
+) -> Maneuver:
+    """Stamps and command of a planned manoeuvre; its outputs are there only for their stamps."""
+    start, length = 1.0, 1.0 + unit * sum(width for width, _ in STEPS[name])
+    end = length + max(10.0 * unit, 3.0)
+    t = np.arange(0.0, end, 1.0 / rate_hz) + _APART_S * n
+    command = np.zeros(len(t))
+    at = _APART_S * n + start
+    for width, level in STEPS[name]:
+        command[(t >= at) & (t < at + width * unit)] = amplitude * level
+        at += width * unit
+    rng = np.random.default_rng(n)
+    channels = {"elevator": Channel("elevator", t, command, "plan", "commanded")}
+
+    def add(channel: str, y: FloatArray) -> None:
+        if channel not in without:
+            channels[channel] = Channel(channel, t, y, "plan", "measured")
+
+    for channel in OUTPUTS:
+        add(channel, 1e-6 * rng.standard_normal(len(t)))
+    add("airspeed", np.full(len(t), speed * (1.0 + 0.02 * (-1) ** n)))
+    add("climb_rate", np.zeros(len(t)))
+    add("throttle", np.where(t > t[0] + length, 0.1, 0.0))
+    span = Span(t[0], t[0] + start, t[0] + length, t[-1], "other", (), "end of log")
+    return Maneuver(n + 1, 0, span, channels)

@@ -1,0 +1,145 @@
+"""Where: an unknown disturbance is let into one block at a time, and the data say which explains them.
+
+A disturbance of unknown course (first-order Gauss-Markov in time) is added to the input, to either
+equation, to the air or to one sensor of the fitted model. Its response in *all* channels is known, so
+a disturbance in the wrong block cannot explain what a disturbance in the right one does. Compared by
+marginal likelihood, which is what a Kalman filter's innovations would give, here as linear algebra.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cho_solve
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.data import Flight
+from advisor.gap.fit import Fitted, Problem, factor, later, pulse_response, row_weights
+from advisor.gap.layout import INDEX, OUTPUTS
+from advisor.gap.simulate import DISTURB_AIR, DISTURB_FORCE, DISTURB_INPUT, DISTURB_MOMENT
+
+KNOTS_S = 0.1
+MEMORY_S = 0.6
+_SENSORS = {
+    "alpha_sensor": "alpha",
+    "pitch_rate_sensor": "q",
+    "accelerometer": "a_z",
+    "attitude_sensor": "theta",
+}
+_DYNAMIC = {
+    "input": DISTURB_INPUT,
+    "force_equation": DISTURB_FORCE,
+    "moment_equation": DISTURB_MOMENT,
+    "air": DISTURB_AIR,
+}
+_SIZES = np.geomspace(1e-3, 30.0, 24)
+"""Candidate sizes of the disturbance, in units in which 1 gives a response as large as the noise."""
+
+
+@dataclass(frozen=True)
+class Probe:
+    """One block's disturbance at its likeliest size."""
+
+    block: str
+    gain: float
+    """Log likelihood above white noise alone."""
+    size: float
+    """Standard deviation of the disturbance in its own unit (rad of elevator, 1/s², rad/s², rad of air)."""
+    explained: float
+    """Share of the weighted residual power that the disturbance takes up."""
+    seen_by_alpha: bool = True
+    """For the air: whether the α channel sees the gust."""
+
+
+def probe_blocks(
+    problem: Problem, fitted: Fitted, noise: FloatArray, blocks: Sequence[str] | None = None
+) -> list[Probe]:
+    """Every block, likeliest first. ``noise``, shape (channels,), is what the instruments alone leave."""
+    wanted = [*_DYNAMIC, *_SENSORS, "air unseen"] if blocks is None else list(blocks)
+    found = []
+    for block in wanted:
+        if block in _SENSORS and _SENSORS[block] not in problem.channels:
+            continue
+        if block.startswith("air") and "alpha" not in problem.channels:
+            continue
+        found.append(_probe(problem, fitted, noise, block))
+    return sorted(found, key=lambda p: -p.gain)
+
+
+def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> Probe:
+    weights = 1.0 / noise
+    p = problem.driving(fitted.point)
+    spectra, powers, unit = [], [], None
+    total_before = 0.0
+    for i, flight in enumerate(problem.flights.flights):
+        w = row_weights(problem, i, weights)
+        B = disturbance_columns(problem, flight, p[i], block) * w[:, None]
+        if unit is None:
+            unit = float(np.sqrt(np.mean(np.sum(B**2, axis=1)))) + 1e-300
+        B = B / unit
+        A, r = fitted.linear[i].own * w[:, None], fitted.left[i] * w
+        chol = factor(problem, i, fitted.linear[i].own, fitted.linear[i].prior, weights)
+        AB, Ar = A.T @ B, A.T @ r
+        gram = B.T @ B - AB.T @ cho_solve(chol, AB)
+        value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
+        spectra.append(np.maximum(value, 0.0))
+        powers.append((vector.T @ (B.T @ r - AB.T @ cho_solve(chol, Ar))) ** 2)
+        total_before += float(r @ r)
+    value, power = np.concatenate(spectra), np.concatenate(powers)
+    gains, taken = [], []
+    for size in _SIZES:
+        shrunk = 1.0 / (1.0 / size**2 + value)
+        gains.append(0.5 * float(np.sum(power * shrunk - np.log1p(size**2 * value))))
+        taken.append(float(np.sum(power * shrunk * (2.0 - value * shrunk))))
+    best = int(np.argmax(gains))
+    assert unit is not None
+    return Probe(
+        "air" if block == "air unseen" else block, gains[best], _SIZES[best] / unit,
+        min(taken[best] / max(total_before, 1e-300), 1.0), block != "air unseen",
+    )  # fmt: skip
+
+
+def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: str) -> FloatArray:
+    """Response of all channels to a disturbance of unit variance with memory, shape (rows, k)."""
+    knots = np.arange(0.0, flight.duration_s, KNOTS_S)
+    hat = round(KNOTS_S / flight.h)
+    shape = np.concatenate([np.arange(1, hat + 1), np.arange(hat - 1, 0, -1)]) / hat
+    n = flight.n + 1
+    response = np.zeros((4, n))
+    if block in _SENSORS:
+        response[OUTPUTS.index(_SENSORS[block]), : len(shape)] = shape
+    else:
+        where = _DYNAMIC["air" if block.startswith("air") else block]
+        grid = problem.fly(flight, p)
+        pulse = pulse_response(problem, flight, p, grid, where)
+        for c in range(4):
+            response[c] = np.convolve(pulse[c], shape)[:n] * flight.h
+        if block == "air unseen":
+            response[OUTPUTS.index("alpha"), : len(shape)] -= shape * (1.0 + p[INDEX["alpha_scale"]])
+    # The hat's rising side lies before its knot.
+    columns = np.column_stack(
+        [problem.read(flight, later(response, knot - KNOTS_S, flight.h), p) for knot in knots[1:]]
+    )
+    return np.asarray(columns @ _colour(flight))
+
+
+def disturbance_course(problem: Problem, fitted: Fitted, block: str, size: float) -> list[FloatArray]:
+    """The likeliest course of a block's disturbance at its knots, per manoeuvre."""
+    p = problem.driving(fitted.point)
+    courses = []
+    for i, flight in enumerate(problem.flights.flights):
+        w = row_weights(problem, i, 1.0 / fitted.noise)
+        B = size * disturbance_columns(problem, flight, p[i], block)
+        own, prior = fitted.linear[i].own, fitted.linear[i].prior
+        both = np.column_stack([own, B])
+        chol = factor(problem, i, both, np.concatenate([prior, np.ones(B.shape[1])]), 1.0 / fitted.noise)
+        found = cho_solve(chol, (both * w[:, None]).T @ (fitted.left[i] * w))
+        courses.append(size * _colour(flight) @ found[own.shape[1] :])
+    return courses
+
+
+def _colour(flight: Flight) -> FloatArray:
+    """Cholesky factor of the disturbance's correlation between its knots."""
+    knots = np.arange(0.0, flight.duration_s, KNOTS_S)[1:]
+    apart = np.abs(knots[:, None] - knots[None, :])
+    return np.asarray(np.linalg.cholesky(np.exp(-apart / MEMORY_S) + 1e-9 * np.eye(len(knots))))

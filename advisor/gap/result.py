@@ -1,0 +1,144 @@
+"""What the diagnosis says: verdict, sentence, evidence."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from advisor.flight.kinematics import KinematicCheck
+from advisor.flight.messages import FloatArray
+
+Verdict = Literal["none", "parameters", "effect", "unknown"]
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """A number and its standard deviation."""
+
+    value: float
+    std: float
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """The simulator's error on manoeuvres kept out: mean square over the floor's square, minus 1."""
+
+    before: float
+    """Mean over channels."""
+    after: float
+    """The same for the final model."""
+    floor: Mapping[str, float]
+    """Standard deviation of what neither an effect nor the motion explains, SI of the channel."""
+    floor_note: str
+    """Whether the floor was measured, or stated because the record was filtered before."""
+    by_channel: Mapping[str, float]
+    by_channel_after: Mapping[str, float]
+    by_maneuver: tuple[tuple[int, float, float], ...]
+    """Number, gap before, gap after."""
+    by_phase: Mapping[str, float]
+    """``step edge``, ``plateau``, ``free response``: gap before."""
+    by_band_hz: tuple[tuple[float, float, float], ...]
+    """From, to, share of the pitch-rate error's power."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """One explanation."""
+
+    effect: str
+    block: str
+    probability: float
+    """That this effect is a cause of the gap, or the main one where several are."""
+    parameters: Mapping[str, Value]
+    cannot_be_told_from: tuple[str, ...]
+    tell_apart_by: str
+    gap_after: float
+    present: bool = False
+    """Part of the final model, not just an alternative."""
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """The block the gap comes from."""
+
+    block: str
+    share: float
+    ranking: tuple[tuple[str, float], ...]
+    """Block and score, 1 for the best explanation there is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shrink:
+    """How far the gap shrinks on manoeuvres that took no part in any fit."""
+
+    holdout: tuple[int, ...]
+    """Numbers of the manoeuvres kept out."""
+    before: float
+    after: float
+    percent: float
+    ci95_percent: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Unseen:
+    """An effect this log could not show, and what it would take."""
+
+    effect: str
+    because: str
+    would_need: str
+
+
+@dataclass(frozen=True, slots=True)
+class Yardsticks:
+    """Accepted measures of fidelity for one channel, on manoeuvres kept out of the fit."""
+
+    theil: float
+    """Inequality coefficient, 0 to 1; below 0.25-0.3 is called acceptable."""
+    bias: float
+    variance: float
+    covariance: float
+    """Shares of the mean square error, adding to 1."""
+    r2: float
+    within_tolerance: float | None
+    """Share of samples inside the simulator qualification's band; None where it has none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """One channel of one manoeuvre for plotting, at its own stamps."""
+
+    number: int
+    channel: str
+    t: FloatArray
+    measured: FloatArray
+    before: FloatArray
+    """Simulated by the plain model."""
+    after: FloatArray
+    """Simulated by the final model."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The whole answer."""
+
+    verdict: Verdict
+    sentence: str
+    """For pilots."""
+    gap: Gap
+    where: Where
+    causes: tuple[Cause, ...]
+    shrink: Shrink | None
+    """None when there was nothing to keep out, or no gap to shrink."""
+    waterfall: tuple[tuple[str, float], ...]
+    """Effect and gap after adding it."""
+    cannot_see: tuple[Unseen, ...]
+    kinematics: KinematicCheck
+    model: Mapping[str, Value]
+    """The eight parameters of the final model at the reference speed."""
+    reference_airspeed_m_s: float | None
+    effects: Mapping[str, Mapping[str, float]]
+    """What the improved simulator's file has under ``effects``."""
+    yardsticks: Mapping[str, tuple[Yardsticks, Yardsticks]]
+    """Channel to before and after."""
+    traces: tuple[Trace, ...] = ()
+    notes: tuple[str, ...] = ()
+    maneuvers: tuple[int, ...] = field(default=())

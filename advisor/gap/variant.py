@@ -1,0 +1,49 @@
+"""What a candidate effect is to the fit: numbers to free, where they enter, and how small is nothing."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.data import Flights
+from advisor.gap.layout import INDEX
+
+Values = Sequence[float] | FloatArray
+Apply = Callable[[FloatArray, Values, Flights], None]
+"""Write parameter values into the driving numbers, shape (manoeuvres, entries), in place."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way an effect may act. An effect of the catalogue has one or several."""
+
+    effect: str
+    """Name in the catalogue."""
+    block: str
+    names: tuple[str, ...]
+    """Parameters, as the aircraft file spells them."""
+    starts: tuple[tuple[float, ...], ...]
+    """Where the search begins; several where the cost has local minima."""
+    steps: tuple[float, ...]
+    """Finite-difference step of each parameter."""
+    bounds: tuple[tuple[float, float], ...]
+    smallest: float
+    """Size of the first parameter below which the effect is not worth a name: 4 ms, 1 %, 0.1 deg."""
+    entries: tuple[str, ...] = ()
+    """Entries of the simulation the parameters are, one to one; empty when ``apply`` says otherwise."""
+    apply_with: Apply | None = None
+    sides: tuple[str, tuple[float, ...]] | None = None
+    """An entry that may take any of some values in each manoeuvre: which side the play rests on."""
+    needs: frozenset[str] = field(default_factory=frozenset)
+    """Slow channels without which the effect cannot be tried."""
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    """Parameters of the aircraft file that are not searched for: the time of a step."""
+    inverted: bool = False
+    """The aircraft file has the reciprocal of the first parameter (a rate limit, searched as slowness)."""
+
+    def apply(self, p: FloatArray, values: Values, flights: Flights) -> None:
+        """Write the values into ``p``, shape (manoeuvres, entries)."""
+        if self.apply_with is not None:
+            self.apply_with(p, values, flights)
+            return
+        for entry, value in zip(self.entries, values, strict=True):
+            p[:, INDEX[entry]] += value

@@ -1,0 +1,97 @@
+"""``advisor gap`` outside the core: logs in, improved simulator out."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from advisor.aircraft import Aircraft
+from advisor.flight.events import ManeuverFlown
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.stream import FlightStream
+from advisor.gap.diagnose import diagnose
+from advisor.gap.result import Diagnosis
+from advisor.mavlink.logs import open_log
+from advisor.problems import UnusableInputError
+
+_KEPT_SECTIONS = ("elevator", "alpha", "accelerometer")
+
+
+def maneuvers_of(
+    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None
+) -> list[Maneuver]:
+    """Every manoeuvre of all logs, numbered through.
+
+    Raises
+    ------
+    UnusableInputError
+        A log cannot be read or cannot serve.
+    """
+    found: list[Maneuver] = []
+    for log in logs:
+        stream = FlightStream(aircraft, target_system)
+        events = [event for columns in open_log(log) for event in stream.feed(columns)]
+        events += stream.finish()
+        for problem in stream.problems():
+            raise UnusableInputError(problem.code, f"{log.name}: {problem.text}", problem.fix)
+        found += [e.maneuver for e in events if isinstance(e, ManeuverFlown)]
+    return [replace(m, number=n) for n, m in enumerate(found, 1)]
+
+
+def diagnose_logs(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    holdout: int | None = None,
+    target_system: int | None = None,
+    progress: Callable[[str, float], None] = lambda *_: None,
+) -> Diagnosis:
+    """Read logs and diagnose their gap."""
+    progress("reading", 0.0)
+    return diagnose(maneuvers_of(logs, aircraft, target_system), aircraft, holdout, progress)
+
+
+def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
+    """The aircraft file with the fitted model and the effects found in it."""
+    content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
+    everything = asdict(aircraft)
+    for section in _KEPT_SECTIONS:
+        kept = {k: v for k, v in everything[section].items() if v not in (None, "auto")}
+        if kept:
+            content[section] = kept
+    if diagnosis.reference_airspeed_m_s is not None:
+        content["reference_airspeed_m_s"] = round(diagnosis.reference_airspeed_m_s, 4)
+    content["model"] = {name: _digits(v.value) for name, v in diagnosis.model.items()}
+    content["effects"] = {
+        effect: {name: _digits(value) for name, value in values.items()}
+        for effect, values in {**aircraft.effects, **diagnosis.effects}.items()
+    }
+    return content
+
+
+def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path:
+    """Write the improved simulator as a file that ``advisor`` and ``python -m sim`` load."""
+    text = yaml.safe_dump(_plain(improved_file(diagnosis, aircraft)), sort_keys=False, allow_unicode=True)
+    path.write_text(f"# Written by `advisor gap`: the simulator with what the flight showed.\n{text}")
+    return path
+
+
+def improved_name(diagnosis: Diagnosis, aircraft_file: Path | None) -> str:
+    """``<aircraft>-with-<effect>.yaml``."""
+    stem = aircraft_file.stem if aircraft_file is not None else "aircraft"
+    first = next(iter(diagnosis.effects), "fitted-model")
+    return f"{stem}-with-{first.replace('_', '-')}.yaml"
+
+
+def _digits(x: float) -> float:
+    return float(f"{x:.6g}")
+
+
+def _plain(value: Any) -> Any:
+    """Tuples as lists, so that the file reads as people write it."""
+    if isinstance(value, Mapping):
+        return {k: _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return value
