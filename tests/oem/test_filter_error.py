@@ -1,0 +1,117 @@
+"""Filter error: right where the air moves, the same as output error where it does not."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from advisor.aircraft import Aircraft, Elevator
+from advisor.assessment import assess
+from advisor.flight.maneuver import Maneuver
+from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import estimate
+from advisor.oem.filter_error import filter_error_estimate, turbulence_in
+from tests.oem.builders import UAV, Array, elevator_3211, maneuver, trim_alpha, trim_elevator
+
+KNOWN_SERVO = Aircraft(elevator=Elevator(lag_s=0.0, delay_s=0.0))
+STEP_S, SPEED = 0.005, 25.0
+M_ALPHA, M_DELTA = 5, 7
+
+
+def flown(gust_rad: float, seed: int, memory_s: float = 0.6) -> Maneuver:
+    """A 3-2-1-1 through first-order Gauss-Markov gusts, by the general matrix exponential at 200 Hz."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 10.0, STEP_S)
+    trim = trim_elevator(UAV)
+    u = elevator_3211(t, trim=trim, amplitude=0.03, unit_s=0.35)
+    gust = np.zeros(len(t))
+    keep = np.exp(-STEP_S / memory_s)
+    kick = gust_rad * np.sqrt(1.0 - keep**2) * rng.standard_normal(len(t))
+    for i in range(1, len(t)):
+        gust[i] = keep * gust[i - 1] + kick[i]
+    a = np.array([[UAV[1], 1.0 + UAV[2]], [UAV[5], UAV[6]]])
+    drive = np.column_stack([UAV[1] * gust + UAV[3] * u + UAV[0], UAV[5] * gust + UAV[7] * u + UAV[4]])
+    whole = expm(np.block([[a, np.eye(2)], [np.zeros((2, 4))]]) * STEP_S)
+    x = np.zeros((len(t), 2))
+    x[0] = [trim_alpha(UAV), 0.0]
+    for i in range(len(t) - 1):
+        x[i + 1] = whole[:2, :2] @ x[i] + whole[:2, 2:] @ (drive[i] + drive[i + 1]) / 2.0
+    at = slice(None, None, 4)
+    vane = x[at, 0] + gust[at] + 2e-4 * rng.standard_normal(len(t[at]))
+    rate = x[at, 1] + 1e-3 * rng.standard_normal(len(t[at]))
+    speed = np.full(len(t[at]), SPEED)
+    return maneuver(1, (t, u), {"alpha": (t[at], vane), "q": (t[at], rate), "airspeed": (t[at], speed)})
+
+
+def estimates(gust_rad: float, seeds: range) -> tuple[Array, Array, Array]:
+    """Output error's values, filter error's values and its standard deviations, each (n, 8)."""
+    output, filtered, std = [], [], []
+    for seed in seeds:
+        flight = flown(gust_rad, seed)
+        first = estimate(flight, KNOWN_SERVO)
+        assert isinstance(first, Estimate)
+        second = filter_error_estimate([flight], KNOWN_SERVO, first)
+        assert isinstance(second, Estimate)
+        output.append(first.theta)
+        filtered.append(second.theta)
+        std.append(second.std)
+    return np.array(output), np.array(filtered), np.array(std)
+
+
+@cache
+def in_turbulence() -> tuple[Array, Array, Array]:
+    return estimates(0.01, range(12))
+
+
+def test_in_turbulence_the_moment_derivatives_scatter_less_than_output_errors() -> None:
+    output, filtered, _ = in_turbulence()
+
+    def scatter(values: Array) -> Array:
+        error = values[:, [M_ALPHA, M_DELTA]] - UAV[[M_ALPHA, M_DELTA]]
+        return np.asarray(np.sqrt(np.mean(error**2, axis=0)))
+
+    assert np.all(scatter(filtered) < 0.8 * scatter(output))
+
+
+def test_in_turbulence_its_standard_deviations_are_those_of_its_errors() -> None:
+    _, filtered, std = in_turbulence()
+    ratio = np.sqrt(np.mean(((filtered - UAV) / std) ** 2, axis=0))[[M_ALPHA, M_DELTA]]
+    assert np.all(ratio > 0.4)
+    assert np.all(ratio < 2.0)
+
+
+def test_in_still_air_it_agrees_with_output_error() -> None:
+    output, filtered, std = estimates(0.0, range(100, 103))
+    assert np.all(np.abs(filtered - output) < 3.0 * std)
+
+
+@pytest.mark.parametrize("gust_deg", [0.5, 1.0, 2.0])
+def test_the_size_of_the_gusts_is_found(gust_deg: float) -> None:
+    first = estimate(flown(np.radians(gust_deg), 3), KNOWN_SERVO)
+    assert isinstance(first, Estimate)
+    found = turbulence_in(first)
+    assert found.present
+    assert np.degrees(found.gust_angle) == pytest.approx(gust_deg, rel=0.6)
+
+
+def test_still_air_and_noisy_instruments_are_not_taken_for_turbulence() -> None:
+    for seed in range(5):
+        first = estimate(flown(0.0, seed), KNOWN_SERVO)
+        assert isinstance(first, Estimate)
+        assert not turbulence_in(first).present
+
+
+def test_a_servo_lag_left_out_is_not_taken_for_turbulence() -> None:
+    flight = flown(0.0, 1)
+    late = estimate(flight, Aircraft(elevator=Elevator(lag_s=0.06)))
+    assert isinstance(late, Estimate)
+    assert turbulence_in(late).gust_angle < np.radians(0.5)
+
+
+def test_the_verdict_carries_turbulence_and_the_second_opinion_and_still_air_carries_neither() -> None:
+    rough, calm = assess(flown(0.01, 4), KNOWN_SERVO), assess(flown(0.0, 4), KNOWN_SERVO)
+    assert isinstance(rough.second_opinion, Estimate)
+    assert any("output error is out of its validity" in caution for caution in rough.cautions)
+    assert calm.second_opinion is None
+    assert not any("turbulence" in caution for caution in calm.cautions)

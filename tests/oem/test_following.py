@@ -1,0 +1,81 @@
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft, Elevator
+from advisor.flight.maneuver import Maneuver
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.estimator import estimate
+from advisor.oem.following import Follower
+from advisor.oem.identifiability import natural_size
+from advisor.oem.warm import warm
+from tests.oem.builders import JET, UAV, flown
+
+AIRCRAFT = Aircraft(elevator=Elevator(lag_s=0.0))
+
+
+def so_far(maneuver, until_s, number=1):
+    channels = {name: channel.cut(-1.0, until_s) for name, channel in maneuver.channels.items()}
+    return Maneuver(number, maneuver.boot, maneuver.span, channels, maneuver.mode)
+
+
+def test_the_refreshed_estimate_is_the_complete_one():
+    flight = flown(JET, noise=0.03)
+    follower = Follower(AIRCRAFT)
+    for until in np.arange(9.0, 14.0, 0.25):
+        followed = follower.refresh(so_far(flight, until))
+    whole = estimate(so_far(flight, until), AIRCRAFT)
+    assert isinstance(followed, Estimate)
+    np.testing.assert_allclose(followed.theta, whole.theta, atol=0.01 * whole.std.min(), rtol=1e-3)
+    np.testing.assert_allclose(followed.std_cr, whole.std_cr, rtol=1e-3)
+    np.testing.assert_allclose(followed.std, whole.std, rtol=0.2)
+
+
+def test_following_begins_anew_with_the_next_manoeuvre():
+    follower = Follower(AIRCRAFT)
+    follower.refresh(so_far(flown(JET, noise=0.02), 14.0, number=1))
+    other = follower.refresh(so_far(flown(UAV, unit_s=0.4, noise=0.02), 9.0, number=2))
+    assert isinstance(other, Estimate)
+    assert other.value("M_alpha") == pytest.approx(-48.0, rel=0.05)
+
+
+def test_too_little_flown_is_a_value():
+    assert isinstance(Follower(AIRCRAFT).refresh(so_far(flown(JET), 0.2)), NoEstimate)
+
+
+def test_errors_shrink_while_the_manoeuvre_is_flown():
+    flight = flown(JET, noise=0.03)
+    early, late = (estimate(so_far(flight, until), AIRCRAFT) for until in (6.0, 12.0))
+    assert np.all(late.std_cr < early.std_cr)
+
+
+def test_an_overdamped_aircraft_with_unknown_servo_gets_a_reason_instead_of_numbers():
+    sluggish = np.array([0.05, -12.0, 0.0, 0.5, 0.3, -20.0, -25.0, -100.0])
+    flight = flown(sluggish, unit_s=0.4, noise=0.05, length_s=9.0)
+    unknown = estimate(flight, Aircraft())
+    assert {"M_alpha", "M_delta_e"} <= set(unknown.not_identifiable)
+    assert "elevator.lag_s" in unknown.not_identifiable["M_alpha"]
+    assert min(fit.r2 for fit in unknown.fits[0].values()) > 0.99
+    known = estimate(flight, AIRCRAFT)
+    assert "M_delta_e" not in known.not_identifiable
+
+
+def test_control_derivatives_are_lost_when_only_the_free_motion_stands_out_of_the_noise():
+    weak = estimate(flown(JET, amplitude=1e-4, noise=3.0), AIRCRAFT)
+    assert {"Z_delta_e", "M_delta_e"} <= set(weak.not_identifiable)
+    assert "M_q" not in weak.not_identifiable
+
+
+def test_natural_sizes_follow_the_poles_and_the_control_power():
+    sizes = natural_size(UAV)
+    assert sizes["M_alpha"] == pytest.approx(8.0 * 4.2 + 0.97 * 48.0)
+    assert sizes["M_delta_e"] == 102.0
+
+
+def test_correlated_errors_are_named():
+    found = estimate(flown(UAV, unit_s=0.4, noise=0.02), AIRCRAFT)
+    assert all(abs(c) > 0.9 for _, _, c in found.correlated)
+    assert found.condition > 1.0
+
+
+def test_everything_can_be_compiled_ahead():
+    warm()

@@ -1,0 +1,212 @@
+"""What the log's instruments do to the estimate, and what the estimator does about it."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Accelerometer, Aircraft, Alpha, Elevator
+from advisor.flight.record import Channel
+from advisor.oem.airspeed import airspeed
+from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import estimate, estimate_jointly
+from advisor.oem.problem import Signal
+from advisor.oem.surface import Servo
+from tests.oem.builders import UAV, elevator_3211, flown, maneuver, simulate, trim_alpha, trim_elevator
+
+SPEED = 25.0
+GRAVITY = 9.80665
+RATE = 50.0
+
+
+def equipped(
+    *,
+    number=1,
+    sign=1.0,
+    lag_s=0.0,
+    delay_s=0.0,
+    vane_m=0.0,
+    imu_m=0.0,
+    noise=0.0,
+    seed=0,
+    quantum=0.0,
+    bias=0.0,
+):
+    """The small aircraft at constant speed with α from a vane, θ and a_z; the servo moves finely."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 9.0, 1.0 / RATE)
+    u = elevator_3211(t, trim=trim_elevator(UAV), amplitude=0.02 * sign, unit_s=0.4)
+    fine = np.arange(0.0, 9.0, 0.002)
+    command = np.interp(fine - delay_s, t, u)
+    surface = command.copy()
+    for k in range(1, len(fine)):
+        before, now = command[k - 1], command[k]
+        if lag_s:
+            decay = np.exp(-0.002 / lag_s)
+            trailing = lag_s * (now - before) / 0.002
+            surface[k] = now - trailing + (surface[k - 1] - before + trailing) * decay
+    x = simulate(UAV, [trim_alpha(UAV), 0.0], fine, surface, t[1:-1])
+    alpha, q, theta = x.T
+    theta = theta + 0.05
+    delta = np.interp(t[1:-1], fine, surface)
+    alpha_dot = UAV[0] + UAV[1] * alpha + (1 + UAV[2]) * q + UAV[3] * delta
+    q_dot = UAV[4] + UAV[5] * alpha + UAV[6] * q + UAV[7] * delta
+    a_z = SPEED * np.cos(alpha) * (alpha_dot - q) - GRAVITY * np.cos(theta) - imu_m * q_dot + bias
+    channels = {"alpha": alpha - vane_m / SPEED * q, "q": q, "theta": theta, "a_z": a_z}
+    for y in channels.values():
+        y += noise * np.std(y) * rng.standard_normal(len(y))
+    if quantum:
+        channels["a_z"] = np.round(channels["a_z"] / quantum) * quantum
+    return maneuver(number, (t, u), {name: (t[1:-1], y) for name, y in channels.items()})
+
+
+def aircraft(**parts):
+    return Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=0.0, delay_s=0.0), **parts)
+
+
+def test_acceleration_and_attitude_serve_as_outputs_with_arm_and_bias():
+    found = estimate(equipped(imu_m=0.3, bias=0.4), aircraft(accelerometer=Accelerometer(arm_m=0.3)))
+    assert isinstance(found, Estimate)
+    assert set(found.fits[0]) == {"alpha", "q", "theta", "a_z"}
+    # γ is constant in Eqs. (1)-(2); that α̇ neglects its cosine is all that is left here.
+    np.testing.assert_allclose(found.theta[[1, 5, 6, 7]], UAV[[1, 5, 6, 7]], rtol=0.02)
+
+
+def test_acceleration_makes_the_lift_derivatives_sharper():
+    flight = equipped(noise=0.02)
+    with_it = estimate(flight, aircraft())
+    without = estimate(
+        maneuver(
+            1,
+            (flight.channels["elevator"].t, flight.channels["elevator"].y),
+            {n: (flight.channels[n].t, flight.channels[n].y) for n in ("alpha", "q")},
+        ),
+        aircraft(),
+    )
+    assert with_it.std[3] < 0.6 * without.std[3]
+    assert any("No vertical acceleration" in note for note in without.notes)
+
+
+def test_quantised_acceleration_gets_the_weight_it_deserves():
+    coarse = estimate(equipped(noise=0.02, quantum=0.5), aircraft())
+    assert coarse.fits[0]["a_z"].noise == pytest.approx(0.5 / np.sqrt(12.0), rel=0.3)
+    assert np.all(
+        np.abs(coarse.theta - UAV)[[1, 5, 6, 7]]
+        < 5 * coarse.std[[1, 5, 6, 7]] + 0.02 * np.abs(UAV)[[1, 5, 6, 7]]
+    )
+
+
+def test_a_vane_ahead_of_the_centre_of_gravity_is_moved_back_when_its_arm_is_known():
+    flight = equipped(vane_m=0.8)
+    flat = {n: (flight.channels[n].t, flight.channels[n].y) for n in ("alpha", "q")}
+    plain = maneuver(1, (flight.channels["elevator"].t, flight.channels["elevator"].y), flat)
+    moved = estimate(plain, aircraft(alpha=Alpha(vane_arm_m=0.8)))
+    np.testing.assert_allclose(moved.theta, UAV, rtol=2e-3, atol=2e-3)
+    left = estimate(plain, aircraft())
+    # The arm is a similarity transformation: as good a fit, M_alpha and M_delta_e kept, the rest moved.
+    assert left.fits[0]["alpha"].r2 > 0.999999
+    np.testing.assert_allclose(left.theta[[5, 7]], UAV[[5, 7]], rtol=2e-3)
+    assert left.value("Z_delta_e") == pytest.approx(UAV[3] - 0.8 / SPEED * UAV[7], rel=1e-2)
+
+
+def test_a_known_servo_is_applied_to_the_command_before_the_fit():
+    flight = equipped(lag_s=0.1, delay_s=0.04)
+    known = Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=0.1, delay_s=0.04))
+    ignored = aircraft()
+    assert estimate(flight, known).value("M_delta_e") == pytest.approx(UAV[7], rel=0.03)
+    assert abs(estimate(flight, ignored).value("M_delta_e")) < 0.7 * abs(UAV[7])
+
+
+def test_an_unknown_servo_lag_is_found_from_all_manoeuvres_together():
+    flights = [equipped(number=i, sign=(-1.0) ** i, lag_s=0.1, noise=0.02, seed=i) for i in range(3)]
+    found = estimate_jointly(flights, Aircraft(airspeed_m_s=SPEED))
+    assert found.value("M_delta_e") == pytest.approx(UAV[7], rel=0.04)
+    assert any("a lag of 0.10" in note or "a lag of 0.09" in note for note in found.notes)
+    alone = estimate(flights[0], Aircraft(airspeed_m_s=SPEED))
+    assert any(note.startswith("Servo dynamics unknown") for note in alone.notes)
+
+
+def test_no_lag_is_invented_where_there_is_none():
+    flights = [equipped(number=i, sign=(-1.0) ** i, noise=0.05, seed=i) for i in range(3)]
+    found = estimate_jointly(flights, Aircraft(airspeed_m_s=SPEED))
+    assert np.all(
+        np.abs(found.theta - UAV)[[1, 5, 6, 7]]
+        < 4 * found.std[[1, 5, 6, 7]] + 0.02 * np.abs(UAV)[[1, 5, 6, 7]]
+    )
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_the_servo_answers_as_the_differential_equation_says(held):
+    t = np.array([0.0, 0.1, 0.2, 0.5])
+    u = np.array([0.0, 0.0, 1.0, 0.5])
+    grid = np.union1d(t + 0.05, np.arange(0.0, 0.9, 0.01))
+    surface = Servo(0.08, 0.05).move(t, u, grid, held)[0]
+    x, fine = 0.0, np.arange(0.0, 0.9, 1e-5)
+    index = np.clip(np.searchsorted(t + 0.05, fine, side="right") - 1, 0, 3)
+    command = u[index] if held else np.interp(fine - 0.05, t, u)
+    path = []
+    for value in command:
+        path.append(x)
+        x += 1e-5 * (value - x) / 0.08
+    np.testing.assert_allclose(surface, np.interp(grid, fine, path), atol=5e-4)
+
+
+def test_a_staircase_of_alpha_under_fresh_stamps_is_used_at_its_true_rate():
+    flight = flown(UAV, unit_s=0.4, noise=0.01, length_s=9.0)
+    alpha = flight.channels["alpha"]
+    held = alpha.y[(np.arange(len(alpha)) // 3) * 3]
+    channels = {"alpha": (alpha.t, held), "q": (flight.channels["q"].t, flight.channels["q"].y)}
+    elevator = flight.channels["elevator"]
+    found = estimate(maneuver(1, (elevator.t, elevator.y), channels), aircraft())
+    assert len(found.fits[0]["alpha"].t) < len(alpha) / 2
+    assert any("17 Hz" in note for note in found.notes)
+    np.testing.assert_allclose(found.theta[[1, 5, 6, 7]], UAV[[1, 5, 6, 7]], rtol=0.05)
+
+
+def test_speed_that_moves_scales_the_derivatives_to_one_speed():
+    slow, fast = UAV.copy(), UAV.copy()
+    powers = np.array([1, 1, 0, 1, 2, 2, 1, 2])
+    # Z_0 holds gravity, g/V, besides the lift.
+    for theta, ratio in ((slow, 0.9), (fast, 1.1)):
+        theta[:] = UAV * ratio**powers
+        theta[0] = (UAV[0] - GRAVITY / SPEED) * ratio + GRAVITY / (SPEED * ratio)
+    flights = []
+    for number, (theta, ratio) in enumerate(((slow, 0.9), (fast, 1.1))):
+        flight = flown(theta, number=number, unit_s=0.4, length_s=9.0)
+        t = flight.channels["elevator"].t
+        channels = {n: (flight.channels[n].t, flight.channels[n].y) for n in ("alpha", "q")}
+        channels["airspeed"] = (t, np.full(len(t), SPEED * ratio))
+        flights.append(maneuver(number, (t, flight.channels["elevator"].y), channels))
+    found = estimate_jointly(flights, aircraft(reference_airspeed_m_s=SPEED))
+    np.testing.assert_allclose(found.theta, UAV, rtol=1e-3)
+    assert found.airspeed_m_s == SPEED
+
+
+def airspeed_channels(lag_s, noise=0.0):
+    t = np.arange(0.0, 10.0, 0.02)
+    alpha, theta = 0.05 + 0.02 * np.sin(3 * t), 0.05 + 0.15 * np.sin(0.9 * t)
+    rate = 2.0 * np.cos(1.3 * t)
+    speed = 24.0 + 2.0 * np.sin(1.3 * t) / 1.3
+    a_z = -9.5 + 2.0 * np.sin(3 * t)
+    a_x = (rate - a_z * np.sin(alpha) + GRAVITY * np.sin(theta - alpha)) / np.cos(alpha)
+    coarse = np.arange(0.0, 10.0, 0.1)
+    read = np.interp(coarse - lag_s, t, speed) + noise * np.random.default_rng(1).standard_normal(len(coarse))
+    made = {"alpha": alpha, "theta": theta, "a_x": a_x, "a_z": a_z}
+    channels = {name: Channel(name, t, y) for name, y in made.items()}
+    return channels | {"airspeed": Channel("airspeed", coarse, read)}, Signal(t, speed)
+
+
+@pytest.mark.parametrize("lag_s", [0.0, 0.3])
+def test_a_late_air_speed_is_put_right_by_the_accelerometers(lag_s):
+    channels, truth = airspeed_channels(lag_s, noise=0.05)
+    found = airspeed(channels)
+    assert found.smooth
+    assert found.lag_s == pytest.approx(lag_s, abs=0.041)
+    np.testing.assert_allclose(found.signal.at(truth.t), truth.y, atol=0.12)
+
+
+def test_an_air_speed_that_disagrees_with_the_motion_is_believed():
+    channels, _ = airspeed_channels(0.0)
+    t = channels["airspeed"].t
+    gusty = Channel("airspeed", t, 24.0 + 3.0 * np.sign(np.sin(5.0 * t)))
+    found = airspeed(channels | {"airspeed": gusty})
+    assert not found.smooth
+    np.testing.assert_array_equal(found.signal.y, gusty.y)
