@@ -14,7 +14,7 @@ from advisor.oem.filter_error import filter_error_estimate, turbulence_in
 
 COLOURED = 0.5
 """Lag-1 correlation of a residual below which nothing drives it."""
-UNEXPLAINED = 0.02
+UNEXPLAINED = 0.004
 """Share of the pitch rate's variance that moving air leaves unexplained at the least."""
 
 
