@@ -5,7 +5,7 @@ from typing import Literal
 
 from advisor.tui.view import View
 
-Word = Literal["CONTINUE", "REPEAT", "STOP TESTING", "RECOVER", "WAIT", "NO LINK"]
+Word = Literal["CONTINUE", "REPEAT", "STOP TESTING", "RECOVER", "WAIT", "NO LINK", "NO DATA"]
 Tone = Literal["good", "warn", "bad", "quiet"]
 
 
@@ -29,6 +29,8 @@ def advise(view: View) -> Advice:
         return Advice("STOP TESTING", verdict.sentence, "good")
     if state.vehicle is None:
         return Advice("WAIT", view.health.sentence, "quiet")
+    if view.obstacle is not None:
+        return Advice("NO DATA", str(view.obstacle), "bad")
     if view.last and not view.last.verdict.accepted:
         return Advice("REPEAT", verdict.sentence, "warn")
     return Advice("CONTINUE", verdict.sentence, "quiet")

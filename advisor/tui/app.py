@@ -13,6 +13,7 @@ from textual.screen import Screen
 from textual.worker import Worker, WorkerState
 
 from advisor.aircraft import Aircraft
+from advisor.problems import UnusableInputError
 from advisor.tui import keys, replay_actions
 from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.conductor import Conductor, Report
@@ -72,7 +73,7 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         self.view = view_before_first(aircraft, source)
         self.conductor = Conductor(source, make_campaign, lambda report: self.post_message(self.Told(report)))
         self.failure: BaseException | None = None
-        """Why the working thread ended, when it did not end by itself."""
+        """What the caller must answer for: why the thread broke off, or why the input could not be used."""
         self._leaving_s = -inf
         for theme in THEMES:
             self.register_theme(theme)
@@ -92,8 +93,16 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         """Show the newest report."""
         report = event.report
         self.view = replace(
-            self.view, state=report.state, health=report.health, playback=report.playback, log=report.log
+            self.view,
+            state=report.state,
+            health=report.health,
+            playback=report.playback,
+            log=report.log,
+            problems=report.problems,
         )
+        if report.health.condition == "ended" and report.problems:
+            problem = report.problems[0]
+            self.failure = UnusableInputError(problem.code, problem.text, problem.fix)
         self._show()
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:

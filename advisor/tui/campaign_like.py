@@ -5,6 +5,7 @@ from typing import Protocol
 
 from advisor.campaign_state import CampaignState
 from advisor.flight.messages import Columns
+from advisor.problems import Problem
 
 
 class CampaignLike(Protocol):
@@ -13,6 +14,10 @@ class CampaignLike(Protocol):
     @property
     def state(self) -> CampaignState:
         """Everything a face may show."""
+
+    @property
+    def problems(self) -> Sequence[Problem]:
+        """Why this stream cannot be used, as far as it has been heard."""
 
     def feed(self, columns: Sequence[Columns]) -> Sequence[object]:
         """Take the next messages."""

@@ -13,6 +13,7 @@ from threading import Event
 from time import monotonic
 
 from advisor.campaign_state import CampaignState
+from advisor.problems import Problem
 from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.chronicle import Chronicle
 from advisor.tui.goal import Goal
@@ -32,6 +33,8 @@ class Report:
     playback: Playback | None
     log: tuple[str, ...]
     """What happened so far, oldest first."""
+    problems: tuple[Problem, ...] = ()
+    """Why nothing can be judged, while nothing has been."""
 
 
 class Conductor:
@@ -128,7 +131,8 @@ class Conductor:
         self._chronicle.follow(state.notices)
         self._chronicle.hear(self._source.take_notices())
         playback = self._source.playback() if isinstance(self._source, Playable) else None
-        self._tell(Report(state, self._source.health(), playback, self._chronicle.lines))
+        problems = () if state.maneuvers else tuple(campaign.problems)
+        self._tell(Report(state, self._source.health(), playback, self._chronicle.lines, problems))
         self._told_s = monotonic()
 
     def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:

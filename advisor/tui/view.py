@@ -5,7 +5,11 @@ from dataclasses import dataclass
 from advisor.aircraft import Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
+from advisor.problems import Problem
 from advisor.tui.source import LinkHealth, Playback, Source
+
+PATIENCE_S = 15.0
+"""So long may the parameters and streams of a vehicle take to arrive before it is called a problem."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,8 +24,16 @@ class View:
     """What the source is called."""
     log: tuple[str, ...] = ()
     """What happened so far, oldest first."""
+    problems: tuple[Problem, ...] = ()
+    """Why nothing can be judged, while nothing has been."""
     selected: int | None = None
     """Number of the manoeuvre chosen by hand; None: always the newest."""
+
+    @property
+    def obstacle(self) -> Problem | None:
+        """The first problem, once the stream has had time to show what it brings."""
+        heard_enough = self.health.condition == "ended" or self.state.duration_s > PATIENCE_S
+        return self.problems[0] if self.problems and heard_enough else None
 
     @property
     def judged(self) -> JudgedManeuver | None:

@@ -52,6 +52,14 @@ class Stage:
             rows[float(y)] = rows.get(float(y), "").ljust(round(float(x) / 12.2)) + unescape(text)
         return "\n".join(rows[y].replace("\xa0", " ").rstrip() for y in sorted(rows))
 
+    async def still_page(self) -> str:
+        """The page once nothing on it moves any more."""
+        before, now = "", self.page()
+        while now != before:
+            await self.pilot.pause(0.25)
+            before, now = now, self.page()
+        return now
+
     def words(self, selector: str = "Lines") -> str:
         """Everything that a part of the screen says."""
         return "\n".join(str(w.render()) for w in self.app.screen.query(selector).results(Lines) if shown(w))

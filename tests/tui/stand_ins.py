@@ -8,6 +8,7 @@ import numpy as np
 
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.flight.messages import Columns
+from advisor.problems import Problem
 from advisor.tui.source import LinkHealth
 from tests.tui import flights
 
@@ -28,6 +29,7 @@ class StagedCampaign:
         self.fed: list[int] = []
         self.feeding = False
         self.calls: list[tuple[object, ...]] = []
+        self.problems: list[Problem] = []
         self._excluded: dict[int, str] = {}
         self._known: dict[object, tuple[JudgedManeuver, ...]] = {}
 

@@ -2,13 +2,16 @@
 
 import asyncio
 import time
+from dataclasses import replace
 from threading import Event
 
 import pytest
 
-from advisor.problems import UnusableInputError
+from advisor.problems import Problem, UnusableInputError
 from advisor.tui.app import AdvisorApp
+from advisor.tui.panes.big_word import BigWord
 from advisor.tui.screens.engineer import EngineerScreen
+from advisor.tui.source import LinkHealth
 from tests.tui import flights
 from tests.tui.stage import stage
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
@@ -56,3 +59,24 @@ async def test_leaving_ends_the_working_thread_and_closes_the_source():
             return
         await asyncio.sleep(0.02)
     raise AssertionError("The source stayed open.")
+
+
+async def test_a_log_without_what_is_needed_says_so_and_is_answered_for_in_the_end():
+    problem = Problem("rate", "AOA_SSA arrives at 4.0 Hz.", "Set SR0_EXTRA1 to 50.")
+    source = HandFedSource()
+    async with stage(flights.state(0), source=source) as here:
+        here.campaign.problems.append(problem)
+        source.condition = LinkHealth("ended", "The log has been played to its end.")
+        await here.until(lambda: here.app.screen.query_one(BigWord).word == "NO DATA")
+        assert "AOA_SSA arrives at 4.0 Hz. Set SR0_EXTRA1 to 50." in here.words("Why")
+        assert isinstance(here.app.failure, UnusableInputError)
+        await here.press("e", "7")
+        assert "! AOA_SSA arrives at 4.0 Hz." in here.words("Channels Lines")
+
+
+async def test_a_vehicle_is_given_time_to_send_what_is_needed():
+    young = replace(flights.state(0), duration_s=3.0)
+    async with stage(young) as here:
+        here.campaign.problems.append(Problem("no_elevator", "No elevator is heard.", ""))
+        await here.until(lambda: bool(here.app.view.problems))
+        assert here.app.screen.query_one(BigWord).word == "CONTINUE"

@@ -15,7 +15,7 @@ from tests.tui.stage import stage
 async def test_the_pilot_screen_looks_as_it_did(size: tuple[int, int], snapshot: SnapshotAssertion):
     async with stage(flights.state(5, bad=(2, 5)), size=size) as here:
         await here.until(lambda: "REPEAT" in here.words("#verdict-word"))
-        assert here.page() == snapshot
+        assert await here.still_page() == snapshot
 
 
 @pytest.mark.parametrize(("size", "pane"), [((80, 24), 3), ((120, 40), 4), ((180, 50), 4)], ids=str)
@@ -27,4 +27,4 @@ async def test_the_engineer_screen_looks_as_it_did(
     ) as here:
         await here.until(lambda: here.app.screen.query_one("Maneuvers DataTable").row_count == 4)
         await here.press(str(pane))
-        assert here.page() == snapshot
+        assert await here.still_page() == snapshot

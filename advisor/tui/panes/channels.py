@@ -25,7 +25,8 @@ gap. Below: the link.
     def compose(self) -> ComposeResult:
         """Text that scrolls."""
         with VerticalScroll(can_focus=False):
-            yield Lines("Nothing has arrived yet.")
+            yield Lines(id="problems")
+            yield Lines("Nothing has arrived yet.", id="arriving")
 
     def show(self, view: View) -> None:
         """Write the lists."""
@@ -38,4 +39,7 @@ gap. Below: the link.
             lines.append("no channel yet: the vehicle has not sent what the advisor needs")
         lines += ["", f"{CONDITIONS[health.condition]}: {health.sentence}"]
         lines += [f"{name:<22}{value}" for name, value in health.figures]
-        self.query_one(Lines).write("\n".join(lines))
+        problems = self.query_one("#problems", Lines)
+        problems.display = bool(view.problems)
+        problems.write("\n".join(f"! {problem}" for problem in view.problems))
+        self.query_one("#arriving", Lines).write("\n".join(lines))

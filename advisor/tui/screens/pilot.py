@@ -29,6 +29,7 @@ The large word is what to do now:
 - **RECOVER**: the manoeuvre in the air has told all it can.
 - **STOP TESTING**: the criterion fell below its limit.
 - **WAIT**, **NO LINK**: no vehicle is heard (any more).
+- **NO DATA**: the vehicle does not send what is needed; the line below says what to change.
 
 ✓ a good manoeuvre, ✗ one to repeat, ∅ one taken out by hand.
 """
