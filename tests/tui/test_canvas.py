@@ -44,6 +44,12 @@ def test_nan_breaks_a_line():
     assert whole.text() == ["⣀" * 8]
 
 
+def test_a_lonely_sample_of_a_line_is_seen():
+    canvas = Canvas(3, 1, (0.0, 2.0), (0.0, 1.0))
+    canvas.line(np.arange(3.0), np.array([np.nan, 1.0, np.nan]), 0)
+    assert dots(canvas) == 1
+
+
 def test_the_last_mark_gives_a_cell_its_colour_and_keeps_the_dots_of_the_others():
     canvas = Canvas(1, 1, (0.0, 1.0), (0.0, 3.0))
     canvas.points(np.array([0.0]), np.array([3.0]), 0)

@@ -21,7 +21,8 @@ def flying_in_words(view: View) -> str:
     if flying is None:
         return "between manoeuvres"
     seconds = view.state.now_s - flying.span.start_s
-    words = f"{flying.span.kind}, {seconds:.0f} s"
+    kind = "a manoeuvre" if flying.span.kind == "other" else flying.span.kind
+    words = f"{kind}, {seconds:.0f} s"
     if settling is None:
         return words
     m_alpha, std = PARAMETERS["M_alpha"], float(settling.std[NAMES.index("M_alpha")])

@@ -38,11 +38,9 @@ class Canvas:
         self._set(*self._place(x, y), ink)
 
     def line(self, x: FloatArray, y: FloatArray, ink: int) -> None:
-        """A polyline; a NaN breaks it."""
+        """A polyline; a NaN breaks it, and a sample alone between two is a point."""
         px, py = self._place(x, y)
-        if len(px) < 2:
-            self._set(px, py, ink)
-            return
+        self._set(px, py, ink)
         dx, dy = np.diff(px), np.diff(py)
         drawn = np.isfinite(dx) & np.isfinite(dy)
         start_x, start_y, dx, dy = px[:-1][drawn], py[:-1][drawn], dx[drawn], dy[drawn]
