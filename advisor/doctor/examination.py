@@ -33,7 +33,7 @@ class ElevatorFound:
 
     outputs: tuple[int, ...]
     resolution_deg: float
-    """Deflection of the smallest step that SERVO_OUTPUT_RAW can express, 1 us."""
+    """Deflection of the smallest step that SERVO_OUTPUT_RAW can express: 1 us of one output."""
     calibrated: bool
     """False: scaled by SERVOn_MIN/TRIM/MAX and assumed full strokes."""
 

@@ -8,7 +8,13 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.doctor.asking import how_to_ask
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Belief, expect, frequency
-from advisor.doctor.instruments import alpha_limits, clock_limits, elevator_limits, loss_limits
+from advisor.doctor.instruments import (
+    alpha_limits,
+    clock_limits,
+    company_limits,
+    elevator_limits,
+    loss_limits,
+)
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Survey
 from advisor.flight.events import ManeuverFlown
@@ -43,6 +49,7 @@ class Examiner:
 
     def __init__(self, aircraft: Aircraft, target_system: int | None = None) -> None:
         self._aircraft = aircraft
+        self._chosen = target_system is not None
         self._stream = FlightStream(aircraft, target_system)
         self._survey: Survey | None = None
         self._maneuvers: list[Maneuver] = []
@@ -90,6 +97,7 @@ class Examiner:
         elevator = self._elevator()
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
         limits += clock_limits(clocks) if clocks else []
+        limits += company_limits(self._stream.other_systems) if not self._chosen else []
         limits += loss_limits(lost_percent)
         rates = {name: channel.renewed_hz for name, channel in paced.items()}
         return Examination(
@@ -152,8 +160,10 @@ class Examiner:
         elevator = self._stream.elevator
         if not isinstance(elevator, Surface):
             return None
-        pulses = np.arange(800.0, 2201.0)
-        angle = np.degrees(elevator.deflection(np.repeat(pulses[:, None], len(elevator.outputs), axis=1)))
+        # One output moves alone: the halves of a mixed pair may count in opposite directions.
+        pulses = np.full((1401, len(elevator.outputs)), 1500.0)
+        pulses[:, 0] = np.arange(800.0, 2201.0)
+        angle = np.degrees(elevator.deflection(pulses))
         return ElevatorFound(elevator.outputs, float(np.max(np.abs(np.diff(angle)))), elevator.calibrated)
 
     def _alpha(self, paced: dict[str, Paced]) -> AlphaFound | None:

@@ -1,5 +1,7 @@
 """What the instruments and clocks can and cannot do, whatever their rates."""
 
+from collections.abc import Collection
+
 from advisor.aircraft import Elevator
 from advisor.doctor.asking import how_to_ask
 from advisor.doctor.examination import ElevatorFound, Limit
@@ -10,6 +12,8 @@ COARSE_DEG = 0.5
 """Resolution of the command beyond which small steps are no longer steps."""
 LOSSY_PERCENT = 5.0
 DRIFTING_PERCENT = 1.0
+STRAYED_SHARE = 0.01
+"""Of a message's stamps; around a reboot a few always fit on neither clock."""
 
 _A_VANE = "fit a vane that sends NAMED_VALUE_FLOAT (alpha.source: named_value:NAME)"
 
@@ -30,11 +34,12 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
     """Calibration, resolution and servo."""
     limits = []
     if not found.calibrated:
-        outputs = " and ".join(map(str, found.outputs))
+        listed = " and ".join(map(str, found.outputs))
+        outputs = f"Outputs {listed} are" if len(found.outputs) > 1 else f"Output {listed} is"
         limits.append(
             Limit(
                 "calibration",
-                f"Output {outputs} is not calibrated: full strokes of SERVOn_MIN/TRIM/MAX count as 25 deg, "
+                f"{outputs} not calibrated: full strokes of SERVOn_MIN/TRIM/MAX count as 25 deg, "
                 "so Z_delta_e and M_delta_e have an assumed scale",
                 "measure the deflection at three pulse widths and give elevator.calibration in the aircraft "
                 "file",
@@ -73,6 +78,8 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
             )
         )
     for name, share in clocks.strayed.items():
+        if share <= STRAYED_SHARE:
+            continue
         limits.append(
             Limit(
                 "clock",
@@ -89,6 +96,20 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
             )
         )
     return limits
+
+
+def company_limits(other_systems: Collection[int]) -> list[Limit]:
+    """Further vehicles on the same link, when nobody chose one."""
+    if not other_systems:
+        return []
+    others = ", ".join(map(str, sorted(other_systems)))
+    return [
+        Limit(
+            "several_vehicles",
+            f"Other vehicles are heard too (system {others}); the first one heard is examined",
+            f"choose one, e.g. --target-system {min(other_systems)}",
+        )
+    ]
 
 
 def loss_limits(lost_percent: float | None) -> list[Limit]:

@@ -11,7 +11,7 @@ from advisor.doctor.expectation import Belief, Expectation, expect, frequency
 from advisor.doctor.survey import Arrival
 from advisor.flight.suitability import SLOWEST_HZ
 
-FEWEST_PER_PERIOD = 8.0
+FEWEST_PER_PERIOD = 6.0
 """Samples to one natural period below which the short period cannot be followed."""
 ENOUGH_PER_PERIOD = 20.0
 """Samples to one natural period above which faster telemetry hardly helps."""

@@ -9,6 +9,7 @@ from rich.text import Text
 from advisor.aircraft import PARAMETERS
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import frequency
+from advisor.doctor.instruments import STRAYED_SHARE
 
 _SIGNS = {"ready": "✓", "usable with limits": "!", "not usable": "✗"}
 _STYLES = {"ready": "bold green", "usable with limits": "bold yellow", "not usable": "bold red"}
@@ -67,7 +68,8 @@ class ExaminationText:
         clocks = self._findings.clocks
         if clocks is None or not math.isfinite(clocks.drift_percent):
             return "clocks     cannot be compared"
-        consistent = "inconsistent" if clocks.strayed else "consistent"
+        strayed = max(clocks.strayed.values(), default=0.0)
+        consistent = "inconsistent" if strayed > STRAYED_SHARE else "consistent"
         return (
             f"clocks     {consistent}, drift {clocks.drift_percent:+.3f} %, arrival within "
             f"{clocks.arrival_jitter_ms:.1f} ms, {clocks.boots} power-on{'s' if clocks.boots > 1 else ''}"

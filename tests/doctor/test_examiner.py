@@ -11,7 +11,7 @@ from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.examiner import Examiner
 from advisor.flight.messages import Columns
 from advisor.mavlink.logs import open_log
-from tests.doctor.builders import flight
+from tests.doctor.builders import flight, heartbeat
 
 LOGS = Path(__file__).parents[2] / "logs"
 WELL_KNOWN = Aircraft(
@@ -134,6 +134,8 @@ def test_elevons_and_v_tails_are_read_together_and_a_lone_half_is_refused_by_nam
     found = examined(flight(setup=elevons), Aircraft())
     assert found.elevator is not None
     assert found.elevator.outputs == (1, 2)
+    assert found.elevator.resolution_deg == pytest.approx(25.0 / 400.0 / 2.0)
+    assert limits(found)["calibration"].text.startswith("Outputs 1 and 2 are not calibrated")
     tail = examined(flight(setup={"SERVO3_FUNCTION": 79.0, "SERVO2_FUNCTION": 80.0}), Aircraft())
     assert tail.elevator is not None
     assert tail.elevator.outputs == (2, 3)
@@ -161,6 +163,12 @@ def test_without_parameters_the_output_is_asked_for() -> None:
     assert "--request-rates" in limits(found)["no_elevator"].fix
     named = examined(flight(setup={}), Aircraft(elevator=Elevator(output=2)))
     assert named.verdict == "usable with limits"
+
+
+def test_a_second_vehicle_is_named_with_the_option_that_chooses() -> None:
+    other = Columns("HEARTBEAT", 7, 1, np.array([5]), np.array([0.0]), heartbeat().fields)
+    found = examined([*flight(), other])
+    assert "--target-system 7" in limits(found)["several_vehicles"].fix
 
 
 def test_losses_of_a_live_link_count() -> None:

@@ -110,7 +110,7 @@ def test_stamps_of_another_clock_are_counted_as_strayed() -> None:
 
 def test_a_32_bit_counter_that_wraps_is_no_stray() -> None:
     wrap_s = 2.0**32 * 1e-6
-    t = np.arange(wrap_s - 5.0, wrap_s + 5.0, 0.02)
+    t = np.arange(wrap_s - 5.01, wrap_s + 5.0, 0.02)  # no stamp of exactly 0, which means none
     master = attitude(t)
     wrapped = columns(
         "SERVO_OUTPUT_RAW",
