@@ -37,6 +37,8 @@ _JUST_BEGUN_S = 0.1
 """Enough quiet where the record itself begins only then."""
 _SLOWEST_STEP_S = 0.25
 """Samples farther apart than this hide the shape of an input."""
+_FEWEST_LOBES = 4
+"""Lobes of a multisine beyond the band around trim."""
 _LEAST_LEVEL = 0.4
 """A lobe smaller than this share of the largest is no step of a known input."""
 
@@ -114,11 +116,10 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
     if shape.is_3211:
         clear = rested_s >= _QUIET_S["other"] and amplitude >= 10.0 * quiet
         return shape if _is_sharp(t, d, shape, _SHARP_3211[int(clear)]) else None
-    if rested_s < _QUIET_S[shape.kind] or amplitude < 8.0 * quiet:
-        return None
-    if shape.kind != "multisine" and _is_sharp(t, d, shape, _SHARP):
+    steady = rested_s >= _QUIET_S[shape.kind] and amplitude >= 8.0 * quiet
+    if shape.kind != "multisine" and steady and _is_sharp(t, d, shape, _SHARP):
         return shape
-    return replace(shape, kind="multisine") if _is_multisine(shape) else None
+    return _multisine(t, d, first, shape)
 
 
 def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, int] | None:
@@ -249,13 +250,25 @@ def _kind(levels: FloatArray, durations: FloatArray, square: float, step_s: floa
     return "multisine" if len(levels) > 1 else None
 
 
-def _is_multisine(shape: Shape) -> bool:
-    """Many reversals, quick ones, and no dying away."""
+def _multisine(t: FloatArray, d: FloatArray, first: int, shape: Shape) -> Shape | None:
+    """The shape as a multisine: many reversals, quick ones, no dying away, and real quiet before.
+
+    A multisine swells: its first lobes may lie in the band around trim, so the quiet is looked
+    for up to three seconds before the elevator leaves that band.
+    """
     levels = np.abs([level for _, level in shape.steps[:-1]])
-    if len(levels) < 6 or np.median(np.diff([onset for onset, _ in shape.steps])) > 1.5:
-        return False
+    if len(levels) < _FEWEST_LOBES or np.median(np.diff([onset for onset, _ in shape.steps])) > 1.5:
+        return None
     early, late = np.max(levels[: len(levels) // 2]), np.max(levels[len(levels) // 2 :])
-    return bool(late > 0.6 * early and early > 0.4 * late)
+    if not (late > 0.6 * early and early > 0.4 * late):
+        return None
+    for end in range(first, int(np.searchsorted(t, t[first] - 3.0)), -1):
+        rest = d[int(np.searchsorted(t, t[end] - _QUIET_S["multisine"])) : end]
+        if t[end] - t[0] < _QUIET_S["multisine"] or len(rest) < 3:
+            return None
+        if np.max(np.abs(rest)) <= 0.05 * shape.amplitude:
+            return replace(shape, kind="multisine", start_s=float(t[end]))
+    return None
 
 
 def _without_spikes(u: FloatArray) -> FloatArray:

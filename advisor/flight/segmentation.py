@@ -167,4 +167,4 @@ class Segmenter:
 
 def _least_free_s(shape: Shape) -> float:
     """How long the elevator must rest for an input to count when something cuts its free response."""
-    return 0.0 if shape.is_3211 else max(1.5, 2.0 * shape.longest_s)
+    return 0.0 if shape.is_3211 else max(1.0, 2.0 * shape.longest_s)
