@@ -11,6 +11,7 @@ from advisor.flight.vehicle import closes_pitch_loop
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
 from advisor.oem.filter_error import filter_error_estimate, turbulence_in
+from advisor.oem.solution import Method
 
 COLOURED = 0.5
 """Lag-1 correlation of a residual below which nothing drives it."""
@@ -18,9 +19,9 @@ UNEXPLAINED = 0.004
 """Share of the pitch rate's variance that moving air leaves unexplained at the least."""
 
 
-def assess(maneuver: Maneuver, aircraft: Aircraft) -> Flown:
+def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newton") -> Flown:
     """Estimate a manoeuvre and examine it, before any rule compares it with others."""
-    estimated = estimate(maneuver, aircraft)
+    estimated = estimate(maneuver, aircraft, method=method)
     opinion, air = _second_opinion(maneuver, estimated, aircraft)
     return Flown(
         estimated,

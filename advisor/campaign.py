@@ -24,6 +24,7 @@ from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
+from advisor.oem.solution import Method
 from advisor.problems import Problem
 from advisor.settling import Settling
 
@@ -53,6 +54,8 @@ class Campaign:
         Verdicts do not depend on it.
     tell
         Called with every event, for whoever announces verdicts.
+    method
+        How each manoeuvre's optimum is sought: Gauss-Newton, or the paper's simplex.
     """
 
     def __init__(
@@ -61,8 +64,10 @@ class Campaign:
         target_system: int | None = None,
         settle: bool = False,
         tell: Callable[[CampaignEvent], object] | None = None,
+        method: Method = "gauss-newton",
     ) -> None:
         self._aircraft = aircraft
+        self._method: Method = method
         self._tell = tell
         self._stream = FlightStream(aircraft, target_system)
         self._maneuvers: list[Maneuver] = []
@@ -135,7 +140,7 @@ class Campaign:
             match event:
                 case ManeuverFlown(maneuver):
                     self._maneuvers.append(maneuver)
-                    self._history.append(assess(maneuver, self._aircraft))
+                    self._history.append(assess(maneuver, self._aircraft, self._method))
                     self._decide()
                     told.append(ManeuverJudged(self._judged[-1], self._flight_test))
                     ended_s = maneuver.span.end_s

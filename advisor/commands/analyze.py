@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Literal
 
 import click
 
@@ -23,9 +24,21 @@ from advisor.problems import Problem, UnusableInputError
 @aircraft_option
 @rule_option
 @target_system_option
+@click.option(
+    "--method",
+    type=click.Choice(["gauss-newton", "nelder-mead"]),
+    default="gauss-newton",
+    show_default=True,
+    help="Search for each manoeuvre's optimum; nelder-mead is the paper's, slower by far.",
+)
 @json_option
 def command(
-    log: Path, aircraft_file: Path | None, rule: Rule | None, target_system: int | None, as_json: bool
+    log: Path,
+    aircraft_file: Path | None,
+    rule: Rule | None,
+    target_system: int | None,
+    method: Literal["gauss-newton", "nelder-mead"],
+    as_json: bool,
 ) -> int:
     """Every manoeuvre's verdict, the estimates, stop or continue: as text, or as one JSON document.
 
@@ -35,7 +48,7 @@ def command(
       advisor analyze flight.tlog --json | python -m json.tool
     """
     aircraft = read_aircraft(aircraft_file, rule)
-    state, problems = _analyze(log, aircraft, target_system)
+    state, problems = _analyze(log, aircraft, target_system, method)
     if as_json:
         from advisor.report.document import analysis_document
 
@@ -52,12 +65,12 @@ def command(
 
 
 def _analyze(
-    log: Path, aircraft: Aircraft, target_system: int | None
+    log: Path, aircraft: Aircraft, target_system: int | None, method: Literal["gauss-newton", "nelder-mead"]
 ) -> tuple[CampaignState | None, list[Problem]]:
     from advisor.campaign import Campaign
     from advisor.mavlink.logs import open_log
 
-    campaign = Campaign(aircraft, target_system)
+    campaign = Campaign(aircraft, target_system, method=method)
     try:
         for columns in open_log(log):
             campaign.feed(columns)
