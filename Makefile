@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-accuracy study-robustness study-quality clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-accuracy study-robustness study-quality pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -80,6 +80,9 @@ study-robustness: .venv/.developed ## the estimator's own start on 2,000 random 
 
 study-quality: .venv/.developed ## good manoeuvres rejected, and other tests marked as studies
 	$(BIN)/python -m pytest -m study
+
+pictures: .venv/.developed ## the screens in the README, drawn by the running program
+	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs
 
 clean: ## remove .venv and caches
 	rm -rf .venv build *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
