@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-accuracy study-robustness study-quality pictures clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change accuracy robustness study-quality pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -58,10 +58,10 @@ imports: .venv/.developed ## the walls of the house
 	$(BIN)/lint-imports
 
 bench: .venv/.developed ## every ratio of speed, each against its goal (about five minutes)
-	$(BIN)/python benchmarks/estimate.py
-	$(BIN)/python benchmarks/tlog.py
-	$(BIN)/python benchmarks/link.py --seconds 60 --rate 2000
-	$(BIN)/python benchmarks/tui.py
+	$(BIN)/python -m benchmarks.estimate
+	$(BIN)/python -m benchmarks.tlog
+	$(BIN)/python -m benchmarks.link --seconds 60 --rate 2000
+	$(BIN)/python -m benchmarks.tui
 
 study: .venv/.developed ## the paper's campaign, 2,000 times a noise level, with Figure 5
 	$(BIN)/advisor study --campaigns 2000 --readings --figure docs/images/figure-5.svg
@@ -72,11 +72,11 @@ study-advice: .venv/.developed ## what following the advice saves
 study-change: .venv/.developed ## how soon a change of the aircraft is told
 	$(BIN)/advisor study --change --campaigns 400
 
-study-accuracy: .venv/.developed ## the estimator against the Cramér-Rao bound, intervals against the truth
-	$(BIN)/python benchmarks/accuracy.py
+accuracy: .venv/.developed ## the estimator against the Cramér-Rao bound, intervals against the truth
+	$(BIN)/python -m benchmarks.accuracy --write docs/accuracy.md
 
-study-robustness: .venv/.developed ## the estimator's own start on 2,000 random aircraft
-	$(BIN)/python benchmarks/robustness.py
+robustness: .venv/.developed ## the estimator's own start on 2,000 random aircraft
+	$(BIN)/python -m benchmarks.robustness
 
 study-quality: .venv/.developed ## good manoeuvres rejected, and other tests marked as studies
 	$(BIN)/python -m pytest -m study
