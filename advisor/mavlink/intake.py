@@ -6,7 +6,7 @@ from advisor.flight.vehicle import is_aircraft
 from advisor.mavlink.framing import Frame, FrameCutter
 from advisor.mavlink.health import LinkCounters
 from advisor.mavlink.signing import RADIO_STATUS, SignatureCheck
-from advisor.mavlink.transports import Peer
+from advisor.mavlink.transport import Peer
 
 HEARTBEAT = 0
 MOST_PEERS = 64

@@ -28,7 +28,8 @@ from advisor.mavlink.intake import Intake
 from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Packer, Talker
 from advisor.mavlink.recorder import Recorder
 from advisor.mavlink.signing import SignatureCheck, signing_time
-from advisor.mavlink.transports import ConnectionCutError, Transport, open_transport
+from advisor.mavlink.transport import ConnectionCutError, Transport
+from advisor.mavlink.transports import open_transport
 from advisor.mavlink.watch import LinkWatch
 from advisor.problems import UnusableInputError
 
