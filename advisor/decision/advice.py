@@ -12,7 +12,7 @@ from advisor.decision.information import Knowledge, knowledge
 from advisor.decision.inputs import StepInput
 from advisor.decision.judge import accepted_estimates
 from advisor.decision.remaining import by_information, by_scatter, share_after, usable_share
-from advisor.decision.scatter import scatter_by_parameter, window
+from advisor.decision.scatter import scattered_most, window
 from advisor.decision.verdict import NextInput, Remaining
 from advisor.flight.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
@@ -76,7 +76,7 @@ def _held_by(history: Sequence[Flown], plan: CampaignPlan, known: Knowledge) -> 
     if plan.rule != "information":
         members = window(accepted_estimates(history, plan.rule), plan)
         if members is not None:
-            return PARAMETERS[int(np.nanargmax(scatter_by_parameter(members, plan.criterion)))]
+            return scattered_most(members, plan.criterion)
     return known.holding_back
 
 

@@ -122,7 +122,7 @@ def _moved(before: Shared, after: Shared, widening: float) -> tuple[Moved, ...]:
         difference = after.theta[k] - value
         std = np.sqrt(widening * (before.covariance[k, k] + after.covariance[k, k]))
         size = abs(value + (1.0 if name == "Z_q" else 0.0))
-        if abs(difference) > LEAST_SIGMA * std and abs(difference) > LEAST_SHARE * size:
+        if 0.0 < LEAST_SIGMA * std < abs(difference) and 0.0 < LEAST_SHARE * size < abs(difference):
             percent = 100.0 * difference / size * np.sign(value)
             found.append(Moved(name, float(percent), float(difference / std)))
     return tuple(sorted(found, key=lambda m: -abs(m.sigma)))

@@ -52,7 +52,7 @@ def _as_large_as_allowed(option: StepInput, conditions: Conditions) -> Choice | 
     length = conditions.lead_s + option.duration_s + conditions.free_s
     elevator = option.elevator(conditions.trim_rad, conditions.lead_s, length)
     full = expect(conditions.theta, elevator, conditions.instruments)
-    if full is None:
+    if full is None or not full.alpha_excursion > 0.0:
         return None
     amplitude = min(1.0, conditions.alpha_rad / full.alpha_excursion) * option.amplitude_rad
     allowed = StepInput(option.order, option.unit_s, amplitude, option.nose_up_first).rounded(

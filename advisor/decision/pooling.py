@@ -176,8 +176,9 @@ def _distance(difference: FloatArray, information: FloatArray) -> tuple[float, i
 
 
 def information_of(covariance: FloatArray) -> FloatArray:
-    """Inverse of a covariance; zero rows and columns for what is unknown (not finite)."""
-    known = np.isfinite(np.diag(covariance))
+    """Inverse of a covariance; zero rows and columns for what is unknown (no finite, positive variance)."""
+    variance = np.diag(covariance)
+    known = np.isfinite(variance) & (variance > 0.0)
     information = np.zeros_like(covariance)
     block = np.ix_(known, known)
     if known.any():

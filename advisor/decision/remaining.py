@@ -40,9 +40,9 @@ def by_information(known: Knowledge, next_std: FloatArray, usable_share: float) 
 
 def share_after(known: Knowledge, next_std: FloatArray, more: int) -> FloatArray:
     """(8,) half-width over tolerance of each interval after ``more`` manoeuvres with errors ``next_std``."""
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         information = 1.0 / known.belief.std**2 + more / next_std**2
-        return np.asarray(Z95 / np.sqrt(information) / known.tolerance)
+        return np.nan_to_num(Z95 / np.sqrt(information) / known.tolerance, nan=np.inf)
 
 
 def by_scatter(
@@ -68,7 +68,8 @@ def by_scatter(
     future = centre + spread * rng.standard_normal((_DRAWS, MOST, len(centre)))
     series = np.concatenate([np.broadcast_to(kept, (_DRAWS, *kept.shape)), future], axis=1)
     windows = np.lib.stride_tricks.sliding_window_view(series, plan.window, axis=1)
-    relative = SCATTER_FACTOR * windows.std(axis=-1, ddof=1) / np.abs(windows.mean(axis=-1))
+    mean, scatter = np.abs(windows.mean(axis=-1)), SCATTER_FACTOR * windows.std(axis=-1, ddof=1)
+    relative = np.divide(scatter, mean, out=np.full_like(mean, np.inf), where=mean > 0.0)
     agree = 100.0 * np.linalg.norm(relative, axis=-1) < plan.limit_percent
     # The windows before the first full one end in manoeuvres that cannot stop the test yet.
     accepted = np.argmax(agree, axis=1) + plan.window - len(kept)

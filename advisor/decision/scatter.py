@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft import CampaignPlan, Criterion
+from advisor.aircraft import PARAMETERS, CampaignPlan, Criterion
 from advisor.decision.pooling import beliefs_at_one_speed
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import Estimate
@@ -43,6 +43,11 @@ def scatter_percent(theta: FloatArray, criterion: Criterion = "eq12") -> float:
     The norm takes absolute values, so the sign of a parameter's mean does not matter.
     """
     return 100.0 * float(np.linalg.norm(scatter_by_parameter(theta, criterion)))
+
+
+def scattered_most(theta: FloatArray, criterion: Criterion = "eq12") -> str:
+    """The parameter that contributes most to `scatter_percent`; one without a value before all others."""
+    return PARAMETERS[int(np.argmax(np.nan_to_num(scatter_by_parameter(theta, criterion), nan=np.inf)))]
 
 
 def window(accepted: Sequence[Estimate], plan: CampaignPlan) -> FloatArray | None:

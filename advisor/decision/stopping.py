@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan, Rule
+from advisor.aircraft import Aircraft, CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
 from advisor.decision.history import Flown
 from advisor.decision.information import Knowledge, knowledge
 from advisor.decision.judge import accepted_estimates, rule_results
-from advisor.decision.scatter import scatter_by_parameter, scatter_percent, window
+from advisor.decision.scatter import scatter_percent, scattered_most, window
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress
 from advisor.decision.warnings import warnings
 from advisor.oem.estimate import Estimate
@@ -130,4 +130,4 @@ def _information_sentence(known: Knowledge | None, stop: bool) -> str:
 def _scattered_most(accepted: Sequence[Estimate], plan: CampaignPlan) -> str:
     theta = window(accepted, plan)
     assert theta is not None
-    return PARAMETERS[int(np.nanargmax(scatter_by_parameter(theta, plan.criterion)))]
+    return scattered_most(theta, plan.criterion)

@@ -10,6 +10,9 @@ from advisor.oem.estimate import Estimate
 NEAR_ZERO = 3.0
 """A parameter is near zero when its whole effect on the response is less than this many times the noise."""
 
+LEAST = 1e-12
+"""No tolerance is smaller, in any unit: data without noise leave nothing to be tolerant of."""
+
 
 def tolerances(theta: FloatArray, first: Estimate, plan: CampaignPlan) -> FloatArray:
     """The half-width each parameter's 95 % interval must stay below.
@@ -34,6 +37,7 @@ def tolerances(theta: FloatArray, first: Estimate, plan: CampaignPlan) -> FloatA
     for constant, stiffness in (("Z_0", "Z_alpha"), ("M_0", "M_alpha")):
         k = PARAMETERS.index(constant)
         tolerance[k] = np.fmax(tolerance[k], size[PARAMETERS.index(stiffness)] * noise)
+    tolerance = np.fmax(tolerance, LEAST)
     for name, value in plan.tolerance.items():
         tolerance[PARAMETERS.index(name)] = value
     return tolerance
