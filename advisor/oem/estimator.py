@@ -7,11 +7,12 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.model.response import OUTPUTS
+from advisor.oem.edges import with_edges
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
 from advisor.oem.notes import notes
 from advisor.oem.prepare import Prepared, prepare
-from advisor.oem.servo_lag import Lag, find_lag
+from advisor.oem.servo_lag import Lag, by_lag, find_lag
 from advisor.oem.solution import Method, Solution, solve
 from advisor.oem.surface import Servo
 
@@ -33,6 +34,7 @@ def estimate(
     solution = solve(prepared.problem, method=method)
     if isinstance(solution, NoEstimate):
         return solution
+    solution = with_edges(solution) if method == "gauss-newton" else solution
     lagged = _supposing_a_lag(solution) if aircraft.elevator.lag_s is None else None
     return report(solution, prepared, aircraft, lagged=lagged)
 
@@ -53,9 +55,12 @@ def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estim
         return solution
     lag = find_lag(prepared.problem, solution) if aircraft.elevator.lag_s is None else None
     if lag is None:
-        return report(solution, prepared, aircraft)
-    lagged = None if lag.lag_s > 0.0 else _supposing_a_lag(solution)
-    return report(lag.solution, prepared, aircraft, lag=lag, lagged=lagged)
+        return report(with_edges(solution), prepared, aircraft)
+    if lag.lag_s > 0.0:
+        solution = with_edges(lag.solution, by_lag(lag.solution)[:, None])
+        return report(solution, prepared, aircraft, lag=lag)
+    solution = with_edges(solution)
+    return report(solution, prepared, aircraft, lag=lag, lagged=_supposing_a_lag(solution))
 
 
 def report(

@@ -26,6 +26,7 @@ def notes(
         _airspeed(prepared),
         _scale(solution),
         _held(prepared),
+        _edges(solution, prepared),
         _vane(aircraft),
         *_missing(prepared),
     ]
@@ -78,6 +79,14 @@ def _held(prepared: Prepared) -> str:
         f"Angle of attack is renewed at {prepared.renewed_hz:.0f} Hz only and repeated under fresh stamps"
         " between; it is used at that rate."
     )
+
+
+def _edges(solution: Solution, prepared: Prepared) -> str:
+    pairs = zip(solution.problem.records, prepared.problem.records, strict=True)
+    steps = sum(len(used.elevator.t) - len(given.elevator.t) for used, given in pairs) // 2
+    if steps == 0:
+        return ""
+    return f"When {steps} elevator steps happened between two samples of the command was estimated, too."
 
 
 def _vane(aircraft: Aircraft) -> str:

@@ -1,10 +1,11 @@
 """Solving a problem: start, descent, errors, what is identifiable."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
+from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
 from advisor.oem.covariance import REPORTED, Coloured, Influence, coloured, cramer_rao, influence
@@ -116,13 +117,22 @@ def evaluate(
     optimum: Optimum,
     extra: FloatArray | None = None,
     noise: Coloured | None = None,
+    kept: int | None = None,
 ) -> Solution | NoEstimate:
-    """Errors of an optimum; ``extra`` as in ``covariance.influence``, ``noise`` as in ``solve``."""
+    """Errors of an optimum.
+
+    Parameters
+    ----------
+    extra, noise : as in ``covariance.influence`` and in ``solve``.
+    kept : how many of the extra parameters shall have errors of their own, the first ones; default all.
+    """
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     respond(assembly.grid, optimum.shared, optimum.local, y, g)
     effect = influence(assembly, g, optimum.noise, extra)
     if effect is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
+    if kept is not None:
+        effect = replace(effect, rows=effect.rows[:, : len(PARAMETERS) + kept])
     corrected, found = coloured(assembly, effect.rows, assembly.z - y, g, noise)
     return Solution(
         problem=problem,

@@ -1,0 +1,156 @@
+"""When a step of the command really happened: somewhere between two stamps.
+
+The command is sampled. A step that lies between two stamps is drawn as a ramp over the interval,
+as if it had happened in the middle; it may have been anywhere, at the later stamp when a digital
+command is held. Half a sample is a false delay, and with the small errors of a joint
+estimate that is many standard deviations. So each large step gets a time of its own, estimated
+together with everything else, when the data ask for it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.flight.messages import FloatArray
+from advisor.model.response import N_PARAMETERS, Index, respond
+from advisor.oem.covariance import influence
+from advisor.oem.gauss_newton import CONVERGED, Optimum
+from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.solution import Solution, evaluate, search
+
+LARGE = 0.25
+"""A step is large that covers this share of the command's range within one interval ..."""
+ISOLATED = 0.3
+"""... while the intervals beside it change by less than this share of it."""
+WIDTH_S = 1e-4
+"""Duration of a sharpened step."""
+DIFFERENCE_S = 2e-4
+ROUNDS = 2
+GAIN_PER_EDGE = 3.0
+"""Twice the log-likelihood that each edge must bring."""
+MOST_MANEUVERS = 20
+CLOSE_ENOUGH = 1e-9
+"""Promised change of log J per sample at which a search on the way is done."""
+
+
+@dataclass(frozen=True, slots=True)
+class Edges:
+    """Large steps of one record and when they happened."""
+
+    interval: tuple[int, ...]
+    """Index of the stamp before each step."""
+    time: FloatArray
+    """(k,) when, between that stamp and the next."""
+
+
+def large_steps(command: Signal) -> Edges:
+    """Steps that stand alone between two stamps, first placed in the middle."""
+    change = np.abs(np.diff(command.y))
+    beside = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
+    span = float(np.ptp(command.y))
+    interval = tuple(int(i) for i in np.flatnonzero((change > LARGE * span) & (beside < ISOLATED * change)))
+    middle = [(command.t[i] + command.t[i + 1]) / 2.0 for i in interval]
+    return Edges(interval, np.array(middle))
+
+
+def sharpened(command: Signal, edges: Edges) -> Signal:
+    """The command with its large steps upright at the given times."""
+    t, y = list(command.t), list(command.y)
+    for i, when in sorted(zip(edges.interval, edges.time, strict=True), reverse=True):
+        t[i + 1 : i + 1] = [when - WIDTH_S / 2.0, when + WIDTH_S / 2.0]
+        y[i + 1 : i + 1] = [command.y[i], command.y[i + 1]]
+    return Signal(np.array(t), np.array(y))
+
+
+def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
+    """The solution with every large step at its own time; ``plain`` itself when that gains too little.
+
+    Parameters
+    ----------
+    extra : derivatives by parameters estimated besides, as in ``covariance.influence``; their
+        columns come first, those of the edges after them.
+    """
+    records = plain.problem.records
+    edges = [large_steps(record.elevator) for record in records]
+    count = sum(len(e.interval) for e in edges)
+    if count == 0 or len(records) > MOST_MANEUVERS or any(record.held for record in records):
+        return plain
+    own = np.empty((len(plain.fitted), 0)) if extra is None else extra
+    near, problem, assembly, optimum = plain.optimum, plain.problem, plain.assembly, plain.optimum
+    columns = own
+    for round_ in range(ROUNDS + 1):
+        problem = _edged(plain.problem, edges, records)
+        assembly, optimum = search(problem, begin=(near.shared, near.local), flat=CLOSE_ENOUGH)
+        if optimum.status != CONVERGED:
+            return plain
+        near = optimum
+        columns = np.column_stack([own, _by_edges(plain.problem, edges, records, optimum, assembly.owner)])
+        if round_ == ROUNDS:
+            break
+        y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
+        respond(assembly.grid, optimum.shared, optimum.local, y, g)
+        effect = influence(assembly, g, optimum.noise, columns)
+        if effect is None:
+            return plain
+        steps = effect.rows[:, len(PARAMETERS) + own.shape[1] :].T @ (assembly.z - y)
+        edges = _moved(edges, steps, records)
+    if plain.optimum.log_likelihood_cost - optimum.log_likelihood_cost < GAIN_PER_EDGE * count:
+        return plain
+    final = evaluate(problem, assembly, optimum, columns, kept=own.shape[1])
+    return final if isinstance(final, Solution) else plain
+
+
+def _edged(problem: Problem, edges: Sequence[Edges], records: Sequence[Record]) -> Problem:
+    """The problem with the commands of ``records`` sharpened."""
+    return replace(
+        problem,
+        records=tuple(
+            replace(record, elevator=sharpened(record.elevator, e))
+            for record, e in zip(records, edges, strict=True)
+        ),
+    )
+
+
+def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record]) -> list[Edges]:
+    """Edges displaced, each within its interval."""
+    moved, at = [], 0
+    for record, e in zip(records, edges, strict=True):
+        k = len(e.interval)
+        first = record.elevator.t[list(e.interval)]
+        last = record.elevator.t[[i + 1 for i in e.interval]]
+        time = np.clip(e.time + steps[at : at + k], first + WIDTH_S, last - WIDTH_S)
+        moved.append(Edges(e.interval, time))
+        at += k
+    return moved
+
+
+def _by_edges(
+    problem: Problem, edges: Sequence[Edges], records: Sequence[Record], optimum: Optimum, owner: Index
+) -> FloatArray:
+    """(N, k) derivatives of the outputs by the times of all edges, manoeuvre by manoeuvre.
+
+    The j-th edges of all manoeuvres move at once: each shows in its own manoeuvre only.
+    """
+    counts = [len(e.interval) for e in edges]
+    offsets = np.cumsum([0, *counts])
+    columns = np.zeros((len(owner), offsets[-1]))
+    for j in range(max(counts)):
+        sides = []
+        for sign in (-1.0, 1.0):
+            step = np.zeros(offsets[-1])
+            step[[offsets[m] + j for m in range(len(edges)) if counts[m] > j]] = sign * DIFFERENCE_S
+            shifted = [
+                Edges(e.interval, e.time + step[offsets[m] : offsets[m + 1]]) for m, e in enumerate(edges)
+            ]
+            grid = assemble(_edged(problem, shifted, records)).grid
+            y = np.empty(len(owner))
+            respond(grid, optimum.shared, optimum.local, y, np.empty((0, N_PARAMETERS)))
+            sides.append(y)
+        slope = (sides[1] - sides[0]) / (2.0 * DIFFERENCE_S)
+        for m in range(len(edges)):
+            if counts[m] > j:
+                mine = owner == m
+                columns[mine, offsets[m] + j] = slope[mine]
+    return columns

@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+
+from advisor.oem.edges import large_steps, sharpened, with_edges
+from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.solution import solve
+from tests.oem.builders import UAV, flown, simulate, trim_alpha, trim_elevator
+
+RATE = 50.0
+
+
+def flown_between_stamps(seed, share, sign):
+    """The small aircraft; steps happen at ``share`` of the interval between stamps."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 8.0, 1.0 / RATE)
+    fine = np.arange(0.0, 8.0, 0.0005)
+    trim = trim_elevator(UAV)
+
+    def command(stamps):
+        y = np.full(len(stamps), trim)
+        for edge, level in ((1.0, 0.8), (2.2, -1.2), (3.0, 1.1), (3.4, -1.1), (3.8, 0.0)):
+            y[stamps > edge - 1e-9 + share / RATE] = trim + 0.02 * sign * level
+        return y
+
+    x = simulate(UAV, [trim_alpha(UAV), 0.0], fine, command(fine), t[1:-1])
+    outputs = {
+        name: Signal(t[1:-1], x[:, c] + 0.02 * x[:, c].std() * rng.standard_normal(len(x)))
+        for name, c in (("alpha", 0), ("q", 1))
+    }
+    return Record(Signal(t, command(t)), outputs)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.95])
+def test_steps_between_stamps_do_not_pass_for_other_derivatives(share):
+    plain = solve(Problem(tuple(flown_between_stamps(k, share, (-1) ** k) for k in range(2))))
+    found = with_edges(plain)
+    off = np.abs(found.theta - UAV) / np.sqrt(np.diag(found.covariance)[:8])
+    assert np.all(off < 4.0)
+    assert np.max(np.abs(plain.theta - UAV) / np.sqrt(np.diag(plain.covariance)[:8])) > 8.0
+
+
+def test_a_command_that_is_linear_between_stamps_is_left_alone():
+    flight = flown(UAV, unit_s=0.4, noise=0.02, length_s=8.0)
+    signals = {n: Signal(c.t, c.y) for n, c in flight.channels.items()}
+    plain = solve(Problem((Record(signals["elevator"], {n: signals[n] for n in ("alpha", "q")}),)))
+    assert with_edges(plain) is plain
+
+
+def test_large_steps_are_those_that_stand_alone():
+    t = np.arange(10.0)
+    y = np.array([0.0, 0.0, 1.0, 1.0, 1.02, 0.5, 0.0, 0.0, -1.0, -1.0])
+    assert large_steps(Signal(t, y)).interval == (1, 7)
+    assert large_steps(Signal(t, np.zeros(10))).interval == ()
+
+
+def test_a_sharpened_command_keeps_its_levels():
+    t, y = np.arange(5.0), np.array([0.0, 0.0, 2.0, 2.0, 2.0])
+    made = sharpened(Signal(t, y), large_steps(Signal(t, y)))
+    np.testing.assert_allclose(made.at(np.array([1.4, 1.6])), [0.0, 2.0])
