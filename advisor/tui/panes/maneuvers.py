@@ -12,7 +12,18 @@ from advisor.tui.panes.pane import Pane
 from advisor.tui.view import View
 from advisor.tui.words import clock
 
-_COLUMNS = ("no.", "start", "input", "verdict", "reason", "con", "sep", "inf", "cost J")
+# Name and width: what grows must not push the others about.
+_COLUMNS = (
+    ("no.", 3),
+    ("start", 5),
+    ("input", 15),
+    ("verdict", 10),
+    ("reason", 15),
+    ("con", 3),
+    ("sep", 3),
+    ("inf", 3),
+    ("cost J", 8),
+)
 _RULES = ("continuous", "separate", "information")
 
 
@@ -43,7 +54,8 @@ of Eq. (7).
     def compose(self) -> ComposeResult:
         """One table."""
         table: DataTable[Text] = DataTable(cursor_type="row", zebra_stripes=True, cell_padding=1)
-        table.add_columns(*_COLUMNS)
+        for name, width in _COLUMNS:
+            table.add_column(name, width=width)
         yield table
 
     def on_mount(self) -> None:

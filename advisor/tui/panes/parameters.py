@@ -12,7 +12,8 @@ from advisor.tui.plot.widget import Plot
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS, decimals_for, signed
 
-_COLUMNS = ("parameter", "model ± 95 %", "selected ± 95 %", "prior", "off by")
+# Name and width: what grows must not push the others about.
+_COLUMNS = (("parameter", 10), ("model ± 95 %", 17), ("selected ± 95 %", 17), ("prior", 8), ("off by", 7))
 
 
 class Parameters(Pane):
@@ -34,7 +35,8 @@ verdict pane says why.
     def compose(self) -> ComposeResult:
         """The table over the history."""
         table: DataTable[Text] = DataTable(cursor_type="row", cell_padding=1)
-        table.add_columns(*_COLUMNS)
+        for name, width in _COLUMNS:
+            table.add_column(name, width=width)
         yield table
         yield Plot(history_chart(None, NAMES[0]))
 
