@@ -15,6 +15,8 @@ from advisor.flight.messages import FloatArray
 
 RESTING_S = 0.5
 """How long the elevator must have rested before its past is looked at."""
+_SLOW_REST_S = 1.2
+"""Rest around an input whose own passes through trim may take longer than that."""
 SMALLEST_RAD = float(np.radians(0.15))
 """Smaller inputs than this are no test inputs."""
 
@@ -77,7 +79,12 @@ class Shape:
     @property
     def is_3211(self) -> bool:
         """The pattern that by its timing alone cannot be mistaken for a correction."""
-        return self.kind in ("3-2-1-1", "reverse 3-2-1-1")
+        return is_3211(self.kind)
+
+
+def is_3211(kind: InputKind) -> bool:
+    """Whether this is a 3-2-1-1 or its reverse."""
+    return kind in ("3-2-1-1", "reverse 3-2-1-1")
 
 
 def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
@@ -99,13 +106,24 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
         return None
     trim = float(np.median(u[resting]))
     d = _without_spikes(u) - trim
-    found = _extent(t, d, float(np.ptp(d[resting])))
+    rest_range = float(np.ptp(d[resting]))
+    found = _recognised(t, d, trim, rest_range, RESTING_S)
+    if found is None and np.ptp(d[t >= t[-1] - _SLOW_REST_S]) <= 1.5 * rest_range + 0.5 * SMALLEST_RAD:
+        # A slow multisine lingers around trim on its way; it is whole only between longer rests.
+        found = _recognised(t, d, trim, rest_range, _SLOW_REST_S)
+        return found if found is not None and found.kind == "multisine" else None
+    return found
+
+
+def _recognised(t: FloatArray, d: FloatArray, trim: float, rest_range: float, dwell_s: float) -> Shape | None:
+    """The input between the last rest of at least ``dwell_s`` and now."""
+    found = _extent(t, d, rest_range, dwell_s)
     if found is None:
         return None
     before, first, last = found
     amplitude = float(np.max(np.abs(d[first : last + 1])))
     quiet = float(np.std(d[before:first]))
-    if amplitude < max(SMALLEST_RAD, 5.0 * quiet) or float(np.ptp(d[resting])) > 0.4 * amplitude:
+    if amplitude < max(SMALLEST_RAD, 5.0 * quiet) or rest_range > 0.4 * amplitude:
         return None
     if abs(float(np.mean(d[before:first]))) > 0.5 * _BAND * amplitude:
         return None
@@ -122,7 +140,7 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
     return _multisine(t, d, first, shape)
 
 
-def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, int] | None:
+def _extent(t: FloatArray, d: FloatArray, rest_range: float, dwell_s: float) -> tuple[int, int, int] | None:
     """Indices: start of the quiet before, first and last sample away from trim.
 
     Goes back in time from the rest: the band around trim widens with the largest deviation
@@ -135,7 +153,7 @@ def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, 
     if len(away) == 0:
         return None
     last = int(away[-1])
-    gaps = np.flatnonzero(t[away[1:]] - t[away[:-1] + 1] >= RESTING_S)
+    gaps = np.flatnonzero(t[away[1:]] - t[away[:-1] + 1] >= dwell_s)
     if len(gaps):
         first = int(away[gaps[-1] + 1])
         before = int(away[gaps[-1]]) + 1

@@ -32,6 +32,7 @@ from advisor.flight.events import (
     Rebooted,
 )
 from advisor.flight.identity import Identity
+from advisor.flight.input_shape import is_3211
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import Columns, FloatArray, IntArray
 from advisor.flight.pieces import between, pieces
@@ -40,7 +41,7 @@ from advisor.flight.segmentation import LEAD_IN_S, Segmenter
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus, Tracks
-from advisor.flight.vehicle import Vehicle
+from advisor.flight.vehicle import Vehicle, closes_pitch_loop
 from advisor.problems import Problem
 
 KEEP_S = 120.0
@@ -310,6 +311,9 @@ class FlightStream:
                     "on_ground", f"Elevator input at {span.start_s:.1f} s ignored: the aircraft does not fly."
                 )
             ]
+        if closes_pitch_loop(maneuver.mode) and not is_3211(span.kind):
+            # In such a mode steps are the autopilot's own, unless their timing shows a test input.
+            return []
         self.maneuvers += 1
         self._note_rates()
         return [ManeuverFlown(maneuver)]

@@ -120,6 +120,16 @@ def test_a_multisine_is_found():
     assert abs(span.start_s - 6.0) < 0.5
 
 
+def test_a_slow_multisine_that_swells_is_found_from_its_beginning():
+    t = np.arange(0.0, 30.0, 0.02)
+    since = np.clip(t - 8.0, 0.0, 9.0)
+    swell = np.minimum(1.0, np.minimum(since, 9.0 - since) / 1.5)
+    u = swell * (np.sin(2 * np.pi * 0.4 * since) + np.sin(2 * np.pi * 0.6 * since + 2.0))
+    (span,) = found(Stream(t, DEG * u))
+    assert span.kind == "multisine"
+    assert span.start_s == pytest.approx(8.0, abs=0.8)
+
+
 def quiet_flight(name, rng, t):
     """Elevator histories without a test input."""
     if name == "trim changes":

@@ -246,6 +246,19 @@ def test_stirring_the_stick_on_the_ground_is_no_manoeuvre():
     assert "on_ground" in [e.code for e in events if isinstance(e, Notice)]
 
 
+@pytest.mark.parametrize(("mode", "listed"), [(0, 1), (7, 0), (99, 1)])
+def test_a_pulse_in_a_mode_that_closes_the_pitch_loop_is_the_autopilots_own(mode, listed):
+    wire = Wire()
+    heartbeat(wire, 1000.0, mode=mode)
+    parameter(wire, 1000.0, "SERVO2_FUNCTION", 19.0)
+    for k in range(600):
+        boot = 50.0 + k / 50
+        attitude(wire, 1000.01 + k / 50, boot)
+        aoa(wire, 1000.011 + k / 50, boot, 2.0)
+        servo(wire, 1000.012 + k / 50, boot, {2: 1520 if 54.0 <= boot < 54.4 else 1500})
+    assert len(maneuvers(flown(wire)[1])) == listed
+
+
 def test_an_assumed_scale_of_the_elevator_is_said_once():
     wire = Wire()
     fly(wire, 1000.0, 50.0, ONE, 14.0)
