@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from advisor.flight.lobes import lobes, onsets, squareness, without_spikes
 from advisor.flight.maneuver import InputKind
 from advisor.flight.messages import FloatArray
 
@@ -105,7 +106,7 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
     if np.count_nonzero(resting) < 3 or float(np.median(np.diff(t))) > _SLOWEST_STEP_S:
         return None
     trim = float(np.median(u[resting]))
-    d = _without_spikes(u) - trim
+    d = without_spikes(u) - trim
     rest_range = float(np.ptp(d[resting]))
     found = _recognised(t, d, trim, rest_range, RESTING_S)
     if found is None and np.ptp(d[t >= t[-1] - _SLOW_REST_S]) <= 1.5 * rest_range + 0.5 * SMALLEST_RAD:
@@ -170,64 +171,26 @@ def _extent(t: FloatArray, d: FloatArray, rest_range: float, dwell_s: float) -> 
 def _classify(
     t: FloatArray, d: FloatArray, first: int, last: int, trim: float, amplitude: float, quiet: float
 ) -> Shape | None:
-    lobes = _lobes(d, first, last, amplitude)
-    levels = np.array([float(np.median(d[a : b + 1])) for a, b in lobes])
+    places = lobes(d, first, last, _BAND * amplitude)
+    levels = np.array([float(np.median(d[a : b + 1])) for a, b in places])
     if np.min(np.abs(levels)) < 0.5 * _BAND * amplitude:
         return None
-    onsets = _onsets(t, d, lobes, levels)
-    durations = np.diff(onsets)
+    times = onsets(t, d, places, levels)
+    durations = np.diff(times)
     kind = _kind(
         levels,
         durations,
-        _squareness(t, d, levels, onsets, quiet),
+        squareness(t, d, levels, times, quiet),
         float(np.max(np.diff(t[first - 1 : last + 2]))),
     )
     if kind is None:
         return None
     leaving = np.flatnonzero(np.abs(d[: first + 1]) <= 0.1 * amplitude + 2.0 * quiet)
     start_s = float(t[leaving[-1]]) if len(leaving) else float(t[first])
-    start_s = max(start_s, float(onsets[0]) - 0.3 * float(durations[0]))
-    steps = (*zip(onsets[:-1].tolist(), levels.tolist(), strict=True), (float(onsets[-1]), 0.0))
+    start_s = max(start_s, float(times[0]) - 0.3 * float(durations[0]))
+    steps = (*zip(times[:-1].tolist(), levels.tolist(), strict=True), (float(times[-1]), 0.0))
     over_s = float(t[min(last + 1, len(t) - 1)])
-    return Shape(kind, start_s, float(onsets[-1]), over_s, trim, amplitude, quiet, steps)
-
-
-def _lobes(d: FloatArray, first: int, last: int, amplitude: float) -> list[tuple[int, int]]:
-    """Stretches on one side of trim, as index pairs; short dips inside one are overlooked."""
-    side = np.sign(d[first : last + 1]) * (np.abs(d[first : last + 1]) > _BAND * amplitude)
-    out = np.flatnonzero(side) + first
-    turns = np.flatnonzero(np.diff(np.sign(d[out])) != 0)
-    starts = [int(out[0]), *(int(out[k + 1]) for k in turns)]
-    ends = [*(int(out[k]) for k in turns), int(out[-1])]
-    return list(zip(starts, ends, strict=True))
-
-
-def _onsets(t: FloatArray, d: FloatArray, lobes: list[tuple[int, int]], levels: FloatArray) -> FloatArray:
-    """Times of the steps, each where the elevator passes the middle between two levels."""
-    around = np.concatenate(([0.0], levels, [0.0]))
-    times = []
-    for k, (old, new) in enumerate(pairwise(around)):
-        if k < len(lobes):
-            i = lobes[k][0]
-            back = lobes[k - 1][1] if k else max(0, i - 1)
-        else:
-            back = lobes[-1][1]
-            i = min(back + 1, len(d) - 1)
-        middle = 0.5 * (old + new)
-        stretch = np.arange(back, i + 1)
-        passed = stretch[(d[stretch] - middle) * np.sign(new - old) >= 0.0]
-        j = int(passed[0]) if len(passed) else i
-        times.append(0.5 * (t[j] + t[max(j - 1, 0)]))
-    return np.array(times)
-
-
-def _squareness(t: FloatArray, d: FloatArray, levels: FloatArray, onsets: FloatArray, quiet: float) -> float:
-    """Share of the samples between the first and the last step that lie on their lobe's level."""
-    edges = np.searchsorted(t, onsets)
-    on = 0
-    for level, i, j in zip(levels, edges, edges[1:], strict=False):
-        on += int(np.count_nonzero(np.abs(d[i:j] - level) <= 0.12 * abs(level) + 2.0 * quiet))
-    return on / max(1, int(edges[-1] - edges[0]))
+    return Shape(kind, start_s, float(times[-1]), over_s, trim, amplitude, quiet, steps)
 
 
 def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape, share: float) -> bool:
@@ -287,11 +250,3 @@ def _multisine(t: FloatArray, d: FloatArray, first: int, shape: Shape) -> Shape 
         if np.max(np.abs(rest)) <= 0.05 * shape.amplitude:
             return replace(shape, kind="multisine", start_s=float(t[end]))
     return None
-
-
-def _without_spikes(u: FloatArray) -> FloatArray:
-    """Median of three: one sample alone is no movement."""
-    if len(u) < 3:
-        return u
-    low, high = np.minimum(u[:-2], u[1:-1]), np.maximum(u[:-2], u[1:-1])
-    return np.concatenate(([u[0]], np.maximum(low, np.minimum(high, u[2:])), [u[-1]]))
