@@ -10,8 +10,9 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.vehicle import closes_pitch_loop
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
-from advisor.oem.filter_error import filter_error_estimate, turbulence_in
+from advisor.oem.filter_error import filter_error_estimate
 from advisor.oem.solution import Method
+from advisor.oem.turbulence import turbulence_in
 
 COLOURED = 0.5
 """Lag-1 correlation of a residual below which nothing drives it."""

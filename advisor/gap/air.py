@@ -1,7 +1,7 @@
 """Is the air moving? Turbulence and gusts, told from coloured instrument noise by their pattern.
 
 A gust enters the vane, the lift and the moment at once; noise of instruments, however coloured, does
-not. Judged by the Kalman likelihood of ``advisor.oem.filter_error``; the course of the gust itself comes
+not. Judged by the Kalman likelihood of ``advisor.oem.turbulence``; the course of the gust itself comes
 from the probe of the air.
 """
 
@@ -12,8 +12,9 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, Problem
 from advisor.gap.floor import white_noise
+from advisor.gap.holdout import mean_squares
 from advisor.gap.probes import KNOTS_S, disturbance_course
-from advisor.oem.filter_error import CHANNELS, Rows, find_turbulence
+from advisor.oem.turbulence import CHANNELS, Rows, find_turbulence
 
 _LEAST_GAIN = 40.0
 """Log likelihood by which moving air must beat coloured instruments."""
@@ -36,6 +37,8 @@ class Air:
     """Largest departure of the air's angle, rad."""
     gust_at_s: float
     """Vehicle time of its peak."""
+    left: FloatArray
+    """Shape (channels,): mean square that stays when the likeliest course of the air is taken out."""
 
 
 def moving_air(problem: Problem, fitted: Fitted, alpha_is_derived: bool) -> Air | None:
@@ -52,7 +55,7 @@ def moving_air(problem: Problem, fitted: Fitted, alpha_is_derived: bool) -> Air 
     )  # fmt: skip
     if found.gain < _LEAST_GAIN or found.gust_angle < 0.001:
         return None
-    courses = disturbance_course(
+    courses, lefts = disturbance_course(
         problem, fitted, "air unseen" if alpha_is_derived else "air", found.gust_angle
     )
     joined = np.concatenate(courses)
@@ -65,8 +68,17 @@ def moving_air(problem: Problem, fitted: Fitted, alpha_is_derived: bool) -> Air 
         angle_std=found.gust_angle, gain=found.gain,
         # Gaussian air of this many samples reaches four times its spread, a lone gust far more.
         gust=peaks[number] > 6.0 * typical, gust_number=flight.number,
-        gust_angle=float(courses[number][at]), gust_at_s=flight.started_s + KNOTS_S * (at + 1),
+        gust_angle=float(courses[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
+        left=_mean_square(problem, lefts),
     )  # fmt: skip
+
+
+def _mean_square(problem: Problem, lefts: list[FloatArray]) -> FloatArray:
+    """Shape (channels,), over all manoeuvres; the air's own freedom (a knot each) counted against it."""
+    knots = sum(f.duration_s / KNOTS_S for f in problem.flights.flights)
+    samples = sum(len(left) for left in lefts)
+    powers = np.mean(mean_squares(problem, lefts), axis=0)
+    return np.asarray(powers / max(1.0 - knots / samples, 0.3))
 
 
 def _rows(problem: Problem, fitted: Fitted, i: int) -> Rows:

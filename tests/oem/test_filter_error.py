@@ -11,7 +11,8 @@ from advisor.assessment import assess
 from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
-from advisor.oem.filter_error import filter_error_estimate, turbulence_in
+from advisor.oem.filter_error import filter_error_estimate
+from advisor.oem.turbulence import turbulence_in
 from tests.oem.builders import UAV, Array, elevator_3211, maneuver, trim_alpha, trim_elevator
 
 KNOWN_SERVO = Aircraft(elevator=Elevator(lag_s=0.0, delay_s=0.0))
