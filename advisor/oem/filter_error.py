@@ -2,7 +2,7 @@
 
 Output error takes every deviation for measurement noise. In turbulence the deviations are driven
 through the aircraft, and a Kalman filter has to follow them (``turbulence``). Since filter and model are
-linear about the fitted motion, the filter whitens residuals and sensitivities alike, and the estimate is least
+linear about the fitted motion, it whitens residuals and sensitivities alike, and the estimate is least
 squares of the whitened ones (Maine & Iliff, NASA RP-1168; Jategaonkar, *Flight Vehicle System
 Identification*, chapter 5).
 """
