@@ -97,6 +97,28 @@ def record(out: Path, **options: Any) -> None:
 
 
 @main.command()
+@click.argument("flight", type=click.Path(path_type=Path, exists=True))
+@click.argument("replays", type=click.Path(path_type=Path, exists=True), nargs=-1, required=True)
+def compare(flight: Path, replays: tuple[Path, ...]) -> None:
+    """Tell how far replays of a flight's inputs are from the flight.
+
+    \b
+    Example: python -m sim record --aircraft now.yaml      --replay-inputs flight.tlog --out now.tlog
+             python -m sim record --aircraft improved.yaml --replay-inputs flight.tlog --out improved.tlog
+             python -m sim compare flight.tlog now.tlog improved.tlog
+    """
+    from sim.compare import distances
+
+    for replay in replays:
+        for apart in distances(flight, replay):
+            share = 100.0 * apart.difference / apart.signal if apart.signal else 0.0
+            said = (
+                f"{apart.channel:6s} {apart.difference:.3g} {apart.unit} apart, {share:.1f} % of the signal"
+            )
+            click.echo(f"{replay}: {said}")
+
+
+@main.command()
 @click.option("--cases", default=100, show_default=True, help="How many.")
 @click.option("--seed", required=True, type=int, help="Draws everything; keep it from whoever answers.")
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder for the logs.")

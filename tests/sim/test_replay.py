@@ -1,18 +1,24 @@
 """Aircraft files flown by the simulator, and recorded inputs flown again."""
 
 import io
+from dataclasses import replace
+from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
+from sim.compare import distances
+from sim.effects.fitting import flight_of
 from sim.linear import RESEARCH_JET
 from sim.loading import ScenarioError
 from sim.modelled import modelled_flight
 from sim.record import record
-from sim.scenario import Maneuver, Noise, Scenario
+from sim.scenario import Maneuver, Noise, Scenario, read_scenario
 from sim.tlog import read_tlog
 
+LATE = Path(str(files("sim") / "scenarios" / "late-command.yaml"))
 QUIET = Scenario(maneuvers=(Maneuver("3211"), Maneuver("rev")), noise=Noise())
 
 
@@ -114,3 +120,32 @@ def test_damage_between_records_is_skipped(tmp_path):
     damaged = io.BytesIO(data[:5000] + b"\x00" * 200 + data[5000:])
     path.write_bytes(damaged.getvalue())
     assert whole - sum(1 for _ in read_tlog(path, ["ATTITUDE"])) <= 2
+
+
+def test_the_improved_simulator_is_nearer_to_the_flight_than_the_old_one(tmp_path):
+    scenario = replace(read_scenario(LATE), noise=Noise(), maneuvers=(Maneuver("3211"), Maneuver("rev")))
+    flight = flight_of(scenario)
+    record(flight, tmp_path / "flight.tlog")
+    model = flight.engine.truth.as_dict()
+    apart = {}
+    for name, effects in (("old", {}), ("improved", dict(scenario.effects))):
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(yaml.safe_dump({"model": model, "reference_airspeed_m_s": 25.0, "effects": effects}))
+        record(modelled_flight(scenario, path, tmp_path / "flight.tlog"), tmp_path / f"{name}.tlog")
+        apart[name] = distances(tmp_path / "flight.tlog", tmp_path / f"{name}.tlog")
+    assert [d.channel for d in apart["old"]] == ["alpha", "q", "theta", "a_z"]
+    for old, improved in zip(apart["old"], apart["improved"], strict=True):
+        assert improved.difference < 0.15 * old.difference
+        assert improved.difference < 0.05 * improved.signal
+
+
+def test_a_flight_compared_with_itself_is_not_apart(tmp_path):
+    record(modelled_flight(QUIET, aircraft_file(tmp_path / "a.yaml")), tmp_path / "a.tlog")
+    assert all(d.difference == 0.0 < d.signal for d in distances(tmp_path / "a.tlog", tmp_path / "a.tlog"))
+
+
+def test_a_flight_without_manual_cannot_be_compared(tmp_path):
+    scenario = replace(QUIET, maneuvers=())
+    record(modelled_flight(scenario, aircraft_file(tmp_path / "a.yaml")), tmp_path / "a.tlog")
+    with pytest.raises(ScenarioError, match="nothing flown in MANUAL"):
+        distances(tmp_path / "a.tlog", tmp_path / "a.tlog")

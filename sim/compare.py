@@ -1,0 +1,102 @@
+"""Lay a replayed flight over the flight it came from: how far apart are aircraft and simulator?"""
+
+import math
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.airframe import GRAVITY_M_S2
+from sim.autopilot import MANUAL
+from sim.loading import ScenarioError
+from sim.tlog import read_tlog
+
+FloatArray = NDArray[np.float64]
+Stream = tuple[FloatArray, FloatArray]
+"""Stamps in s since boot, and values."""
+
+SETTLING_S = 1.5
+"""Left out after the change to MANUAL: the two flights enter it from different holds."""
+
+SHORTEST_S = 1.0
+
+
+@dataclass(frozen=True)
+class Distance:
+    """One channel's difference between flight and replay while manoeuvres were flown."""
+
+    channel: str
+    unit: str
+    difference: float
+    """Root mean square of the difference; each manoeuvre's own offset is taken out."""
+    signal: float
+    """Root mean square of the flight's signal about each manoeuvre's mean."""
+
+
+def distances(flight: Path, replay: Path) -> list[Distance]:
+    """Compare channel by channel, at the flight's own stamps.
+
+    Raises
+    ------
+    ScenarioError
+        A log cannot be read, or the flight has no stretch in MANUAL.
+    """
+    flown, again = _streams(flight), _streams(replay)
+    found = []
+    for name, unit in (("alpha", "rad"), ("q", "rad/s"), ("theta", "rad"), ("a_z", "m/s2")):
+        if name not in flown or name not in again:
+            continue
+        stamps, values = flown[name]
+        others = np.interp(stamps, *again[name])
+        apart, signal, count = 0.0, 0.0, 0
+        for begin, end in _maneuvers(flown["mode"]):
+            part = (stamps >= begin) & (stamps <= end)
+            if not part.any():
+                continue
+            apart += float(np.var(values[part] - others[part])) * int(part.sum())
+            signal += float(np.var(values[part])) * int(part.sum())
+            count += int(part.sum())
+        if count:
+            found.append(Distance(name, unit, math.sqrt(apart / count), math.sqrt(signal / count)))
+    if not found:
+        raise ScenarioError([f"{flight}: nothing flown in MANUAL, no manoeuvre to compare"])
+    return found
+
+
+def _maneuvers(mode: Stream) -> list[tuple[float, float]]:
+    """Stretches of MANUAL, without their first moments."""
+    stamps, modes = mode
+    manual = np.concatenate([[False], modes == MANUAL, [False]])
+    edges = np.flatnonzero(np.diff(manual.astype(int)))
+    spans = [
+        (float(stamps[begin]) + SETTLING_S, float(stamps[end - 1]))
+        for begin, end in zip(edges[::2], edges[1::2], strict=True)
+    ]
+    return [(begin, end) for begin, end in spans if end - begin >= SHORTEST_S]
+
+
+def _streams(path: Path) -> dict[str, Stream]:
+    """Channels of a log on vehicle time; heartbeats take the latest attitude's stamp."""
+    rows: dict[str, list[tuple[float, float]]] = defaultdict(list)
+    now = 0.0
+    try:
+        for _, message in read_tlog(path, ("ATTITUDE", "AOA_SSA", "RAW_IMU", "HEARTBEAT")):
+            kind = message.get_type()
+            if kind == "ATTITUDE":
+                now = message.time_boot_ms / 1e3
+                rows["q"].append((now, message.pitchspeed))
+                rows["theta"].append((now, message.pitch))
+            elif kind == "AOA_SSA":
+                rows["alpha"].append((message.time_usec / 1e6, math.radians(message.AOA)))
+            elif kind == "RAW_IMU":
+                rows["a_z"].append((message.time_usec / 1e6, message.zacc * GRAVITY_M_S2 / 1e3))
+            elif message.type == 1:
+                rows["mode"].append((now, message.custom_mode))
+    except OSError as error:
+        raise ScenarioError([f"{path}: cannot be read ({error.strerror})"]) from error
+    if "mode" not in rows or "q" not in rows:
+        raise ScenarioError([f"{path}: holds no flight (HEARTBEAT of an aeroplane and ATTITUDE are needed)"])
+    columns = {name: np.array(pairs, dtype=float).T for name, pairs in rows.items()}
+    return {name: (stamps, values) for name, (stamps, values) in columns.items()}
