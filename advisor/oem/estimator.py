@@ -7,16 +7,19 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.model.response import OUTPUTS
-from advisor.oem.edges import with_edges
+from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
 from advisor.oem.notes import notes
 from advisor.oem.prepare import Prepared, prepare
+from advisor.oem.problem import Problem
 from advisor.oem.servo_lag import Lag, by_lag, find_lag
 from advisor.oem.solution import Method, Solution, solve
 from advisor.oem.surface import Servo
 
 N = len(PARAMETERS)
+CLEARLY = 10.0
+"""Twice the log-likelihood by which a held command must beat a linear one."""
 
 
 def estimate(
@@ -31,7 +34,7 @@ def estimate(
     prepared = prepare([maneuver], aircraft)
     if isinstance(prepared, NoEstimate):
         return prepared
-    solution = solve(prepared.problem, method=method)
+    solution = _solved(prepared.problem, method)
     if isinstance(solution, NoEstimate):
         return solution
     solution = with_edges(solution) if method == "gauss-newton" else solution
@@ -50,10 +53,10 @@ def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estim
     prepared = prepare(maneuvers, aircraft)
     if isinstance(prepared, NoEstimate):
         return prepared
-    solution = solve(prepared.problem)
+    solution = _solved(prepared.problem)
     if isinstance(solution, NoEstimate):
         return solution
-    lag = find_lag(prepared.problem, solution) if aircraft.elevator.lag_s is None else None
+    lag = find_lag(solution.problem, solution) if aircraft.elevator.lag_s is None else None
     if lag is None:
         return report(with_edges(solution), prepared, aircraft)
     if lag.lag_s > 0.0:
@@ -61,6 +64,22 @@ def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estim
         return report(solution, prepared, aircraft, lag=lag)
     solution = with_edges(solution)
     return report(solution, prepared, aircraft, lag=lag, lagged=_supposing_a_lag(solution))
+
+
+def _solved(problem: Problem, method: Method = "gauss-newton") -> Solution | NoEstimate:
+    """The solution with the command joined linearly between its stamps, or held if that is clearly better.
+
+    Only a command without large steps is asked; those get times of their own (``edges``).
+    """
+    linear = solve(problem, method=method)
+    if any(large_steps(record.elevator).interval for record in problem.records):
+        return linear
+    held = replace(problem, records=tuple(replace(record, held=True) for record in problem.records))
+    other = solve(held, method=method)
+    if isinstance(linear, NoEstimate) or isinstance(other, NoEstimate):
+        return linear
+    gain = linear.optimum.log_likelihood_cost - other.optimum.log_likelihood_cost
+    return other if gain > CLEARLY else linear
 
 
 def report(

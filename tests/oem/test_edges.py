@@ -1,10 +1,12 @@
 import numpy as np
 import pytest
 
+from advisor.aircraft import Aircraft, Elevator
 from advisor.oem.edges import large_steps, sharpened, with_edges
+from advisor.oem.estimator import estimate
 from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.solution import solve
-from tests.oem.builders import UAV, flown, simulate, trim_alpha, trim_elevator
+from tests.oem.builders import UAV, flown, maneuver, simulate, trim_alpha, trim_elevator
 
 RATE = 50.0
 
@@ -57,3 +59,18 @@ def test_a_sharpened_command_keeps_its_levels():
     t, y = np.arange(5.0), np.array([0.0, 0.0, 2.0, 2.0, 2.0])
     made = sharpened(Signal(t, y), large_steps(Signal(t, y)))
     np.testing.assert_allclose(made.at(np.array([1.4, 1.6])), [0.0, 2.0])
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_a_smooth_command_is_held_or_linear_as_the_data_say(held):
+    rng = np.random.default_rng(1)
+    t = np.arange(0.0, 8.0, 1.0 / RATE)
+    u = trim_elevator(UAV) + 0.01 * (np.sin(3.0 * t) + np.sin(7.0 * t) + np.sin(11.0 * t))
+    fine = np.arange(0.0, 8.0 - 1.0 / RATE, 0.001)
+    command = u[np.searchsorted(t, fine + 1e-9, side="right") - 1] if held else np.interp(fine, t, u)
+    stamps = t[1:-2] + 0.007
+    x = simulate(UAV, [trim_alpha(UAV), 0.0], fine, command, stamps)
+    noise = 0.03 * x[:, :2].std(axis=0) * rng.standard_normal((len(x), 2))
+    channels = {"alpha": (stamps, x[:, 0] + noise[:, 0]), "q": (stamps, x[:, 1] + noise[:, 1])}
+    found = estimate(maneuver(1, (t, u), channels), Aircraft(elevator=Elevator(lag_s=0.0)))
+    assert np.all(np.abs(found.theta - UAV) < 4.0 * found.std)
