@@ -196,6 +196,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options.add_argument("--log", type=Path, default=Path("logs/arduplane-calm.tlog"))
     options.add_argument("--minutes", type=float, default=60.0)
     chosen = options.parse_args(arguments)
+    # Seconds on the wall mean little while others want the same processors.
+    print(f"load average {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
     wall_s, cpu_s = first_paint(chosen.log)
     row("first paint after the command, best of 5", f"{wall_s:.2f} s ({cpu_s:.2f} s CPU)", "at most 0.5 s")
     flown, between = live_plots(chosen.log)

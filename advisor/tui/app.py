@@ -1,5 +1,6 @@
 """The terminal application: one source, one campaign, two screens."""
 
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from math import inf
@@ -28,6 +29,7 @@ from advisor.tui.themes import NAMES, THEMES
 from advisor.tui.view import view_before_first
 
 _TWICE_WITHIN_S = 3.0
+_GIVE_WAY_S = 0.001
 
 
 class AdvisorApp(replay_actions.ReplayActions, App[None]):
@@ -82,6 +84,8 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
 
     async def on_mount(self) -> None:
         """Paint first, then let the working thread import and compute."""
+        # The estimates' thread must give way sooner than the interpreter's 5 ms, lest keys wait for it.
+        sys.setswitchinterval(_GIVE_WAY_S)
         await self.action_face(self.settings.screen)
         self.call_after_refresh(self.run_worker, self.conductor.run, thread=True, exit_on_error=False)
 
