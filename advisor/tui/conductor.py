@@ -136,9 +136,14 @@ class Conductor:
         self._told_s = monotonic()
 
     def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:
-        stamped = replace(decision, at_s=campaign.state.now_s)
-        stamped.apply(campaign)
+        """Now, or after a jump back as soon as the manoeuvre it is about has been flown again."""
+        state = campaign.state
+        stamped = replace(decision, at_s=state.now_s)
         self._by_hand.append(stamped)
+        if stamped.due(state):
+            stamped.apply(campaign)
+        else:
+            self._pending.append(stamped)
 
     def _repeat_decisions(self, campaign: CampaignLike) -> None:
         """After a rewind: the decisions by hand whose moment has come again, in their order."""

@@ -155,6 +155,14 @@ def test_a_mark_comes_back_at_its_own_moment():
     assert ("mark", "flaps") in flight.campaigns[1].calls
 
 
+def test_a_decision_on_a_manoeuvre_still_to_come_waits_for_it():
+    flight = Flown()
+    flight.when(always, lambda: flight.conductor.decide(HandDecision("exclude", "known gust", 3)))
+    flight.run()
+    assert flight.reports[0].state.maneuvers == ()
+    assert flight.reports[-1].state.maneuvers[2].excluded_because == "known gust"
+
+
 def test_unusable_input_ends_the_thread_and_closes_the_source():
     source = HandFedSource()
     source.batches.put(UnusableInputError("rate", "AOA_SSA arrives at 4 Hz.", "Ask for 50 Hz."))
