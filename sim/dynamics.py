@@ -12,12 +12,15 @@ its vertical speed w (up) as w/V to the α that wing and vane see, and its head 
 """
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from sim.airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
+
+FloatArray = NDArray[np.float64]
 
 STATES = ("airspeed", "alpha", "q", "theta", "height", "phi", "p", "alpha_late")
 """State vector: m/s, rad, rad/s, rad, m, rad, rad/s, rad (the share of α that lift follows late)."""
@@ -30,7 +33,9 @@ DERIVATIVES = (*(f"{name}_dot" for name in STATES), "a_x", "a_z")
 
 
 @njit(cache=True)
-def derivatives(x: NDArray[np.float64], u: NDArray[np.float64], airframe, dx: NDArray[np.float64]) -> None:  # type: ignore[no-untyped-def]
+def derivatives(
+    x: NDArray[np.float64], u: NDArray[np.float64], airframe: Any, dx: NDArray[np.float64]
+) -> None:
     """Fill ``dx`` (10,), see ``DERIVATIVES``, from state ``x`` (8,) and inputs ``u`` (7,).
 
     ``airframe`` is the structured array of :func:`sim.airframe.as_record`.
@@ -105,13 +110,13 @@ def derivatives(x: NDArray[np.float64], u: NDArray[np.float64], airframe, dx: ND
 
 
 @njit(cache=True)
-def step(  # type: ignore[no-untyped-def]
-    x: NDArray[np.float64],
-    u_from: NDArray[np.float64],
-    u_to: NDArray[np.float64],
-    airframe,
+def step(
+    x: FloatArray,
+    u_from: FloatArray,
+    u_to: FloatArray,
+    airframe: Any,
     dt: float,
-    dx: NDArray[np.float64],
+    dx: FloatArray,
 ) -> None:
     """Advance ``x`` in place by ``dt`` with classical Runge–Kutta, inputs linear from one end to the other.
 

@@ -1,11 +1,19 @@
 """What is fitted to an aircraft beside its flight dynamics: servo, instruments, air, and their effects."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+import numpy as np
+
+from sim.atmosphere import DrydenTurbulence
 from sim.motion import Motion
-from sim.sensors import SensorEffect
-from sim.servo import Mechanism
+from sim.scenario import Scenario
+from sim.sensors import DerivedAlpha, SensorEffect
+from sim.servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
+
+SERVO_HZ, SERVO_DAMPING = 20.0, 0.8
+"""A servo that is only rate-limited is otherwise this fast."""
 
 
 class AirMass(Protocol):
@@ -46,3 +54,41 @@ class Fittings:
     """Channel name of :class:`sim.sensors.Reading` to the seconds by which its data are late."""
     accelerometer_arm_m: float = 0.0
     """Of the accelerometer ahead of the centre of gravity."""
+
+
+class Turbulent:
+    """Continuous turbulence."""
+
+    def __init__(self, turbulence: DrydenTurbulence) -> None:
+        self.turbulence = turbulence
+
+    def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
+        """Return the gusts after ``dt``."""
+        return self.turbulence.step(motion.airspeed, dt)
+
+
+def complete(scenario: Scenario, fittings: Fittings) -> Fittings:
+    """Put the scenario's own servo, air and alpha sensor before the effects."""
+    basics = Fittings(accelerometer_arm_m=scenario.instruments.accelerometer_arm_m)
+    servo, air = scenario.servo, scenario.air
+    if servo.delay_s > 0.0:
+        basics.mechanisms.append(TransportDelay(servo.delay_s))
+    if servo.lag_s > 0.0:
+        basics.mechanisms.append(FirstOrderServo(servo.lag_s))
+    if servo.rate_limit_deg_s > 0.0:
+        limit = math.radians(servo.rate_limit_deg_s)
+        basics.mechanisms.append(SecondOrderServo(SERVO_HZ, SERVO_DAMPING, limit))
+    if air.turbulence_m_s > 0.0:
+        generator = np.random.default_rng([scenario.seed, 5])
+        basics.air.append(Turbulent(DrydenTurbulence(air.turbulence_m_s, air.length_m, generator)))
+    if scenario.alpha.source == "derived":
+        basics.sensors.append(DerivedAlpha(scenario.alpha))
+    return Fittings(
+        fittings.mechanisms + basics.mechanisms,
+        basics.air + fittings.air,
+        fittings.forces,
+        fittings.plant,
+        basics.sensors + fittings.sensors,
+        fittings.skews,
+        basics.accelerometer_arm_m + fittings.accelerometer_arm_m,
+    )

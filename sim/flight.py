@@ -11,17 +11,14 @@ import numpy as np
 from sim import hangar
 from sim.atmosphere import DrydenTurbulence
 from sim.autopilot import Autopilot, Demand, Pilot, Planned, plan
-from sim.fittings import Fittings
+from sim.fittings import Fittings, complete
 from sim.motion import Controls, Motion
 from sim.scenario import Maneuver, Noise, Scenario
-from sim.sensors import NOISY, ChannelNoise, DerivedAlpha, Reading, ideal
-from sim.servo import FirstOrderServo, SecondOrderServo, Servo, TransportDelay
+from sim.sensors import NOISY, ChannelNoise, Reading, ideal
+from sim.servo import Servo
 
 CLOSING_S = 5.0
 """Attitude hold after the last manoeuvre."""
-
-SERVO_HZ, SERVO_DAMPING = 20.0, 0.8
-"""A servo that is only rate-limited is otherwise this fast."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +84,7 @@ class Flight:
         planned_s = self.planned[-1].end_s if self.planned else scenario.lead_in_s
         self.duration_s = planned_s + CLOSING_S if duration_s is None else duration_s
         self.calibration = self.engine.calibration
-        self._fittings = _with_basics(scenario, fittings or Fittings())
+        self._fittings = complete(scenario, fittings or Fittings())
         self._servo = Servo(tuple(self._fittings.mechanisms))
         self._pilot = pilot or Autopilot(
             self.planned, self.engine.trim, self.engine.motion(), self.engine.truth
@@ -186,43 +183,6 @@ class Flight:
             share = min(max(at - index, 0.0), 1.0)
             before, after = getattr(past[index][1], channel), getattr(past[index + 1][1], channel)
             setattr(sample.reading, channel, before + (after - before) * share)
-
-
-class _Background:
-    """The scenario's turbulence as an air mass."""
-
-    def __init__(self, turbulence: DrydenTurbulence) -> None:
-        self._turbulence = turbulence
-
-    def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
-        return self._turbulence.step(motion.airspeed, dt)
-
-
-def _with_basics(scenario: Scenario, fittings: Fittings) -> Fittings:
-    """Put the scenario's own servo, air and alpha sensor before the effects."""
-    basics = Fittings(accelerometer_arm_m=scenario.instruments.accelerometer_arm_m)
-    servo, air = scenario.servo, scenario.air
-    if servo.delay_s > 0.0:
-        basics.mechanisms.append(TransportDelay(servo.delay_s))
-    if servo.lag_s > 0.0:
-        basics.mechanisms.append(FirstOrderServo(servo.lag_s))
-    if servo.rate_limit_deg_s > 0.0:
-        limit = math.radians(servo.rate_limit_deg_s)
-        basics.mechanisms.append(SecondOrderServo(SERVO_HZ, SERVO_DAMPING, limit))
-    if air.turbulence_m_s > 0.0:
-        generator = np.random.default_rng([scenario.seed, 5])
-        basics.air.append(_Background(DrydenTurbulence(air.turbulence_m_s, air.length_m, generator)))
-    if scenario.alpha.source == "derived":
-        basics.sensors.append(DerivedAlpha(scenario.alpha))
-    return Fittings(
-        fittings.mechanisms + basics.mechanisms,
-        basics.air + fittings.air,
-        fittings.forces,
-        fittings.plant,
-        basics.sensors + fittings.sensors,
-        fittings.skews,
-        basics.accelerometer_arm_m + fittings.accelerometer_arm_m,
-    )
 
 
 def noise_sigma(

@@ -7,6 +7,7 @@ Motion with V constant: γ = θ − α, and specific forces follow from kinemati
 
 import math
 from dataclasses import astuple, dataclass, fields
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -59,7 +60,7 @@ MODEL_RECORD = np.dtype(
 
 
 @njit(cache=True)
-def rates(x: NDArray[np.float64], u: NDArray[np.float64], model, dx: NDArray[np.float64]) -> None:  # type: ignore[no-untyped-def]
+def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArray[np.float64]) -> None:
     """Fill ``dx`` from x = [α, q, θ, h, φ, p, α_late] and u = [δe, throttle, aileron, w, V, ΔZ, ΔM]."""
     m = model[0]
     alpha, q, theta, height, phi, p, late = x[0], x[1], x[2], x[3], x[4], x[5], x[6]
@@ -118,11 +119,11 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model, dx: NDArray[np.
 
 
 @njit(cache=True)
-def step(  # type: ignore[no-untyped-def]
+def step(
     x: NDArray[np.float64],
     u_from: NDArray[np.float64],
     u_to: NDArray[np.float64],
-    model,
+    model: Any,
     dt: float,
     dx: NDArray[np.float64],
 ) -> None:

@@ -1,18 +1,7 @@
 """Air that moves."""
 
-from sim.atmosphere import DrydenTurbulence, gust_1_minus_cos
+from sim.atmosphere import gust_1_minus_cos
 from sim.motion import Motion
-
-
-class Turbulent:
-    """Continuous turbulence."""
-
-    def __init__(self, turbulence: DrydenTurbulence) -> None:
-        self.turbulence = turbulence
-
-    def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
-        """Return the gusts after ``dt``."""
-        return self.turbulence.step(motion.airspeed, dt)
 
 
 class Gusts:

@@ -10,10 +10,11 @@ import numpy as np
 
 from sim.atmosphere import DrydenTurbulence
 from sim.effects.actuator import Backlash, Deadband, RateLimit
-from sim.effects.air import Gusts, Turbulent
+from sim.effects.air import Gusts
 from sim.effects.changes import EngineSurge, FieldChange, Onset
 from sim.effects.instruments import BendingMode, Lagging, Scaled, VaneAhead
 from sim.effects.kit import Kind, Kit, Sizes
+from sim.fittings import Turbulent
 from sim.servo import FirstOrderServo, TransportDelay
 
 
