@@ -29,6 +29,11 @@ def panes(here: Stage) -> list[Pane]:
     return [pane for pane in here.app.screen.query(Pane) if pane.display]
 
 
+def around(plot: Plot, kind: type[Pane]) -> Pane:
+    """The pane that a plot stands in."""
+    return next(node for node in plot.ancestors if isinstance(node, kind))
+
+
 def inside(here: Stage, pane: Pane) -> bool:
     """Whether a pane lies on the screen with room for something."""
     return here.app.screen.region.contains_region(pane.region) and pane.region.area > 60
@@ -76,6 +81,7 @@ async def test_every_axis_carries_its_unit(size: tuple[int, int]):
                     lines = text(plot).split("\n")
                     assert plot.chart.y_label in lines[0]
                     assert lines[-1].rstrip().endswith(plot.chart.x_label)
+                    assert around(plot, Pane).region.contains_region(plot.region), plot
 
 
 @pytest.mark.parametrize("theme", NAMES)

@@ -70,6 +70,7 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         self.set_class(fits[0], "-wide")
         self.set_class(fits[1] and not fits[0], "-medium")
         self.set_class(not any(fits), "-narrow")
+        self.set_class(height < _MEDIUM[1], "-low")
         self.call_after_refresh(self._refresh_panes)
 
     def show(self, view: View) -> None:
