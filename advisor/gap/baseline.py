@@ -8,7 +8,7 @@ from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates import input
 from advisor.gap.data import Flight, Flights
-from advisor.gap.fit import Fitted, Point, Problem, fit
+from advisor.gap.fit import Fitted, Point, Problem, evidence_of, fit
 from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.gap.screen import Screen
 from advisor.gap.simulate import GRAVITY_M_S2
@@ -94,7 +94,7 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     delay of half a sample, or a delay for a held command.
     """
     linear = Problem(flights, base_entries(aircraft), believed=believed_derivatives(aircraft))
-    fitted = fit(linear, first_guess(flights, aircraft))
+    fitted = fit(linear, first_guess(flights, aircraft).with_effect(input.LATENCY, (0.001,)))
     delay, lag = (v for v in input.variants() if v.effect in ("transport_delay", "actuator_lag"))
     screen = Screen(linear, fitted)
     best = min(
@@ -103,8 +103,15 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     if best is None:
         return linear, fitted
     other = lag if best.variant is delay else delay
-    start = best.point.with_effect(other, (0.005,))
     held = replace(linear, held=True)
-    if fit(held, start, best.noise, 8).cost < fit(linear, start, best.noise, 8).cost - _CLEARLY:
-        return held, fit(held, fitted.point, fitted.noise)
+    plainly_held = fit(held, fitted.point, fitted.noise)
+    both_linear = fit(linear, best.point.with_effect(other, (0.005,)), best.noise, 8)
+    # A held command answers half an interval later than a linear one by itself.
+    half = 0.5 * float(np.median(np.diff(flights.flights[0].t_u)))
+    sooner = max(float(best.point.values[-1][0]) - half, 0.002)
+    less = fitted.point.with_effect(best.variant, (sooner,)).with_effect(other, (0.005,))
+    both_held = fit(held, less, best.noise, 8)
+    as_held = min(evidence_of(held, plainly_held), evidence_of(held, both_held))
+    if as_held < evidence_of(linear, both_linear) - _CLEARLY:
+        return held, plainly_held
     return linear, fitted

@@ -20,6 +20,8 @@ TEMPERATURE = 3.0
 """Log likelihoods of a model that is itself approximate count for less: divided by this before they
 become probabilities. Set on development data so that stated and observed frequencies agree."""
 _SPEED_SMALLEST = 0.03
+SPEED_IS_A_CAUSE = 0.10
+"""Relative change of speed from which on it is a cause and not the swing of any manoeuvre."""
 
 
 def causes_of(

@@ -6,6 +6,7 @@ features (the deflection at many lags, products of the simulated motion) on some
 and predicted on the others.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -108,3 +109,22 @@ def _features(problem: Problem, flight: Flight, grid: FloatArray, p: FloatArray)
             for c in problem.channels
         ]
     )
+
+
+def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Mean squares while the elevator works, and while all is quiet; both shape (channels,).
+
+    Noise and turbulence do not care what the pilot does; an effect without a name does.
+    """
+    sums, counts = np.zeros((2, len(problem.channels))), np.zeros((2, len(problem.channels)))
+    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+        free = flight.duration_s - flight.last_step_s
+        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
+            t = flight.outputs[name].t
+            quiet = (t < flight.first_step_s) | (t > flight.last_step_s + 0.6 * free)
+            active = (t >= flight.first_step_s) & (t <= flight.last_step_s + 0.3 * free)
+            for k, inside in enumerate((active, quiet)):
+                sums[k, c] += float(np.sum(left[rows][inside] ** 2))
+                counts[k, c] += np.count_nonzero(inside)
+    active_power, quiet_power = sums / np.maximum(counts, 1.0)
+    return active_power, quiet_power

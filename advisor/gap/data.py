@@ -46,7 +46,7 @@ class Flight:
     """Shape (4,): α and θ at the start, reference speed, 1 when derivatives scale with speed."""
     outputs: Mapping[str, Measured]
     edges: FloatArray
-    """Shape (m, 2). Jumps of the command: middle of the interval between stamps, jump × its length."""
+    """Shape (m, 3). Jumps of the command: middle of the interval between stamps, jump × length, length."""
 
     @property
     def duration_s(self) -> float:
@@ -172,10 +172,11 @@ def _edges(t: FloatArray, u: FloatArray) -> FloatArray:
     jump = np.diff(u)
     size = np.ptp(u)
     if size <= 0.0:
-        return np.empty((0, 2))
+        return np.empty((0, 3))
     steep = np.flatnonzero(np.abs(jump) > 0.15 * size)
     # A jump may be spread over two intervals; each is uncertain by its own length.
-    return np.column_stack([(t[steep] + t[steep + 1]) / 2.0, jump[steep] * (t[steep + 1] - t[steep])])
+    interval = t[steep + 1] - t[steep]
+    return np.column_stack([(t[steep] + t[steep + 1]) / 2.0, jump[steep] * interval, interval])
 
 
 def smooth(y: FloatArray, seconds: float) -> FloatArray:

@@ -13,10 +13,10 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.air import Air, moving_air
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.causes import airspeed_cause, alpha_bias_cause, block_ranking, causes_of
+from advisor.gap.causes import SPEED_IS_A_CAUSE, airspeed_cause, alpha_bias_cause, block_ranking, causes_of
 from advisor.gap.coherence import Coherence, coherent_part
 from advisor.gap.data import Flights, prepare
-from advisor.gap.fit import Fitted, Point, Problem, linearise, own_only
+from advisor.gap.fit import Fitted, Problem, linearise, own_only
 from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.foresee import unseen_effects
 from advisor.gap.holdout import HeldOut, folds_of, hold_out, mean_squares
@@ -129,7 +129,7 @@ def _file_model(problem: Problem, baseline: Fitted, aircraft: Aircraft) -> HeldO
     """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
     if any(name not in aircraft.model for name in PARAMETERS):
         return None
-    point = Point(np.array([aircraft.model[name] for name in DERIVATIVES]), baseline.point.own)
+    point = replace(baseline.point, derivatives=np.array([aircraft.model[name] for name in DERIVATIVES]))
     lefts: list[FloatArray] = []
     for _ in range(3):
         linear = linearise(problem, point)
@@ -151,6 +151,7 @@ def _answer(
 ) -> Diagnosis:
     problem, stages, floor = e.problem, e.stages, e.floor
     first, last = stages[0].held_out, stages[-1].held_out
+    still = np.minimum(floor, np.sqrt(e.air.left)) if e.air is not None else floor
     coherent_gap = float(np.mean(e.coherence.power / floor**2))
     removed = max(float(np.mean((first.mean_square - last.mean_square) / floor**2)), 0.0)
     bias = alpha_bias_cause(kinematics, floor, problem)
@@ -160,7 +161,9 @@ def _answer(
     named = [s.added for s in stages if s.added is not None]
     unknown = coherent_gap > VISIBLE and (unexplained > UNEXPLAINED or not named)
     causes = causes_of(stages, floor, unexplained if coherent_gap > VISIBLE else 0.0, problem.channels)
-    extra = [c for c in (air_cause, bias, speed if not named else None) if c is not None]
+    fast = speed is not None and problem.flights.speed_moves > SPEED_IS_A_CAUSE
+    alone = not named and air_cause is None and bias is None
+    extra = [c for c in (air_cause, bias, speed if fast and alone else None) if c is not None]
     if unknown:
         causes = tuple(
             replace(c, probability=c.probability * 0.5) for c in causes if not c.present or not named
@@ -179,12 +182,21 @@ def _answer(
         verdict = "parameters"
     if verdict in ("none", "parameters"):
         causes = tuple(replace(c, probability=0.05 * c.probability) for c in causes)
+    if e.air is not None:
+        # From here on the air is one of the causes: the floor is what stays without its motion.
+        last = _without_air(last, e.air)
+        e, floor = replace(e, floor=still), still
+    kept, folds = _kept(e, holdout)
+    if holdout is not None and e.air is None:
+        last = hold_out(problem, stages[-1].fitted, folds)
+        before = e.file_model if e.file_model is not None else hold_out(problem, stages[0].fitted, folds)
+    before, last = _only(before, kept), _only(last, kept)
     gap = _gap(e, before, last, bias)
     where = _where(e, verdict, causes)
-    shrink = _shrink(e, holdout, before) if verdict in ("effect", "parameters", "unknown") else None
+    shrink = _shrink(e, kept, gap, before, last) if verdict != "none" else None
     fitted = stages[-1].fitted
     std = shared_std(problem, fitted, worth(problem, fitted.left))
-    waterfall = _waterfall(stages, floor, extra, speed, bool(named), gap.before)
+    waterfall = _waterfall(stages, floor, extra, speed, gap.before)
     present = {c.effect for c in causes if c.present}
     diagnosis = Diagnosis(
         verdict=verdict, sentence="", gap=gap, where=where, causes=causes, shrink=shrink, waterfall=waterfall,
@@ -217,12 +229,10 @@ def _air_cause(e: _Evidence) -> Cause | None:
         return None
     reference = e.problem.flights.reference_m_s
     gust = e.air.gust
-    parameters = (
-        {"amplitude_m_s": Value(e.air.gust_angle * reference, 0.2 * abs(e.air.gust_angle) * reference),
-         "at_s": Value(e.air.gust_at_s, 0.1)}
-        if gust
-        else {"sigma_w_m_s": Value(e.air.angle_std * reference, 0.1 * e.air.angle_std * reference)}
-    )  # fmt: skip
+    peak, spread = e.air.gust_angle * reference, e.air.angle_std * reference
+    parameters = {"sigma_w_m_s": Value(spread, 0.25 * spread)}
+    if gust:
+        parameters = {"amplitude_m_s": Value(peak, 0.4 * abs(peak)), "at_s": Value(e.air.gust_at_s, 0.1)}
     return Cause(
         "gust" if gust else "turbulence", "air", 0.9, parameters, ("turbulence" if gust else "gust",),
         "fly more manoeuvres: a gust does not come back, turbulence does", 0.0, True,
@@ -268,26 +278,34 @@ def _where(e: _Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
     return Where(block, float(np.clip(1.0 - left / total, 0.0, 1.0)) if causes else 0.0, ranking)
 
 
-def _shrink(e: _Evidence, holdout: int | None, before: HeldOut) -> Shrink | None:
-    """Gap on manoeuvres that took part in no fit, before and after."""
+def _shrink(e: _Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut) -> Shrink:
+    """How far the gap shrinks on the manoeuvres kept out, with an interval from resampling them."""
+    was = np.mean(before.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
+    now = np.mean(last.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
+    percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
+    low, high = shrink_interval(was, now)
+    numbers = tuple(e.problem.flights.flights[i].number for i in kept)
+    return Shrink(numbers, gap.before, gap.after, percent, (min(low, percent), max(high, percent)))
+
+
+def _kept(e: _Evidence, holdout: int | None) -> tuple[list[int], list[list[int]]]:
+    """Manoeuvres the gap is measured on, and folds that keep them out: the last ones, or each in turn."""
     n = len(e.problem.flights)
-    k = holdout if holdout is not None else max(1, n // 3)
-    if not 0 < k < n:
-        return None
-    kept = list(range(n - k, n))
-    last = e.stages[-1].fitted
-    final = hold_out(e.problem, last, [kept, *[[i for i in f if i not in kept] for f in folds_of(n)]])
-    plain = before if e.file_model is not None else hold_out(
-        e.problem, e.stages[0].fitted, [kept, *[[i for i in f if i not in kept] for f in folds_of(n)]]
-    )  # fmt: skip
-    was = np.mean(plain.by_maneuver / e.floor**2 - 1.0, axis=1)
-    now = np.mean(final.by_maneuver / e.floor**2 - 1.0, axis=1)
-    total_was, total_now = max(float(np.mean(was[kept])), 0.0), max(float(np.mean(now[kept])), 0.0)
-    percent = 100.0 * (1.0 - total_now / total_was) if total_was > 1e-9 else 0.0
-    return Shrink(
-        tuple(e.problem.flights.flights[i].number for i in kept), total_was, total_now, percent,
-        shrink_interval(was, now),
-    )  # fmt: skip
+    if holdout is None or not 0 < holdout < n:
+        return list(range(n)), folds_of(n)
+    kept = list(range(n - holdout, n))
+    return kept, [kept, *[[i for i in fold if i not in kept] for fold in folds_of(n)]]
+
+
+def _only(held: HeldOut, kept: Sequence[int]) -> HeldOut:
+    """The mean squares over some manoeuvres only."""
+    return replace(held, mean_square=np.mean(held.by_maneuver[list(kept)], axis=0))
+
+
+def _without_air(held: HeldOut, air: Air) -> HeldOut:
+    """Held-out errors with the share of the moving air taken out, alike in every manoeuvre."""
+    share = np.minimum(air.left / held.mean_square, 1.0)
+    return HeldOut(held.left, held.mean_square * share, held.by_maneuver * share)
 
 
 def _waterfall(
@@ -295,11 +313,10 @@ def _waterfall(
     floor: FloatArray,
     extra: Sequence[Cause],
     speed: Cause | None,
-    named: bool,
     start: float,
 ) -> tuple[tuple[str, float], ...]:
     steps: list[tuple[str, float]] = []
-    if speed is not None and named:
+    if speed is not None and speed not in extra:
         steps.append((speed.effect, float(np.mean(gap_of(stages[0].held_out.mean_square, floor)))))
     for stage, following in pairwise(stages):
         assert stage.added is not None

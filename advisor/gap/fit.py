@@ -22,7 +22,9 @@ _NO_DISTURBANCE = np.zeros((4, 0))
 _DERIVATIVE_STEP = 1e-3
 _NUISANCE_STEPS = (1e-4, 1e-4)
 _EDGE_VARIANCE = 1.0 / 12.0
-"""An edge lies anywhere between two stamps: uniform over the interval."""
+"""An edge of a linear command lies anywhere between two stamps: uniform over the interval."""
+_HELD_JITTER_S = 0.0015
+"""A held command changes at its stamp, give or take the stamp's resolution."""
 
 
 @dataclass(frozen=True)
@@ -216,14 +218,16 @@ def own_columns(problem: Problem, i: int, p: FloatArray, grid: FloatArray) -> tu
             offset[rows[problem.channels.index(name)]] = 1.0
             columns.append(offset)
     flat = len(columns)
-    if len(flight.edges) and not problem.held:
+    if len(flight.edges):
         pulse = pulse_response(problem, flight, p, grid, DISTURB_INPUT, p[INDEX["lag_s"]])
-        late = p[INDEX["delay_s"]]
-        for at, area in flight.edges:
-            shifted = later(pulse, at + late, flight.h)
-            columns.append(area * problem.read(flight, shifted, p))
+        late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
+        for middle, area, interval in flight.edges:
+            at = middle + late + (0.5 * interval if problem.held else 0.0)
+            columns.append(area * problem.read(flight, later(pulse, at, flight.h), p))
     prior = np.zeros(len(columns))
-    prior[flat:] = 1.0 / _EDGE_VARIANCE
+    if len(flight.edges):
+        jitter = (_HELD_JITTER_S / flight.edges[:, 2]) ** 2
+        prior[flat:] = 1.0 / (jitter if problem.held else _EDGE_VARIANCE)
     own = np.column_stack(columns)
     return own, prior
 
@@ -413,3 +417,21 @@ def bounds_of(point: Point) -> tuple[FloatArray, FloatArray]:
     lower = np.concatenate([-free, *[np.array([b[0] for b in e.bounds]) for e in point.effects]])
     upper = np.concatenate([free, *[np.array([b[1] for b in e.bounds]) for e in point.effects]])
     return lower, upper
+
+
+def evidence_of(problem: Problem, fitted: Fitted) -> float:
+    """-2 log marginal likelihood, up to what two ways of reading the command have in common.
+
+    The cost, plus the price of the edges' freedom: log det(I + Λ A_eᵀ W A_e), flat numbers eliminated.
+    """
+    total = fitted.cost
+    for i, block in enumerate(fitted.linear):
+        w = row_weights(problem, i, 1.0 / fitted.noise)[:, None]
+        free = block.prior == 0.0
+        if np.all(free):
+            continue
+        flat, edges = block.own[:, free] * w, block.own[:, ~free] * w
+        q = np.linalg.qr(flat)[0]
+        left = (edges - q @ (q.T @ edges)) / np.sqrt(block.prior[~free])
+        total += float(np.linalg.slogdet(np.eye(left.shape[1]) + left.T @ left)[1])
+    return total

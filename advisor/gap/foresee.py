@@ -14,6 +14,7 @@ from scipy.linalg import cho_solve
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, Problem, factor, row_weights, shared_columns
 from advisor.gap.result import Unseen
+from advisor.gap.ties import breaking
 from advisor.gap.variant import Variant
 
 DETECTED_AT = 5.0
@@ -51,6 +52,8 @@ class Foreseen:
     """Smallest size that can be told from nothing, in the parameter's unit; infinite when invisible."""
     confused_with: tuple[tuple[str, float], ...]
     """Other effects and the cosine between their marks in the data."""
+    add: str = ""
+    """Channel or manoeuvre that would tell it apart, or show it at all."""
 
 
 def foresee(
@@ -60,7 +63,9 @@ def foresee(
     weights = 1.0 / noise
     marks: dict[str, FloatArray] = {}
     scale: dict[str, tuple[str, float]] = {}
-    solved = _shared_inverse(problem, fitted, weights)
+    inverted: dict[str, bool] = {}
+    shared = [_own_removed(problem, fitted, i, b.shared, weights) for i, b in enumerate(fitted.linear)]
+    inverse = np.linalg.pinv(np.sum([J.T @ J for J in shared], axis=0), rcond=1e-12, hermitian=True)
     for variant in variants:
         if variant.effect in marks or variant.effect in {e.effect for e in fitted.point.effects}:
             continue
@@ -72,8 +77,9 @@ def foresee(
         grids = [problem.fly(f, p[i]) for i, f in enumerate(problem.flights.flights)]
         k = len(fitted.point.shared)
         column = shared_columns(problem, point, p, grids, range(k, k + 1))
-        mark = _projected(problem, fitted, [c[:, 0] for c in column], weights, solved)
+        mark = _projected(problem, fitted, [c[:, 0] for c in column], weights, shared, inverse)
         marks[variant.effect] = mark
+        inverted[variant.effect] = variant.inverted
         scale[variant.effect] = (variant.names[0], float(np.linalg.norm(mark)))
     found = []
     for effect, (parameter, length) in scale.items():
@@ -83,14 +89,12 @@ def foresee(
             if other != effect and scale[other][1] > 0.0
         ]
         confused = sorted((c for c in confused if c[1] > 0.8), key=lambda c: -c[1])
-        found.append(
-            Foreseen(
-                effect,
-                parameter,
-                DETECTED_AT / length if length > 1e-9 else float("inf"),
-                tuple(confused[:3]),
-            )
-        )
+        twins = [breaking(effect, other) for other, cosine in confused if cosine > CONFUSED_AT]
+        add = "; ".join(dict.fromkeys(way for way in twins if way))
+        smallest = DETECTED_AT / length if length > 1e-9 else float("inf")
+        if inverted[effect]:
+            smallest = 1.0 / smallest
+        found.append(Foreseen(effect, parameter, smallest, tuple(confused[:3]), add))
     return found
 
 
@@ -122,14 +126,6 @@ def unseen_effects(
     return tuple(out)
 
 
-def _shared_inverse(problem: Problem, fitted: Fitted, weights: FloatArray) -> FloatArray:
-    H = np.zeros_like(fitted.information)
-    for i, block in enumerate(fitted.linear):
-        J = _own_removed(problem, fitted, i, block.shared, weights)
-        H += J.T @ J
-    return np.asarray(np.linalg.pinv(H, rcond=1e-12, hermitian=True))
-
-
 def _own_removed(
     problem: Problem, fitted: Fitted, i: int, columns: FloatArray, weights: FloatArray
 ) -> FloatArray:
@@ -141,10 +137,14 @@ def _own_removed(
 
 
 def _projected(
-    problem: Problem, fitted: Fitted, columns: Sequence[FloatArray], weights: FloatArray, inverse: FloatArray
+    problem: Problem,
+    fitted: Fitted,
+    columns: Sequence[FloatArray],
+    weights: FloatArray,
+    shared: Sequence[FloatArray],
+    inverse: FloatArray,
 ) -> FloatArray:
+    """An effect's mark, with what the model's own numbers can mimic taken out."""
     parts = [_own_removed(problem, fitted, i, c[:, None], weights)[:, 0] for i, c in enumerate(columns)]
-    shared = [_own_removed(problem, fitted, i, b.shared, weights) for i, b in enumerate(fitted.linear)]
-    g = np.sum([J.T @ x for J, x in zip(shared, parts, strict=True)], axis=0)
-    step = inverse @ g
+    step = inverse @ np.sum([J.T @ x for J, x in zip(shared, parts, strict=True)], axis=0)
     return np.concatenate([x - J @ step for J, x in zip(shared, parts, strict=True)])

@@ -23,6 +23,8 @@ EFFECT_ENTRIES = (
     "mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping", "imu_arm_m",
     # stamps
     "alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s",
+    # few milliseconds between a command's stamp and its effect, in every model
+    "latency_s",
 )  # fmt: skip
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}

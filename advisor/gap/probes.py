@@ -123,10 +123,12 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
     return np.asarray(columns @ _colour(flight))
 
 
-def disturbance_course(problem: Problem, fitted: Fitted, block: str, size: float) -> list[FloatArray]:
-    """The likeliest course of a block's disturbance at its knots, per manoeuvre."""
+def disturbance_course(
+    problem: Problem, fitted: Fitted, block: str, size: float
+) -> tuple[list[FloatArray], list[FloatArray]]:
+    """The likeliest course of a block's disturbance at its knots, and what it leaves, per manoeuvre."""
     p = problem.driving(fitted.point)
-    courses = []
+    courses, lefts = [], []
     for i, flight in enumerate(problem.flights.flights):
         w = row_weights(problem, i, 1.0 / fitted.noise)
         B = size * disturbance_columns(problem, flight, p[i], block)
@@ -134,8 +136,9 @@ def disturbance_course(problem: Problem, fitted: Fitted, block: str, size: float
         both = np.column_stack([own, B])
         chol = factor(problem, i, both, np.concatenate([prior, np.ones(B.shape[1])]), 1.0 / fitted.noise)
         found = cho_solve(chol, (both * w[:, None]).T @ (fitted.left[i] * w))
-        courses.append(size * _colour(flight) @ found[own.shape[1] :])
-    return courses
+        courses.append(np.asarray(size * _colour(flight) @ found[own.shape[1] :]))
+        lefts.append(np.asarray(fitted.left[i] - both @ found))
+    return courses, lefts
 
 
 def _colour(flight: Flight) -> FloatArray:

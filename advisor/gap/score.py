@@ -12,13 +12,15 @@ from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.screen import Screen, Screened
 from advisor.gap.variant import Variant
 
-FULL_FITS = 6
+FULL_FITS = 5
 """Candidates that get a full fit after the screening."""
 LEAST_GAIN = 6.0
 """Log likelihood, on held-out manoeuvres and after the price of its numbers, that an effect must bring."""
 LEAST_GAP = 0.03
 """Part of the gap, in units of the floor's mean square averaged over channels, it must remove there."""
 LEAST_SIGMA = 3.0
+_PROMISE = 0.7
+"""Share of ``LEAST_GAP`` that the screening must promise before a full fit is spent on a candidate."""
 _EQUIVALENT = 5.0
 """Difference of gain between two descriptions of the very same thing."""
 
@@ -73,13 +75,12 @@ def judge(
     """Full fits of the best variant of the best effects; the best judgement first."""
     chosen: dict[str, Screened] = {}
     for candidate in candidates:
-        if (
-            candidate.variant.effect not in chosen
-            and len(chosen) < FULL_FITS
-            and candidate.cost < before.cost
-        ):
+        promised = float(np.mean(before.noise**2 / candidate.noise**2 - 1.0))
+        if promised < _PROMISE * LEAST_GAP or candidate.cost >= before.cost:
+            continue
+        if candidate.variant.effect not in chosen and len(chosen) < FULL_FITS:
             chosen[candidate.variant.effect] = candidate
-    fits = [(s.variant, fit(problem, s.point, s.noise, iterations=8)) for s in chosen.values()]
+    fits = [(s.variant, fit(problem, s.point, s.noise, iterations=8, tolerance=0.5)) for s in chosen.values()]
     if not fits:
         return []
     best = min(fits, key=lambda f: f[1].cost)[1]

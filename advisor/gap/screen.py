@@ -89,7 +89,7 @@ class Screen:
             if best is None or here.cost < best.cost:
                 gained = np.inf if best is None else best.cost - here.cost
                 best = here
-                if gained < 0.5:
+                if gained < max(0.5, 1e-3 * (self.fitted.cost - here.cost)):
                     break
             else:
                 break

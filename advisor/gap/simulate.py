@@ -29,7 +29,7 @@ _I = tuple(INDEX[name] for name in INDEX)
     STEP_AT, STEP_Z_ALPHA, STEP_Z_DELTA, STEP_M_ALPHA, STEP_M_DELTA,
     ALPHA_LAG, ALPHA_SCALE, ALPHA_BIAS, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
-    ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW,
+    ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY,
 ) = _I  # fmt: skip
 # Rows of the slow inputs, one value a step.
 SPEED, A_X, BANK, THROTTLE, HEIGHT = range(5)
@@ -48,13 +48,14 @@ def surface(
     """
     out = np.empty(n)
     k = 0
+    late = p[DELAY] + p[LATENCY]
     tau, slow, play, dead = p[LAG], p[SLOWNESS], max(p[PLAY], 0.0), max(p[DEADBAND], 0.0)
     decay = np.exp(-h / tau) if tau > 1e-6 else 0.0
     servo = np.nan
     link = 0.0
     last = len(u) - 1
     for i in range(n):
-        a, b = i * h - p[DELAY], (i + 1) * h - p[DELAY]
+        a, b = i * h - late, (i + 1) * h - late
         while k > 0 and t_u[k] > a:
             k -= 1
         total, at = 0.0, a

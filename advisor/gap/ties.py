@@ -31,6 +31,11 @@ _BREAKS = {
 }
 
 
+def breaking(effect: str, other: str) -> str:
+    """What would tell two effects apart; empty when nothing particular is known."""
+    return _BREAKS.get(frozenset({effect, other}), "")
+
+
 def tied_with(best: Judged, others: Sequence[Judged], channels: Sequence[str]) -> tuple[tuple[str, ...], str]:
     """Effects that explain the data as well as ``best``, and what would tell them apart."""
     names = [
@@ -38,8 +43,8 @@ def tied_with(best: Judged, others: Sequence[Judged], channels: Sequence[str]) -
     ]
     ways = []
     for name in names:
-        found = _BREAKS.get(frozenset({best.effect, name}))
-        if found is not None:
+        found = breaking(best.effect, name)
+        if found:
             ways.append(found)
     if best.effect == "transport_delay":
         names.append("an equal delay of every logged stream")

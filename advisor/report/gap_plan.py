@@ -26,7 +26,9 @@ def print_foresight(
     click.echo(f"{'effect':28s}{'smallest size seen':>20s}   looks like")
     for f in found:
         alike = ", ".join(f"{name.replace('_', ' ')} ({100 * c:.0f} %)" for name, c in f.confused_with)
-        click.echo(f"{f.effect.replace('_', ' '):28s}{size_of(f):>20s}   {alike}")
+        click.echo(
+            f"{f.effect.replace('_', ' '):28s}{size_of(f):>20s}   {alike}{f' -> {f.add}' if f.add else ''}"
+        )
     return 0
 
 
@@ -34,6 +36,8 @@ def size_of(f: Foreseen) -> str:
     """The smallest size with a unit people use."""
     if not math.isfinite(f.smallest):
         return "not at all"
+    if f.parameter.endswith("_per_s"):
+        return f"{f.smallest:.3g} 1/s"
     for ending in sorted(_SHOWN, key=len, reverse=True):
         if f.parameter.endswith(ending):
             factor, unit = _SHOWN[ending]
@@ -49,6 +53,7 @@ def _document(found: list[Foreseen]) -> dict[str, object]:
                 "effect": f.effect,
                 "parameter": f.parameter,
                 "smallest": f.smallest if math.isfinite(f.smallest) else None,
+                "add": f.add,
                 "confused_with": [{"effect": name, "cosine": c} for name, c in f.confused_with],
             }
             for f in found

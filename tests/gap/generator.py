@@ -203,7 +203,8 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
         body = (
             frame.mass * mass_factor, frame.iyy * mass_factor, frame.area, frame.chord,
             frame.speed * (1.0 + setup.speed_change * rng.uniform(-1, 1)), frame.cl0, frame.cl_alpha,
-            frame.cl_q, frame.cl_de, frame.cd0, frame.induced, cm_alpha, frame.cm_q, frame.cm_de, frame.cm_alphadot,
+            frame.cl_q, frame.cl_de, frame.cd0, frame.induced, cm_alpha, frame.cm_q, frame.cm_de,
+            frame.cm_alphadot,
         )  # fmt: skip
         wave = (
             setup.thrust_amplitude * ((t > start + 1.5) & (t < start + 3.0))

@@ -1,9 +1,31 @@
 """Between command and surface: delay, lag, rate limit, play, dead-band."""
 
-from advisor.gap.variant import Variant
+from advisor.flight.messages import FloatArray
+from advisor.gap.data import Flights
+from advisor.gap.layout import INDEX
+from advisor.gap.variant import Values, Variant
 
 BLOCK = "input"
 _SMALL_ANGLE = 0.00175  # 0.1 deg
+
+
+LATENCY = Variant(
+    "latency",
+    BLOCK,
+    ("latency_s",),
+    ((0.001,),),
+    (5e-4,),
+    ((-0.004, 0.005),),
+    0.0,
+    entries=("latency_s",),
+)
+"""Part of every model: stamps have a resolution, and a command takes effect a few milliseconds after."""
+
+
+def _delay(p: FloatArray, values: Values, _: Flights) -> None:
+    """The whole delay: where it is free, the few milliseconds of latency are part of it."""
+    p[:, INDEX["delay_s"]] += values[0]
+    p[:, INDEX["latency_s"]] = 0.0
 
 
 def variants() -> list[Variant]:
@@ -13,11 +35,11 @@ def variants() -> list[Variant]:
             "transport_delay",
             BLOCK,
             ("delay_s",),
-            ((0.02,), (0.1,)),
+            ((0.005,), (0.03,), (0.1,)),
             (1e-3,),
             ((0.0, 0.5),),
             0.004,
-            entries=("delay_s",),
+            apply_with=_delay,
         ),
         Variant(
             "actuator_lag",

@@ -1,0 +1,121 @@
+"""The diagnosis names effects of an aircraft that neither it nor the simulator has coded."""
+
+import json
+
+import numpy as np
+import pytest
+import yaml
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.gap.diagnose import diagnose
+from advisor.gap.document import gap_document
+from advisor.gap.plan import foresee_plan
+from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.report.gap import improved_file, write_improved
+from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
+
+MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0), strict=True))
+
+
+@pytest.fixture(scope="module")
+def delayed():
+    return diagnose(fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=3)), Aircraft(name="test"))
+
+
+def test_a_delay_is_named_sized_and_removed_on_manoeuvres_kept_out(delayed):
+    assert delayed.verdict == "effect"
+    assert delayed.causes[0].effect == "transport_delay"
+    assert delayed.causes[0].parameters["delay_s"].value == pytest.approx(0.06, abs=0.003)
+    assert delayed.where.block == "input"
+    assert delayed.shrink.percent > 97.0
+    assert "ms too early" in delayed.sentence
+
+
+@pytest.mark.parametrize(
+    ("effect", "changes"),
+    [
+        ("alpha_lag", {"switches": {"vane_lag": 0.04}}),
+        ("accelerometer_skew", {"skew": {"a_z": 0.03}}),
+        ("nonlinear_pitching_moment", {"switches": {"cm_a2": -3.0}}),
+        ("mass_change", {"mass_step": 0.15}),
+    ],
+)
+def test_effects_of_every_kind_are_named_in_noise_with_memory_and_jitter(effect, changes):
+    found = diagnose(fly(Setup(maneuvers=6, coloured=0.6, jitter=0.004, seed=7, **changes)), Aircraft())
+    assert found.causes[0].effect == effect
+    assert found.verdict == "effect"
+
+
+def test_nothing_is_named_when_nothing_is_there():
+    found = diagnose(fly(Setup(maneuvers=6, coloured=0.8, seed=9, airframe=LIGHT_AIRCRAFT)), Aircraft())
+    assert found.verdict == "none"
+    assert not any(c.present for c in found.causes)
+
+
+def test_moving_air_is_called_turbulence_and_not_an_effect_of_the_aircraft():
+    found = diagnose(fly(Setup(maneuvers=6, gust_std=0.5, seed=2)), Aircraft())
+    assert found.causes[0].effect == "turbulence"
+    assert found.where.block == "air"
+
+
+def test_wrong_numbers_in_the_file_are_told_from_missing_structure():
+    wrong = Aircraft(model={**MODEL, "M_alpha": -25.0})
+    found = diagnose(fly(Setup(maneuvers=6, seed=4)), wrong)
+    assert found.verdict == "parameters"
+    assert found.model["M_alpha"].value == pytest.approx(-37.4, rel=0.03)
+
+
+def test_the_document_is_json_without_nan_and_has_every_key_of_the_contract(delayed):
+    document = json.loads(json.dumps(gap_document(delayed), allow_nan=False))
+    assert document["schema"] == "advisor.gap/1"
+    assert {"verdict", "gap", "where", "causes", "shrink", "waterfall", "cannot_see"} <= set(document)
+    assert set(document["gap"]["floor"]) == {"alpha", "q", "a_z", "theta"}
+    assert sum(c["probability"] for c in document["causes"]) <= 1.0 + 1e-9
+    assert document["shrink"]["before"] == pytest.approx(document["gap"]["before"])
+
+
+def test_the_improved_simulator_is_a_file_with_the_effect_in_it(delayed, tmp_path):
+    path = write_improved(delayed, Aircraft(name="test"), tmp_path / "improved.yaml")
+    written = yaml.safe_load(path.read_text())
+    assert written["effects"]["transport_delay"]["delay_s"] == pytest.approx(0.06, abs=0.003)
+    assert set(written["model"]) == set(PARAMETERS)
+    assert improved_file(delayed, Aircraft())["name"].endswith("improved")
+
+
+def test_one_manoeuvre_is_refused_with_what_to_fly():
+    with pytest.raises(UnusableInputError, match="at least three"):
+        diagnose(fly(Setup(maneuvers=1)), Aircraft())
+
+
+def test_foreseeing_says_that_without_an_accelerometer_a_lag_must_be_larger_to_be_seen():
+    plane = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
+    plan = ("3211", "rev", "rev", "3211")
+    smallest = [
+        {f.effect: f.smallest for f in foresee_plan(plane, plan, 50.0, 2.0, without)}["alpha_lag"]
+        for without in ((), ("a_z",))
+    ]
+    assert smallest[1] > 1.5 * smallest[0]
+
+
+def test_foreseeing_knows_the_exact_twin_of_a_vane_off_the_centre_of_gravity():
+    plane = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
+    found = {f.effect: f for f in foresee_plan(plane, ("3211", "rev"), 50.0, 2.0)}
+    twin, cosine = found["alpha_vane_offset"].confused_with[0]
+    assert twin == "accelerometer_offset"
+    assert cosine > 0.999
+    assert found["alpha_vane_offset"].add
+
+
+def test_foreseeing_needs_a_model():
+    with pytest.raises(ConfigurationError, match="Z_0"):
+        foresee_plan(Aircraft(), ("3211",), 50.0, 2.0)
+
+
+def test_more_noise_makes_the_smallest_detectable_size_larger_in_proportion():
+    plane = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
+    sizes = [
+        {f.effect: f.smallest for f in foresee_plan(plane, ("3211", "rev"), 50.0, deg)}["pitch_rate_scale"]
+        for deg in (1.0, 2.0)
+    ]
+    assert sizes[0] / sizes[1] == pytest.approx(2.0, rel=0.1)
+    assert np.isfinite(sizes[0])
