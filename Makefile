@@ -64,7 +64,7 @@ bench: .venv/.developed ## every ratio of speed, each against its goal (about fi
 	$(BIN)/python -m benchmarks.tui
 
 study: .venv/.developed ## the paper's campaign, 2,000 times a noise level, with Figure 5
-	$(BIN)/advisor study --campaigns 2000 --readings --figure docs/images/figure-5.svg
+	$(BIN)/advisor study --campaigns 2000 --readings --figure docs/figure-5.svg
 
 study-advice: .venv/.developed ## what following the advice saves
 	$(BIN)/advisor study --advice --campaigns 100

@@ -151,6 +151,7 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
         "reference.chord_m": aircraft.reference.chord_m,
         "reference.iyy_kg_m2": aircraft.reference.iyy_kg_m2,
         "campaign.limit_percent": aircraft.campaign.limit_percent,
+        "campaign.tolerance_percent": aircraft.campaign.tolerance_percent,
         "limits.bank_deg": aircraft.limits.bank_deg,
         "limits.airspeed_change_percent": aircraft.limits.airspeed_change_percent,
         "limits.alpha_deg": aircraft.limits.alpha_deg,
@@ -161,5 +162,11 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     for name in aircraft.model:
         if name not in PARAMETERS:
             yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
-    if aircraft.campaign.window < 1:
-        yield f"campaign.window: must be at least 1, is {aircraft.campaign.window}"
+    plan = aircraft.campaign
+    if plan.window < 2:
+        yield f"campaign.window: must be at least 2, a scatter needs two values, is {plan.window}"
+    for name, value in plan.tolerance.items():
+        if name not in PARAMETERS:
+            yield f"campaign.tolerance.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
+        elif value <= 0.0:
+            yield f"campaign.tolerance.{name}: must be above 0, is {value}"
