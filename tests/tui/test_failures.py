@@ -80,3 +80,9 @@ async def test_a_vehicle_is_given_time_to_send_what_is_needed():
         here.campaign.problems.append(Problem("no_elevator", "No elevator is heard.", ""))
         await here.until(lambda: bool(here.app.view.problems))
         assert here.app.screen.query_one(BigWord).word == "CONTINUE"
+
+
+async def test_a_report_that_arrives_while_the_screen_is_taken_down_does_no_harm():
+    async with stage(flights.state(3)) as here:
+        await here.app.screen.query_one("#verdict-block").remove()
+        here.app.screen.show(here.app.view)

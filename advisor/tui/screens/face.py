@@ -1,7 +1,9 @@
 """What both faces have in common."""
 
 from collections.abc import Callable
+from contextlib import suppress
 
+from textual.css.query import NoMatches
 from textual.message import Message
 from textual.screen import Screen
 
@@ -28,6 +30,8 @@ class Face(Screen[None]):
 
     def show(self, view: View) -> None:
         """Update every part that wants to be to a new moment."""
-        for node in self.walk_children():
-            if isinstance(node, Part) and node.wants_showing:
-                node.show(view)
+        # A report may still arrive while the screen is taken down, its innermost widgets first.
+        with suppress(NoMatches):
+            for node in self.walk_children():
+                if isinstance(node, Part) and node.wants_showing:
+                    node.show(view)
