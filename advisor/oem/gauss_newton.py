@@ -24,10 +24,11 @@ FLAT = 1e-11
 BLOCK = 64
 """Rows whose products are summed at once."""
 MOST_ITERATIONS = 120
-NEAR_ENOUGH = 0.05
-"""After so many iterations a step that promises less than this, a fifth of a standard deviation, will do."""
 LEAST_NOISE = 1e-10
 """Floor of σ relative to the spread of the channel: data without noise have no other."""
+
+WITHOUT_NOISE = 1e4
+"""Times the floor: residuals this small are round-off of data without noise."""
 
 CONVERGED, EXHAUSTED, OVERFLOW, SINGULAR = 0, 1, 2, 3
 
@@ -36,7 +37,7 @@ class Optimum(NamedTuple):
     """Where the search ended."""
 
     status: int
-    """``CONVERGED``, ``EXHAUSTED`` (no step lowers the cost, or too many), ``OVERFLOW``, ``SINGULAR``."""
+    """``CONVERGED``, ``EXHAUSTED`` (too many iterations), ``OVERFLOW``, ``SINGULAR``."""
     shared: FloatArray
     """(7,), order of ``SHARED``."""
     local: FloatArray
@@ -241,7 +242,6 @@ def descend(
     noise, cost = weigh(z, y, channel, floor)
     damping = 0.0
     status = EXHAUSTED
-    promise = np.inf
     iteration = 0
     while iteration < MOST_ITERATIONS:
         iteration += 1
@@ -260,7 +260,8 @@ def descend(
                     return Optimum(CONVERGED, shared, local, noise, cost, iteration)
             damping = max(1e-4, 8.0 * damping)
         if not accepted:
-            status = EXHAUSTED if fine else SINGULAR
+            # Not even a tiny step lowers the cost: round-off rules, there is nothing left to gain.
+            status = CONVERGED if fine else SINGULAR
             break
         shared, local, noise, cost = trial, trial_local, trial_noise, trial_cost
         y, y_trial = y_trial, y
@@ -269,6 +270,6 @@ def descend(
             status = CONVERGED
             break
         damping = 0.0 if damping < 1e-3 else damping / 8.0
-    if status == EXHAUSTED and promise < NEAR_ENOUGH:
+    if status == EXHAUSTED and np.all(noise <= WITHOUT_NOISE * floor):
         status = CONVERGED
     return Optimum(status, shared, local, noise, cost, iteration)
