@@ -14,7 +14,7 @@ from advisor.gap.air import Air, moving_air
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.causes import SPEED_IS_A_CAUSE, airspeed_cause, alpha_bias_cause, block_ranking, causes_of
-from advisor.gap.coherence import Coherence, coherent_part
+from advisor.gap.coherence import Coherence, coherent_part, unrest
 from advisor.gap.data import Flights, prepare
 from advisor.gap.fit import Fitted, Problem, linearise, own_only
 from advisor.gap.floor import prefiltered, stated_floor
@@ -32,6 +32,12 @@ from advisor.problems import UnusableInputError
 
 VISIBLE = 0.05
 """Gap above the floor from which on there is something to explain."""
+RESTLESS = 2.0
+"""Error power while the stick moves over that in quiet, minus 1, from which on it is no noise."""
+RESTLESS_IN_MOVING_AIR = 6.0
+"""The same when the air moves: it may happen to move more while the stick does."""
+LEFT_BY_A_CAUSE = 0.15
+"""Share of such excess that a right cause, modelled to low order only, may leave."""
 UNEXPLAINED = 0.3
 """Share of the gap that may stay predictable from the motion after a cause was named."""
 
@@ -47,6 +53,8 @@ class _Evidence:
     floor: FloatArray
     file_model: HeldOut | None
     """The aircraft file's own parameters, unfitted."""
+    stated: FloatArray
+    """Shape (channels,): tolerance of channels filtered before they were recorded, else 0."""
 
 
 def diagnose(
@@ -121,7 +129,13 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     smooth = prefiltered(problem.flights)
     stated = np.array([white[k] if smooth[c] else 0.0 for k, c in enumerate(problem.channels)])
     return _Evidence(
-        problem, stages, coherence, air, np.maximum(floor, stated), _file_model(problem, baseline, aircraft)
+        problem,
+        stages,
+        coherence,
+        air,
+        np.maximum(floor, stated),
+        _file_model(problem, baseline, aircraft),
+        stated,
     )
 
 
@@ -160,6 +174,7 @@ def _answer(
     unexplained = coherent_gap / max(coherent_gap + removed, 1e-12)
     named = [s.added for s in stages if s.added is not None]
     unknown = coherent_gap > VISIBLE and (unexplained > UNEXPLAINED or not named)
+    unknown = unknown or _restless(e)
     causes = causes_of(stages, floor, unexplained if coherent_gap > VISIBLE else 0.0, problem.channels)
     fast = speed is not None and problem.flights.speed_moves > SPEED_IS_A_CAUSE
     alone = not named and air_cause is None and bias is None
@@ -208,6 +223,19 @@ def _answer(
         notes=_notes(e, aircraft), maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
     return replace(diagnosis, sentence=sentence_of(diagnosis))
+
+
+def _restless(e: _Evidence) -> bool:
+    """Whether the error still grows when the stick moves, by more than what was named may leave behind."""
+    active, quiet = unrest(e.problem, e.stages[-1].fitted.left)
+    was, _ = unrest(e.problem, e.stages[0].fitted.left)
+    quiet = np.maximum(quiet, e.stated**2)
+    rest, total = np.maximum(active / quiet - 1.0, 0.0), np.maximum(was / quiet - 1.0, 0.0)
+    share = float(np.mean(rest)) / max(float(np.mean(total)), 1e-12)
+    least = RESTLESS_IN_MOVING_AIR if e.air is not None else RESTLESS
+    # Every further effect that is needed makes it likelier that none of them is the right one.
+    allowed = LEFT_BY_A_CAUSE / max(len(e.stages) - 1, 1)
+    return float(np.max(rest)) > least and (share > allowed or len(e.stages) == 1)
 
 
 def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ...]:
