@@ -5,7 +5,6 @@ messages were batched: a live link, message by message, and a log, whole, end in
 events. Memory is bounded by two minutes of channels.
 """
 
-import heapq
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -23,6 +22,7 @@ from advisor.flight.channels import (
     surface_angle,
 )
 from advisor.flight.clocks import BootClock
+from advisor.flight.elevator_watch import ElevatorWatch
 from advisor.flight.events import (
     FlightEvent,
     ManeuverFlown,
@@ -37,7 +37,7 @@ from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import Columns, FloatArray, IntArray
 from advisor.flight.pieces import between, pieces
 from advisor.flight.record import UNITS, Channel
-from advisor.flight.segmentation import LEAD_IN_S, Segmenter
+from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus, Tracks
@@ -46,10 +46,6 @@ from advisor.problems import Problem
 
 KEEP_S = 120.0
 """How far back channels reach: longer than any manoeuvre with its lead-in."""
-_LATE_S = 0.3
-"""Elevator samples wait this long for packets that a link delivered out of order."""
-_SETTLE_S = 0.7
-"""A manoeuvre is cut this long after its end, when every channel has arrived."""
 _OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
 
 
@@ -79,7 +75,6 @@ class FlightStream:
         self._who = Identity(aircraft.elevator, target_system)
         self._clock = BootClock()
         self._tracks = Tracks(aircraft.alpha.source)
-        self._segmenter = Segmenter()
         self._start_boot()
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
@@ -92,12 +87,8 @@ class FlightStream:
 
     def _start_boot(self) -> None:
         self._tracks.clear()
-        self._segmenter = Segmenter()
-        self._waiting: list[tuple[float, int, float | None]] = []
-        self._elevator_s = -np.inf
+        self._watch = ElevatorWatch()
         self._elevator_source: str | None = None
-        self._ended: list[Span] = []
-        self._announced_s: float | None = None
         self._modes = [(-np.inf, self._who.mode)]
         self._first_s = np.nan
         self._master_s = np.nan
@@ -153,7 +144,7 @@ class FlightStream:
 
     def so_far(self) -> Maneuver | None:
         """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
-        onset, now = self._segmenter.onset_s, self._elevator_s
+        onset, now = self._watch.onset_s, self._watch.newest_s
         if onset is None or not now > onset:
             return None
         span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
@@ -169,12 +160,8 @@ class FlightStream:
     def finish(self) -> list[FlightEvent]:
         """No more messages will come: whatever is open is closed."""
         events: list[FlightEvent] = []
-        while self._waiting:
-            self._release(heapq.heappop(self._waiting))
-        last = self._segmenter.finish()
-        for span in [*self._ended, *([last] if last else [])]:
+        for span in self._watch.finish():
             events += self._flown(span, None)
-        self._ended.clear()
         self._note_rates()
         return events
 
@@ -196,7 +183,7 @@ class FlightStream:
             events.append(ModeChanged(self._who.mode, self._master_s))
             if np.isfinite(self._master_s):
                 order = min(int(c.order[0]) for c in piece)
-                heapq.heappush(self._waiting, (self._master_s, order, None))
+                self._watch.mode_changed(self._master_s, order)
                 self._modes.append((self._master_s, self._who.mode))
             else:
                 self._modes = [(-np.inf, self._who.mode)]
@@ -234,7 +221,7 @@ class FlightStream:
 
     def _feed_part(self, part: Sequence[Columns], master: _Master, vehicle: Vehicle) -> list[FlightEvent]:
         """Columns of one boot: channels first, then the elevator sample by sample."""
-        self._tracks.forget(max(self._elevator_s, self._master_s) - KEEP_S)
+        self._tracks.forget(max(self._watch.newest_s, self._master_s) - KEEP_S)
         orders = np.concatenate(([-1], master.order))
         clock = np.concatenate(([self._master_s], master.t))
         pitch = _last_finite(np.concatenate(([self._theta], master.theta)))
@@ -282,25 +269,9 @@ class FlightStream:
                 self._tracks.append(new)
                 arrived += zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
         for order, t, y in sorted(arrived):
-            heapq.heappush(self._waiting, (t, order, y))
-            self._elevator_s = max(self._elevator_s, t)
-            while self._waiting[0][0] <= self._elevator_s - _LATE_S:
-                self._release(heapq.heappop(self._waiting))
-                if not self._waiting:
-                    break
-            started = self._segmenter.recognised
-            if started is not None and started.start_s != self._announced_s:
-                self._announced_s = started.start_s
-                events.append(ManeuverStarted(started.start_s, started.kind))
-            while self._ended and self._elevator_s >= self._ended[0].end_s + _SETTLE_S:
-                events += self._flown(self._ended.pop(0), order)
+            for found in self._watch.push(t, order, y):
+                events += [found] if isinstance(found, ManeuverStarted) else self._flown(found, order)
         return events
-
-    def _release(self, item: tuple[float, int, float | None]) -> None:
-        t, _, elevator = item
-        ended = self._segmenter.mode_changed(t) if elevator is None else self._segmenter.push(t, elevator)
-        if ended is not None:
-            self._ended.append(ended)
 
     def _flown(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
         maneuver = self._cut(span, self.maneuvers + 1, up_to_order)
