@@ -23,6 +23,7 @@ KERNELS := $(shell grep -rl --include='*.py' njit advisor sim)
 	find advisor sim -name '*.nb[ic]' -delete
 	$(BIN)/python -m advisor.mavlink.warm
 	$(BIN)/python -m advisor.oem.warm
+	$(BIN)/python -m advisor.gap.warm
 	touch $@
 
 # What tests, checks and benchmarks need beyond running: installed only for them.
@@ -59,6 +60,7 @@ imports: .venv/.developed ## the walls of the house
 
 bench: .venv/.developed ## every ratio of speed, each against its goal (about five minutes)
 	$(BIN)/python -m benchmarks.estimate
+	$(BIN)/python -m benchmarks.simulator
 	$(BIN)/python -m benchmarks.tlog
 	$(BIN)/python -m benchmarks.link --seconds 60 --rate 2000
 	$(BIN)/python -m benchmarks.tui

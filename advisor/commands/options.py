@@ -59,9 +59,11 @@ def read_aircraft(aircraft_file: Path | None, rule: Rule | None = None) -> Aircr
     ConfigurationError
         As :func:`advisor.config.load_aircraft`.
     """
-    from advisor.config import load_aircraft
+    aircraft = Aircraft()
+    if aircraft_file is not None:
+        from advisor.config import load_aircraft
 
-    aircraft = load_aircraft(aircraft_file)
+        aircraft = load_aircraft(aircraft_file)
     if rule is None:
         return aircraft
     return replace(aircraft, campaign=replace(aircraft.campaign, rule=rule))
