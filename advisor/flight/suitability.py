@@ -61,7 +61,18 @@ def problems(
                 "Fly a 3-2-1-1 on the elevator in MANUAL, the stick still for some seconds before and after.",
             )
         )
+    if found and other_systems:
+        found.insert(0, _perhaps_another(vehicle, other_systems))
     return found
+
+
+def _perhaps_another(vehicle: Vehicle, other_systems: Collection[int]) -> Problem:
+    others = ", ".join(str(n) for n in sorted(other_systems))
+    return Problem(
+        "other_vehicles",
+        f"Vehicle {vehicle.system} was followed, which cannot be used; heard too: {others}.",
+        f"Choose the one that flew the manoeuvres, e.g. --target-system {min(other_systems)}.",
+    )
 
 
 def _no_vehicle(other_systems: Collection[int]) -> Problem:

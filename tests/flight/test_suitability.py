@@ -42,6 +42,14 @@ def test_a_target_system_that_is_not_there_is_told_who_is():
     assert "--target-system 3" in problem.fix
 
 
+def test_a_useless_vehicle_heard_first_names_the_other():
+    wire = flight(system=3)
+    heartbeat(wire, 999.0, system=5)
+    found = problems(wire)
+    assert found[0].code == "other_vehicles"
+    assert "--target-system 3" in found[0].fix
+
+
 def test_a_missing_elevator_is_told_apart_from_one_that_is_not_sent():
     nowhere = problems(flight(without=("PARAM_VALUE",)))
     silent = problems(flight(without=("SERVO_OUTPUT_RAW",)))
