@@ -4,9 +4,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict, RuleResult
+from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.problems import Problem
 
@@ -15,7 +16,7 @@ NORMAL_95 = 1.959963984540054
 
 
 def analysis_document(
-    state: CampaignState | None, file: str, problems: Sequence[Problem] = ()
+    state: CampaignState | None, file: str, aircraft: Aircraft, problems: Sequence[Problem] = ()
 ) -> dict[str, Any]:
     """Build the document of ``advisor analyze --json``.
 
@@ -25,6 +26,8 @@ def analysis_document(
         The campaign at the end of the log; None when the log could not be read at all.
     file
         Name of the log, as given.
+    aircraft
+        Its reference data make non-dimensional coefficients of the model.
     problems
         Why the log cannot be used; with any, ``usable`` is false.
     """
@@ -36,6 +39,12 @@ def analysis_document(
         "maneuvers": [_maneuver(m) for m in state.maneuvers] if state else [],
         "flight_test": _flight_test(state.flight_test) if state else None,
         "model": _model(state.model) if state else None,
+        "coefficients": {
+            name: {"value": number(coefficient.value), "std": number(coefficient.std)}
+            for name, coefficient in coefficients(state.model, aircraft.reference).items()
+        }
+        if state and state.model
+        else {},
         "estimate_from": list(state.estimate_from) if state else [],
         "notices": list(state.notices) if state else [],
     }

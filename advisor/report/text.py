@@ -10,6 +10,7 @@ from rich.text import Text
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
+from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate
 
 SYMBOLS = {
@@ -85,6 +86,10 @@ class AnalysisText:
         yield Text()
         if self.state.model is not None:
             yield self._parameters(self.state.model)
+            found = coefficients(self.state.model, self.aircraft.reference)
+            if found:
+                listed = "  ".join(f"{name} {c.value:.4g} ± {1.96 * c.std:.2g}" for name, c in found.items())
+                yield Text(f"at sea-level density: {listed}")
             yield from (Text(f"note: {note}") for note in self.state.model.notes)
             yield Text()
         yield from self._decision()

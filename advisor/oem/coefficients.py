@@ -1,0 +1,71 @@
+"""Non-dimensional coefficients from the derivatives, when geometry and mass are known.
+
+With the dynamic pressure q̄ = ½·ρ·V² and drag's part in the lift direction neglected (Etkin & Reid,
+*Dynamics of Flight*, Table 4.4):
+
+    Z_α = -q̄·S·C_Lα/(m·V)          M_α = q̄·S·c·C_mα/I_yy
+    Z_q = -q̄·S·c·C_Lq/(2·m·V²)     M_q = q̄·S·c²·C_mq/(2·V·I_yy)
+    Z_δe = -q̄·S·C_Lδe/(m·V)        M_δe = q̄·S·c·C_mδe/I_yy
+
+C_mq stands for C_mq + C_mα̇: still air does not tell the two apart.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from advisor.aircraft import PARAMETERS, Reference
+from advisor.oem.estimate import Estimate
+
+SEA_LEVEL_DENSITY_KG_M3 = 1.225
+"""International Standard Atmosphere."""
+
+
+@dataclass(frozen=True, slots=True)
+class Coefficient:
+    """A non-dimensional derivative, per radian."""
+
+    value: float
+    std: float
+
+
+def coefficients(
+    estimate: Estimate, reference: Reference, density_kg_m3: float = SEA_LEVEL_DENSITY_KG_M3
+) -> Mapping[str, Coefficient]:
+    """Coefficients by name, as many as the reference data allow; empty without air speed.
+
+    Parameters
+    ----------
+    estimate
+        Derivatives at ``estimate.airspeed_m_s``.
+    reference
+        Mass, wing area, chord and pitching inertia; those missing leave their coefficients out.
+    density_kg_m3
+        Of the air flown in.
+    """
+    speed = estimate.airspeed_m_s
+    area, chord, mass, inertia = (
+        reference.wing_area_m2,
+        reference.chord_m,
+        reference.mass_kg,
+        reference.iyy_kg_m2,
+    )
+    if speed is None or area is None:
+        return {}
+    pressure = 0.5 * density_kg_m3 * speed**2
+    scale: dict[str, tuple[str, float]] = {}
+    if mass is not None:
+        force = -mass * speed / (pressure * area)
+        scale |= {"C_L_alpha": ("Z_alpha", force), "C_L_delta_e": ("Z_delta_e", force)}
+        if chord is not None:
+            scale["C_L_q"] = ("Z_q", force * 2.0 * speed / chord)
+    if inertia is not None and chord is not None:
+        moment = inertia / (pressure * area * chord)
+        scale |= {"C_m_alpha": ("M_alpha", moment), "C_m_delta_e": ("M_delta_e", moment)}
+        scale["C_m_q"] = ("M_q", moment * 2.0 * speed / chord)
+    return {
+        name: Coefficient(
+            factor * estimate.value(parameter), abs(factor) * float(estimate.std[PARAMETERS.index(parameter)])
+        )
+        for name, (parameter, factor) in scale.items()
+        if parameter not in estimate.not_identifiable
+    }
