@@ -13,6 +13,8 @@ from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.gap.screen import Screen
 from advisor.gap.simulate import GRAVITY_M_S2
 
+_NEARLY = 0.25
+"""Share of all that a delay, a lag and the right reading explain which may stay unexplained without them."""
 _CLEARLY = 10.0
 """Twice the log likelihood by which a held command must win over a linear one."""
 
@@ -111,7 +113,15 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     sooner = max(float(best.point.values[-1][0]) - half, 0.002)
     less = fitted.point.with_effect(best.variant, (sooner,)).with_effect(other, (0.005,))
     both_held = fit(held, less, best.noise, 8)
-    as_held = min(evidence_of(held, plainly_held), evidence_of(held, both_held))
-    if as_held < evidence_of(linear, both_linear) - _CLEARLY:
+    plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
+    both = {False: evidence_of(linear, both_linear), True: evidence_of(held, both_held)}
+    best_of_all = min(*plain.values(), *both.values())
+    # A reading that needs no delay at all is believed before one that needs just its own half interval.
+    near = best_of_all + _NEARLY * (max(plain.values()) - best_of_all)
+    if min(plain.values()) < near:
+        is_held = plain[True] < plain[False]
+    else:
+        is_held = min(plain[True], both[True]) < both[False] - _CLEARLY
+    if is_held:
         return held, plainly_held
     return linear, fitted

@@ -19,6 +19,7 @@ from advisor.gap.waterfall import Stage
 TEMPERATURE = 3.0
 """Log likelihoods of a model that is itself approximate count for less: divided by this before they
 become probabilities. Set on development data so that stated and observed frequencies agree."""
+_BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
 _SPEED_SMALLEST = 0.03
 SPEED_IS_A_CAUSE = 0.10
 """Relative change of speed from which on it is a cause and not the swing of any manoeuvre."""
@@ -118,6 +119,17 @@ def alpha_bias_cause(check: KinematicCheck, floor: FloatArray, problem: Problem)
         "alpha_bias", "alpha_sensor", 0.9, {"bias_rad": Value(check.bias_rad, check.bias_std_rad)},
         ("an offset of the attitude's zero", "steady up- or downwash"),
         "level the attitude reference on the ground; fly in still air", 0.0, True,
+    )  # fmt: skip
+
+
+def alpha_lag_cause(check: KinematicCheck, problem: Problem, named: Sequence[Judged]) -> Cause | None:
+    """A late α that the motion shows and the fit cannot: an autopilot's estimate is smooth and coarse."""
+    found_there = any(BLOCK_OF[j.effect] in ("alpha_sensor", "accelerometer") for j in named)
+    if not problem.flights.alpha_is_derived or found_there or check.finding != "late":
+        return None
+    return Cause(
+        "alpha_lag", "alpha_sensor", 0.9, {"lag_s": Value(check.lag_s, check.lag_std_s)},
+        ("alpha_skew", "alpha_vane_offset"), _BREAK_ALPHA_LAG, 0.0, True,
     )  # fmt: skip
 
 

@@ -7,13 +7,20 @@ from itertools import pairwise
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
+from advisor.flight.kinematics import SMALLEST_BIAS_RAD, KinematicCheck, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.gap.air import Air, moving_air
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.causes import SPEED_IS_A_CAUSE, airspeed_cause, alpha_bias_cause, block_ranking, causes_of
+from advisor.gap.causes import (
+    SPEED_IS_A_CAUSE,
+    airspeed_cause,
+    alpha_bias_cause,
+    alpha_lag_cause,
+    block_ranking,
+    causes_of,
+)
 from advisor.gap.coherence import Coherence, coherent_part, unrest
 from advisor.gap.data import Flights, prepare
 from advisor.gap.fit import Fitted, Problem, linearise, own_only
@@ -32,6 +39,8 @@ from advisor.problems import UnusableInputError
 
 VISIBLE = 0.05
 """Gap above the floor from which on there is something to explain."""
+DOUBT = 2.5
+"""Where the floor is stated, not measured, an unknown cause must exceed it this many times."""
 RESTLESS = 2.0
 """Error power while the stick moves over that in quiet, minus 1, from which on it is no noise."""
 RESTLESS_IN_MOVING_AIR = 6.0
@@ -89,10 +98,21 @@ def diagnose(
          {f.number for f in flights.flights}]
     )  # fmt: skip
     progress("fitting the simulator's model", 0.1)
+    if abs(kinematics.bias_rad) > max(SMALLEST_BIAS_RAD, 4.0 * kinematics.bias_std_rad):
+        # What the climb rate shows is taken out first, else the trim would carry it into the lift.
+        flights = prepare([_without_offset(m, kinematics.bias_rad) for m in maneuvers], aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
     evidence = _explain(problem, baseline, aircraft, progress)
     progress("measuring the gap", 0.9)
     return _answer(evidence, aircraft, kinematics, holdout, maneuvers)
+
+
+def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
+    """The manoeuvre with a constant taken off its angle of attack."""
+    channels = dict(maneuver.channels)
+    if "alpha" in channels:
+        channels["alpha"] = replace(channels["alpha"], y=channels["alpha"].y - offset)
+    return replace(maneuver, channels=channels)
 
 
 def _refuse(flights: Flights) -> None:
@@ -166,24 +186,31 @@ def _answer(
     problem, stages, floor = e.problem, e.stages, e.floor
     first, last = stages[0].held_out, stages[-1].held_out
     still = np.minimum(floor, np.sqrt(e.air.left)) if e.air is not None else floor
-    coherent_gap = float(np.mean(e.coherence.power / floor**2))
+    doubtful = np.maximum(floor, DOUBT * e.stated)
+    coherent_gap = float(np.mean(e.coherence.power / doubtful**2))
     removed = max(float(np.mean((first.mean_square - last.mean_square) / floor**2)), 0.0)
     bias = alpha_bias_cause(kinematics, floor, problem)
     speed = airspeed_cause(problem, stages[-1].fitted, last, floor)
     air_cause = _air_cause(e)
+    late = alpha_lag_cause(kinematics, problem, [s.added for s in stages if s.added is not None])
     unexplained = coherent_gap / max(coherent_gap + removed, 1e-12)
     named = [s.added for s in stages if s.added is not None]
     unknown = coherent_gap > VISIBLE and (unexplained > UNEXPLAINED or not named)
-    unknown = unknown or _restless(e)
+    unknown = (unknown or _restless(e)) and late is None
     causes = causes_of(stages, floor, unexplained if coherent_gap > VISIBLE else 0.0, problem.channels)
     fast = speed is not None and problem.flights.speed_moves > SPEED_IS_A_CAUSE
-    alone = not named and air_cause is None and bias is None
-    extra = [c for c in (air_cause, bias, speed if fast and alone else None) if c is not None]
+    alone = not named and air_cause is None and bias is None and late is None
+    extra = [c for c in (air_cause, bias, late, speed if fast and alone else None) if c is not None]
     if unknown:
         causes = tuple(
             replace(c, probability=c.probability * 0.5) for c in causes if not c.present or not named
         )[:5]
     causes = _merge(causes, extra)
+    if bias is not None and not unknown:
+        offset = (bias.parameters["bias_rad"].value / floor[problem.channels.index("alpha")]) ** 2
+        causes = _bias_first(
+            causes, float(offset) / len(floor) > removed and not problem.flights.alpha_is_derived
+        )
     before = e.file_model if e.file_model is not None else first
     wrong_values = e.file_model is not None and float(
         np.mean((e.file_model.mean_square - first.mean_square) / floor**2)
@@ -208,7 +235,7 @@ def _answer(
     before, last = _only(before, kept), _only(last, kept)
     gap = _gap(e, before, last, bias)
     where = _where(e, verdict, causes)
-    shrink = _shrink(e, kept, gap, before, last) if verdict != "none" else None
+    shrink = _shrink(e, kept, gap, before, last) if verdict in ("effect", "parameters") else None
     fitted = stages[-1].fitted
     std = shared_std(problem, fitted, worth(problem, fitted.left))
     waterfall = _waterfall(stages, floor, extra, speed, gap.before)
@@ -229,7 +256,7 @@ def _restless(e: _Evidence) -> bool:
     """Whether the error still grows when the stick moves, by more than what was named may leave behind."""
     active, quiet = unrest(e.problem, e.stages[-1].fitted.left)
     was, _ = unrest(e.problem, e.stages[0].fitted.left)
-    quiet = np.maximum(quiet, e.stated**2)
+    quiet = np.maximum(quiet, (DOUBT * e.stated) ** 2)
     rest, total = np.maximum(active / quiet - 1.0, 0.0), np.maximum(was / quiet - 1.0, 0.0)
     share = float(np.mean(rest)) / max(float(np.mean(total)), 1e-12)
     least = RESTLESS_IN_MOVING_AIR if e.air is not None else RESTLESS
@@ -250,6 +277,15 @@ def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ..
         extra = [replace(c, probability=0.08 / len(extra)) for c in extra]
         other = [replace(c, probability=0.2 * c.probability) for c in other]
     return (*present, *extra, *other)[:5]
+
+
+def _bias_first(causes: tuple[Cause, ...], larger: bool) -> tuple[Cause, ...]:
+    """The constant offset ahead of everything else, when it makes the larger part of the gap."""
+    if not larger:
+        return causes
+    bias = next(c for c in causes if c.effect == "alpha_bias")
+    rest = tuple(replace(c, probability=0.08 * c.probability) for c in causes if c is not bias)
+    return (replace(bias, probability=0.9), *rest)
 
 
 def _air_cause(e: _Evidence) -> Cause | None:
