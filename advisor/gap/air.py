@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fit import Fitted, Problem
+from advisor.gap.fit import Fitted
 from advisor.gap.floor import white_noise
 from advisor.gap.holdout import mean_squares
 from advisor.gap.probes import KNOTS_S, disturbance_course
+from advisor.gap.problem import Problem
 from advisor.oem.turbulence import CHANNELS, Rows, find_turbulence
 
 _LEAST_GAIN = 40.0

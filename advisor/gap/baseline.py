@@ -8,8 +8,9 @@ from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates import input
 from advisor.gap.data import Flight, Flights
-from advisor.gap.fit import Fitted, Point, Problem, evidence_of, fit
+from advisor.gap.fit import Fitted, evidence_of, fit
 from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
+from advisor.gap.problem import Point, Problem
 from advisor.gap.screen import Screen
 from advisor.gap.simulate import GRAVITY_M_S2
 

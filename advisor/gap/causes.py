@@ -8,9 +8,10 @@ import numpy as np
 from advisor.flight.kinematics import SMALLEST_BIAS_RAD, KinematicCheck
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import BLOCK_OF
-from advisor.gap.fit import Fitted, Problem, fit
+from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.measure import gap_of
+from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Value
 from advisor.gap.score import LEAST_GAIN, Judged
 from advisor.gap.ties import tied_with

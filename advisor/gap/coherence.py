@@ -14,9 +14,10 @@ from scipy.signal import lfilter
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flight
-from advisor.gap.fit import Fitted, Problem, row_weights
+from advisor.gap.fit import Fitted
 from advisor.gap.holdout import folds_of
 from advisor.gap.layout import OUTPUTS
+from advisor.gap.problem import Problem, row_weights
 from advisor.gap.simulate import read_off, surface
 
 _LAG_SPACING_S = 0.04

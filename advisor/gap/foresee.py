@@ -12,7 +12,9 @@ import numpy as np
 from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fit import Fitted, Problem, factor, row_weights, shared_columns
+from advisor.gap.fit import Fitted, factor
+from advisor.gap.linear import shared_columns
+from advisor.gap.problem import Problem, row_weights
 from advisor.gap.result import Unseen
 from advisor.gap.ties import breaking
 from advisor.gap.variant import Variant

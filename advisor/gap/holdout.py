@@ -12,7 +12,9 @@ import numpy as np
 from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fit import Fitted, Linear, Problem, bounds_of, factor, row_weights
+from advisor.gap.fit import Fitted, bounds_of, factor
+from advisor.gap.linear import Linear
+from advisor.gap.problem import Problem, row_weights
 
 
 @dataclass(frozen=True)

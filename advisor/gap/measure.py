@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flight
-from advisor.gap.fit import Problem
+from advisor.gap.problem import Problem
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
 _EDGE_S = 0.2

@@ -11,9 +11,11 @@ from advisor.flight.record import Channel
 from advisor.gap.baseline import base_entries, believed_derivatives
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.data import prepare
-from advisor.gap.fit import Fitted, Point, Problem, linearise, solve_blocks
+from advisor.gap.fit import Fitted, solve_blocks
 from advisor.gap.foresee import Foreseen, foresee
 from advisor.gap.layout import OUTPUTS
+from advisor.gap.linear import linearise
+from advisor.gap.problem import Point, Problem
 from advisor.gap.simulate import GRAVITY_M_S2
 from advisor.problems import ConfigurationError
 

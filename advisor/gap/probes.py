@@ -14,8 +14,10 @@ from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flight
-from advisor.gap.fit import Fitted, Problem, factor, later, pulse_response, row_weights
+from advisor.gap.fit import Fitted, factor
 from advisor.gap.layout import INDEX, OUTPUTS
+from advisor.gap.linear import later, pulse_response
+from advisor.gap.problem import Problem, row_weights
 from advisor.gap.simulate import DISTURB_AIR, DISTURB_FORCE, DISTURB_INPUT, DISTURB_MOMENT
 
 KNOTS_S = 0.1

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fit import Fitted, Problem, fit
+from advisor.gap.fit import Fitted, fit
 from advisor.gap.floor import independent_samples
 from advisor.gap.holdout import HeldOut, hold_out
+from advisor.gap.problem import Problem
 from advisor.gap.screen import Screen, Screened
 from advisor.gap.variant import Variant
 

@@ -6,17 +6,9 @@ import numpy as np
 from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fit import (
-    Fitted,
-    Point,
-    Problem,
-    bounds_of,
-    counts,
-    factor,
-    noise_of,
-    row_weights,
-    shared_columns,
-)
+from advisor.gap.fit import Fitted, bounds_of, factor, noise_of
+from advisor.gap.linear import shared_columns
+from advisor.gap.problem import Point, Problem, counts, row_weights
 from advisor.gap.variant import Variant
 
 

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from advisor.gap.fit import Fitted, Problem, fit
+from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut, hold_out
+from advisor.gap.problem import Problem
 from advisor.gap.score import Judged, candidates_for, judge
 from advisor.gap.variant import Variant
 

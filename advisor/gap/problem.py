@@ -1,0 +1,133 @@
+"""What is fitted to what: the data with the simulation, and a point of its numbers."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.data import Flight, Flights
+from advisor.gap.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS, SKEWS
+from advisor.gap.simulate import read_off, simulate, surface
+from advisor.gap.variant import Variant
+
+_NO_DISTURBANCE = np.zeros((4, 0))
+
+
+@dataclass(frozen=True)
+class Point:
+    """Where the search stands: everything the simulation is driven by."""
+
+    derivatives: FloatArray
+    """Shape (6,)."""
+    own: FloatArray
+    """Shape (manoeuvres, 4): initial states and trim terms."""
+    effects: tuple[Variant, ...] = ()
+    values: tuple[FloatArray, ...] = ()
+    """Parameters of each effect."""
+    sides: FloatArray | None = None
+    """Shape (manoeuvres,): the side chosen in each manoeuvre, for an effect that has sides."""
+
+    @property
+    def shared(self) -> FloatArray:
+        """All shared numbers as one vector: derivatives, then parameters of effects."""
+        return np.concatenate([self.derivatives, *self.values])
+
+    def moved(self, shared: FloatArray, own: FloatArray) -> "Point":
+        """The same model elsewhere."""
+        values, at = [], len(DERIVATIVES)
+        for effect in self.effects:
+            values.append(shared[at : at + len(effect.names)])
+            at += len(effect.names)
+        return replace(self, derivatives=shared[: len(DERIVATIVES)], own=own, values=tuple(values))
+
+    def with_effect(
+        self, effect: Variant, values: Sequence[float] | FloatArray, sides: FloatArray | None = None
+    ) -> "Point":
+        """The model with one more effect in it."""
+        return replace(
+            self,
+            effects=(*self.effects, effect),
+            values=(*self.values, np.asarray(values, float)),
+            sides=self.sides if sides is None else sides,
+        )
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The data, the fixed part of the simulation, and how the command moved between its stamps."""
+
+    flights: Flights
+    base: FloatArray
+    """Shape (entries,): what the aircraft file already has in it."""
+    held: bool = False
+    """Command held between stamps instead of linear."""
+    smallest_noise: FloatArray | None = None
+    """Shape (channels,): noise is never taken to be below this."""
+    believed: FloatArray | None = None
+    """Shape (6,): derivatives of the aircraft file, when it has all."""
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Outputs that are compared."""
+        return self.flights.channels
+
+    def driving(self, point: Point) -> FloatArray:
+        """Shape (manoeuvres, entries): the numbers each manoeuvre is simulated with."""
+        p = np.tile(self.base, (len(self.flights), 1))
+        p[:, : len(DERIVATIVES)] = point.derivatives
+        p[:, len(DERIVATIVES) : len(DERIVATIVES) + len(NUISANCES)] = point.own
+        for effect, values in zip(point.effects, point.values, strict=True):
+            if effect.sides is not None and point.sides is not None:
+                p[:, INDEX[effect.sides[0]]] = point.sides
+            effect.apply(p, values, self.flights)
+        return p
+
+    def fly(self, flight: Flight, p: FloatArray, disturbance: FloatArray = _NO_DISTURBANCE) -> FloatArray:
+        """Simulated outputs of one manoeuvre on the grid, shape (4, n + 1)."""
+        delta = surface(flight.h, flight.n, flight.t_u, flight.u, self.held, flight.u_trim, p)
+        return simulate(flight.h, delta, flight.slow, disturbance, flight.trim, p)
+
+    def read(self, flight: Flight, grid: FloatArray, p: FloatArray) -> FloatArray:
+        """All channels at their own stamps, one after another."""
+        return np.concatenate(
+            [
+                read_off(
+                    grid[OUTPUTS.index(c)], flight.h, flight.outputs[c].t, p[INDEX[SKEWS[OUTPUTS.index(c)]]]
+                )
+                for c in self.channels
+            ]
+        )
+
+    def rows(self, flight: Flight) -> list[slice]:
+        """Where each channel sits in the stacked vector of one manoeuvre."""
+        out, at = [], 0
+        for c in self.channels:
+            out.append(slice(at, at + len(flight.outputs[c].t)))
+            at = out[-1].stop
+        return out
+
+    def measured(self, flight: Flight) -> FloatArray:
+        """All channels of one manoeuvre, stacked."""
+        return np.concatenate([flight.outputs[c].y for c in self.channels])
+
+    def parts(self, i: int, p: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Measured minus simulated of manoeuvre ``i``, shape (rows,), and the simulation on its grid."""
+        flight = self.flights.flights[i]
+        grid = self.fly(flight, p)
+        return self.measured(flight) - self.read(flight, grid, p), grid
+
+
+def row_weights(problem: Problem, i: int, weights: FloatArray) -> FloatArray:
+    """One weight a row of manoeuvre ``i``."""
+    flight = problem.flights.flights[i]
+    return np.concatenate(
+        [np.full(len(flight.outputs[c].t), w) for c, w in zip(problem.channels, weights, strict=True)]
+    )
+
+
+def counts(problem: Problem) -> FloatArray:
+    """Shape (channels,): samples of each channel over all manoeuvres."""
+    return np.array(
+        [sum(len(f.outputs[c].t) for f in problem.flights.flights) for c in problem.channels], float
+    )
