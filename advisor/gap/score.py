@@ -1,7 +1,7 @@
 """Which: full fits of the few candidates worth it, each judged on manoeuvres it has not seen."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +22,8 @@ LEAST_GAP = 0.03
 LEAST_SIGMA = 3.0
 _PROMISE = 0.7
 """Share of ``LEAST_GAP`` that the screening must promise before a full fit is spent on a candidate."""
+_ARMS = {"alpha_vane_offset", "accelerometer_offset"}
+"""One and the same thing in the data: only the derivatives they leave behind differ."""
 _EQUIVALENT = 5.0
 """Difference of gain between two descriptions of the very same thing."""
 
@@ -141,9 +143,11 @@ def plausible(judged: Sequence[Judged], believed: FloatArray | None) -> list[Jud
     if not judged:
         return []
     best = max(j.gain for j in judged)
+    leader = next(j.effect for j in judged if j.gain == best)
 
     def strange(j: Judged) -> float:
-        if j.gain < best - _EQUIVALENT:
+        twins = {j.effect, leader} == _ARMS and j.gain > 0.95 * best
+        if j.gain < best - _EQUIVALENT and not twins:
             return float("inf")
         if believed is not None:
             size = np.maximum(0.03 * np.abs(believed), np.array([0.05, 0.01, 0.02, 0.3, 0.05, 0.3]))
@@ -151,4 +155,8 @@ def plausible(judged: Sequence[Judged], believed: FloatArray | None) -> list[Jud
         return 10.0 if j.effect == "alpha_vane_offset" and j.value[0] < 0.0 else best - j.gain
 
     ahead = [j for j in judged if np.isfinite(strange(j))]
-    return [*sorted(ahead, key=strange), *(j for j in judged if j not in ahead)]
+    ranking = sorted(ahead, key=strange)
+    # What the file settles counts as settled; what nothing settles stays a tie.
+    settled = len(ranking) > 1 and strange(ranking[1]) > strange(ranking[0]) + _EQUIVALENT
+    first = replace(ranking[0], gain=best + 2.0 * _EQUIVALENT if settled else best)
+    return [first, *ranking[1:], *(j for j in judged if j not in ahead)]

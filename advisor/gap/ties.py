@@ -36,11 +36,15 @@ def breaking(effect: str, other: str) -> str:
     return _BREAKS.get(frozenset({effect, other}), "")
 
 
+def _near(a: Judged, b: Judged) -> bool:
+    """As good as each other; the two arms always, if either is any good."""
+    arms = {a.effect, b.effect} == {"alpha_vane_offset", "accelerometer_offset"}
+    return abs(a.gain - b.gain) < (0.1 * abs(b.gain) if arms else NEAR)
+
+
 def tied_with(best: Judged, others: Sequence[Judged], channels: Sequence[str]) -> tuple[tuple[str, ...], str]:
     """Effects that explain the data as well as ``best``, and what would tell them apart."""
-    names = [
-        j.effect for j in others if j.effect != best.effect and j.gain > best.gain - NEAR and j.gain > 0.0
-    ]
+    names = [j.effect for j in others if j.effect != best.effect and _near(j, best) and j.gain > 0.0]
     ways = []
     for name in names:
         found = breaking(best.effect, name)
