@@ -4,7 +4,8 @@ With R = diag(σ_c²) at its own maximum-likelihood value, minimising Σ n_c·lo
 det R; its gradient is that of the weighted sum of squares at the present R, hence Gauss-Newton
 with weights 1/σ_c² (Maine & Iliff, *Formulation and implementation of a practical algorithm
 for parameter estimation with process and measurement noise*, 1981). Levenberg's damping enters
-only when a step is rejected.
+only when a step is rejected. It begins and fades far below the usual sizes: the record of a diverging aircraft
+has directions 1e-9 as well determined as others, along which a larger damping would stop the search.
 
 The normal equations have the shape of an arrow: six derivatives shared by all manoeuvres, the
 rest each manoeuvre's own. The own ones are eliminated manoeuvre by manoeuvre, so the work grows
@@ -24,6 +25,10 @@ FLAT = 1e-11
 BLOCK = 64
 """Rows whose products are summed at once."""
 MOST_ITERATIONS = 120
+FIRST_DAMPING = 1e-8
+"""Relative to the diagonal; smaller than this it does not hide that a step still promises something."""
+LEAST_DAMPING = 1e-12
+DAMPING_FACTOR = 10.0
 LEAST_NOISE = 1e-10
 """Floor of σ relative to the spread of the channel: data without noise have no other."""
 
@@ -258,7 +263,7 @@ def descend(
                         break
                 if promise < flat * len(z):
                     return Optimum(CONVERGED, shared, local, noise, cost, iteration)
-            damping = max(1e-4, 8.0 * damping)
+            damping = max(FIRST_DAMPING, DAMPING_FACTOR * damping)
         if not accepted:
             # Not even a tiny step lowers the cost: round-off rules, there is nothing left to gain.
             status = CONVERGED if fine else SINGULAR
@@ -266,10 +271,10 @@ def descend(
         shared, local, noise, cost = trial, trial_local, trial_noise, trial_cost
         y, y_trial = y_trial, y
         g, g_trial = g_trial, g
-        if promise < flat * len(z) and damping < 1e-2:
+        if promise < flat * len(z) and damping <= FIRST_DAMPING:
             status = CONVERGED
             break
-        damping = 0.0 if damping < 1e-3 else damping / 8.0
+        damping = damping / DAMPING_FACTOR if damping > LEAST_DAMPING else 0.0
     if status == EXHAUSTED and np.all(noise <= WITHOUT_NOISE * floor):
         status = CONVERGED
     return Optimum(status, shared, local, noise, cost, iteration)
