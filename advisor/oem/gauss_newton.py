@@ -4,8 +4,8 @@ With R = diag(σ_c²) at its own maximum-likelihood value, minimising Σ n_c·lo
 det R; its gradient is that of the weighted sum of squares at the present R, hence Gauss-Newton
 with weights 1/σ_c² (Maine & Iliff, *Formulation and implementation of a practical algorithm
 for parameter estimation with process and measurement noise*, 1981). Levenberg's damping enters
-only when a step is rejected. It begins and fades far below the usual sizes: the record of a diverging aircraft
-has directions 1e-9 as well determined as others, along which a larger damping would stop the search.
+only when a step is rejected. It begins and fades far below the usual sizes: the record of a diverging
+aircraft has directions 1e-9 as well determined as others, and a larger damping would stop the search there.
 
 The normal equations have the shape of an arrow: six derivatives shared by all manoeuvres, the
 rest each manoeuvre's own. The own ones are eliminated manoeuvre by manoeuvre, so the work grows
