@@ -17,7 +17,9 @@ from advisor.oem.surface import Servo
 
 FEWEST_SAMPLES = 20
 SPEED_CHANGE = 0.03
-"""Beyond this relative change of air speed the derivatives are scaled with it."""
+"""Beyond this relative change of air speed the derivatives are scaled with it ..."""
+SMOOTH_SPEED_CHANGE = 0.01
+"""... and already beyond this one when its shape comes from the accelerometers: no noise can pass for it."""
 REPEATED_SHARE = 0.3
 """A channel whose samples repeat the last value more often than this is held between renewals."""
 
@@ -72,7 +74,9 @@ def prepare(
         problem=restored(
             Problem(
                 records=records,
-                reference_airspeed_m_s=_reference(known, aircraft) if together else None,
+                reference_airspeed_m_s=_reference(known, aircraft, all(v.smooth for v in measured))
+                if together
+                else None,
                 servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
                 vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
                 accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
@@ -160,14 +164,15 @@ def _constant(maneuver: Maneuver, speed: float | None) -> Signal | None:
     return Signal(maneuver.channels["elevator"].t[[0, -1]], np.array([speed, speed]))
 
 
-def _reference(speeds: Sequence[Signal], aircraft: Aircraft) -> float | None:
+def _reference(speeds: Sequence[Signal], aircraft: Aircraft, smooth: bool) -> float | None:
     """Reference air speed, when the speed moves enough to matter."""
     together = np.concatenate([speed.y for speed in speeds])
     if np.min(together) <= 0.0:
         return None
     reference = aircraft.reference_airspeed_m_s or float(np.mean(together))
-    moved = float(np.max(together) - np.min(together)) > SPEED_CHANGE * reference
-    apart = abs(float(np.mean(together)) / reference - 1.0) > SPEED_CHANGE / 2.0
+    enough = SMOOTH_SPEED_CHANGE if smooth else SPEED_CHANGE
+    moved = float(np.max(together) - np.min(together)) > enough * reference
+    apart = abs(float(np.mean(together)) / reference - 1.0) > enough / 2.0
     return reference if moved or apart else None
 
 
