@@ -11,6 +11,7 @@ from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
 from advisor.oem.notes import notes
+from advisor.oem.offset import with_offset
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.problem import Problem
 from advisor.oem.servo_lag import Lag, by_lag, find_lag
@@ -19,7 +20,7 @@ from advisor.oem.surface import Servo
 
 N = len(PARAMETERS)
 CLEARLY = 10.0
-"""Twice the log-likelihood by which a held command must beat a linear one."""
+"""Twice the log-likelihood by which another reading of the record must beat the usual one."""
 
 
 def estimate(
@@ -37,8 +38,10 @@ def estimate(
     solution = _solved(prepared.problem, method)
     if isinstance(solution, NoEstimate):
         return solution
-    solution = with_edges(solution) if method == "gauss-newton" else solution
-    lagged = _supposing_a_lag(solution) if aircraft.elevator.lag_s is None else None
+    servo_known = aircraft.elevator.lag_s is not None
+    if method == "gauss-newton":
+        solution = with_edges(with_offset(solution) if servo_known else solution)
+    lagged = None if servo_known else _supposing_a_lag(solution)
     return report(solution, prepared, aircraft, lagged=lagged)
 
 
@@ -58,28 +61,41 @@ def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estim
         return solution
     lag = find_lag(solution.problem, solution) if aircraft.elevator.lag_s is None else None
     if lag is None:
-        return report(with_edges(solution), prepared, aircraft)
+        return report(with_edges(with_offset(solution)), prepared, aircraft)
     if lag.lag_s > 0.0:
         solution = with_edges(lag.solution, by_lag(lag.solution)[:, None])
         return report(solution, prepared, aircraft, lag=lag)
-    solution = with_edges(solution)
+    solution = with_edges(with_offset(solution))
     return report(solution, prepared, aircraft, lag=lag, lagged=_supposing_a_lag(solution))
 
 
 def _solved(problem: Problem, method: Method = "gauss-newton") -> Solution | NoEstimate:
-    """The solution with the command joined linearly between its stamps, or held if that is clearly better.
+    """The solution with the record read as the data clearly prefer.
 
-    Only a command without large steps is asked; those get times of their own (``edges``).
+    Eqs. (1)-(2) take the flight path as constant; gravity's part in α̇ as it turns is some 1e-4 rad/s and is
+    left out where the data do not follow it. A command without large steps may be held between its
+    stamps instead of linear; large steps get times of their own (``edges``).
     """
-    linear = solve(problem, method=method)
+    best = solve(problem, method=method)
+    straight = tuple(replace(record, path=None) for record in problem.records)
+    best = _clearer(best, replace(problem, records=straight), method)
     if any(large_steps(record.elevator).interval for record in problem.records):
-        return linear
-    held = replace(problem, records=tuple(replace(record, held=True) for record in problem.records))
-    other = solve(held, method=method)
-    if isinstance(linear, NoEstimate) or isinstance(other, NoEstimate):
-        return linear
-    gain = linear.optimum.log_likelihood_cost - other.optimum.log_likelihood_cost
-    return other if gain > CLEARLY else linear
+        return best
+    records = problem.records if isinstance(best, NoEstimate) else best.problem.records
+    held = tuple(replace(record, held=True) for record in records)
+    return _clearer(best, replace(problem, records=held), method)
+
+
+def _clearer(best: Solution | NoEstimate, other: Problem, method: Method) -> Solution | NoEstimate:
+    """``best``, unless the other reading of the same data explains them clearly better."""
+    if isinstance(best, NoEstimate):
+        return best
+    begin = (best.optimum.shared, best.optimum.local) if method == "gauss-newton" else None
+    rival = solve(other, method=method, begin=begin)
+    if isinstance(rival, NoEstimate):
+        return best
+    gain = best.optimum.log_likelihood_cost - rival.optimum.log_likelihood_cost
+    return rival if gain > CLEARLY else best
 
 
 def report(

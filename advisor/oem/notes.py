@@ -27,6 +27,7 @@ def notes(
         _scale(solution),
         _held(prepared),
         _edges(solution, prepared),
+        _offset(solution, prepared),
         _vane(aircraft),
         *_missing(prepared),
     ]
@@ -87,6 +88,17 @@ def _edges(solution: Solution, prepared: Prepared) -> str:
     if steps == 0:
         return ""
     return f"When {steps} elevator steps happened between two samples of the command was estimated, too."
+
+
+def _offset(solution: Solution, prepared: Prepared) -> str:
+    later = solution.problem.servo.delay_s - prepared.problem.servo.delay_s
+    if later == 0.0:
+        return ""
+    reading = "held" if solution.problem.records[0].held else "linear"
+    return (
+        f"The command, {reading} between its stamps, acts {1e3 * later:+.1f} ms from them; this was"
+        " estimated, too."
+    )
 
 
 def _vane(aircraft: Aircraft) -> str:
