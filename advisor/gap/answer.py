@@ -16,6 +16,7 @@ from advisor.gap.causes import (
     alpha_lag_cause,
     block_ranking,
     causes_of,
+    with_edge_doubt,
 )
 from advisor.gap.evidence import DOUBT, UNEXPLAINED, VISIBLE, Evidence, restless
 from advisor.gap.foresee import unseen_effects
@@ -60,7 +61,12 @@ def answer(
     named = [s.added for s in stages if s.added is not None]
     unknown = coherent_gap > VISIBLE and (unexplained > UNEXPLAINED or not named)
     unknown = (unknown or restless(e)) and late is None
-    causes = causes_of(stages, floor, unexplained if coherent_gap > VISIBLE else 0.0, problem.channels)
+    causes = tuple(
+        with_edge_doubt(cause, problem)
+        for cause in causes_of(
+            stages, floor, unexplained if coherent_gap > VISIBLE else 0.0, problem.channels
+        )
+    )
     fast = speed is not None and problem.flights.speed_moves > SPEED_IS_A_CAUSE
     alone = not named and air_cause is None and bias is None and late is None
     extra = [c for c in (air_cause, bias, late, speed if fast and alone else None) if c is not None]

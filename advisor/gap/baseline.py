@@ -16,8 +16,6 @@ from advisor.gap.simulate import GRAVITY_M_S2
 
 _NEARLY = 0.25
 """Share of all that a delay, a lag and the right reading explain which may stay unexplained without them."""
-_CLEARLY = 10.0
-"""Twice the log likelihood by which a held command must win over a linear one."""
 
 
 def base_entries(aircraft: Aircraft) -> FloatArray:
@@ -117,12 +115,10 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
     both = {False: evidence_of(linear, both_linear), True: evidence_of(held, both_held)}
     best_of_all = min(*plain.values(), *both.values())
-    # A reading that needs no delay at all is believed before one that needs just its own half interval.
+    # Held with a delay d and linear with d plus half an interval are the same motion. The held reading is
+    # believed where it needs no delay at all; else the doubt of half an interval goes into the delay's error.
     near = best_of_all + _NEARLY * (max(plain.values()) - best_of_all)
-    if min(plain.values()) < near:
-        is_held = plain[True] < plain[False]
-    else:
-        is_held = min(plain[True], both[True]) < both[False] - _CLEARLY
+    is_held = plain[True] < min(near, plain[False])
     if is_held:
         return held, plainly_held
     return linear, fitted

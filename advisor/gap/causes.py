@@ -20,6 +20,8 @@ from advisor.gap.waterfall import Stage
 TEMPERATURE = 3.0
 """Log likelihoods of a model that is itself approximate count for less: divided by this before they
 become probabilities. Set on development data so that stated and observed frequencies agree."""
+_TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
+"""Effects that a common shift of all steps of the command would imitate, and their parameter."""
 _BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
 _SPEED_SMALLEST = 0.03
 SPEED_IS_A_CAUSE = 0.10
@@ -79,6 +81,18 @@ def parameters_of(judged: Judged) -> dict[str, Value]:
     for name, value in v.fixed.items():
         found[name] = Value(value, 0.0)
     return found
+
+
+def with_edge_doubt(cause: Cause, problem: Problem) -> Cause:
+    """A delay or lag with the error that comes of steps lying anywhere between two stamps of the command."""
+    intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
+    if problem.held or not intervals or cause.effect not in _TIMING:
+        return cause
+    doubt = float(np.median(np.concatenate(intervals))) / np.sqrt(12.0)
+    name = _TIMING[cause.effect]
+    value = cause.parameters[name]
+    parameters = {**cause.parameters, name: Value(value.value, float(np.hypot(value.std, doubt)))}
+    return replace(cause, parameters=parameters)
 
 
 def _cause(

@@ -185,7 +185,10 @@ def simulate(
             sum_q += weight * kq
             if stage == 0:
                 normal_0, qdot_0 = normal, kq
-        # Outputs belong to the start of the step.
+        # Outputs belong to the start of the step: there the deflection lies between the means of two steps.
+        ahead = 0.5 * (delta[j] - delta[max(j - 1, 0)])
+        normal_0 -= v * z_d * ahead
+        qdot_0 -= v * v * m_d * ahead
         vane = alpha + air - p[VANE_ARM] * q / V
         if i > 0:
             if vane_tau > 1e-6:
