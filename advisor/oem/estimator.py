@@ -105,6 +105,7 @@ def report(
     *,
     lag: Lag | None = None,
     lagged: FloatArray | None = None,
+    priced: bool = True,
 ) -> Estimate:
     """A solution as the rest of the program sees it.
 
@@ -112,6 +113,7 @@ def report(
     ----------
     lag : what the search for a servo lag found, when one was made.
     lagged : (8,) the estimate had the servo a lag of ``SUPPOSED_LAG_S``, when the servo is unknown.
+    priced : say what missing channels cost (some milliseconds).
     """
     return Estimate(
         theta=solution.theta,
@@ -124,7 +126,7 @@ def report(
         correlated=correlated(solution.covariance_cr[:N, :N]),
         condition=solution.influence.condition,
         airspeed_m_s=solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s,
-        notes=notes(solution, prepared, aircraft, lag, lagged),
+        notes=notes(solution, prepared, aircraft, lag, lagged, priced=priced),
     )
 
 

@@ -3,6 +3,7 @@
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.oem.identifiability import SUPPOSED_LAG_S
+from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.servo_lag import Lag
 from advisor.oem.solution import Solution
@@ -12,7 +13,13 @@ NOTED_SCALE = 0.02
 
 
 def notes(
-    solution: Solution, prepared: Prepared, aircraft: Aircraft, lag: Lag | None, lagged: FloatArray | None
+    solution: Solution,
+    prepared: Prepared,
+    aircraft: Aircraft,
+    lag: Lag | None,
+    lagged: FloatArray | None,
+    *,
+    priced: bool = True,
 ) -> tuple[str, ...]:
     """Collect the sentences.
 
@@ -20,6 +27,7 @@ def notes(
     ----------
     lag : result of the search for a servo lag, when one was made.
     lagged : (8,) the estimate under ``SUPPOSED_LAG_S`` of servo lag, when the servo is unknown.
+    priced : say in numbers what missing channels cost.
     """
     sentences = [
         _servo(solution, lag, lagged),
@@ -29,7 +37,7 @@ def notes(
         _edges(solution, prepared),
         _offset(solution, prepared),
         _vane(aircraft),
-        *_missing(prepared),
+        *_missing(solution, prepared, priced),
     ]
     return tuple(sentence for sentence in sentences if sentence)
 
@@ -106,15 +114,17 @@ def _vane(aircraft: Aircraft) -> str:
     return f"Angle of attack was moved {arm:g} m from the vane to the centre of gravity." if arm else ""
 
 
-def _missing(prepared: Prepared) -> list[str]:
+def _missing(solution: Solution, prepared: Prepared, priced: bool) -> list[str]:
     sentences = []
     if "a_z" in prepared.missing:
         sentences.append(
             "No vertical acceleration was used (it takes a_z and air speed): Z_alpha, Z_q and Z_delta_e rest"
             " on angle of attack alone, and a late or scaled angle of attack goes into them unseen."
+            + in_words(price(solution, "a_z") if priced else None)
         )
     if "theta" in prepared.missing:
         sentences.append(
             "No pitch attitude was used: a bias of the pitch rate cannot be told from Z_0 and M_0."
+            + in_words(price(solution, "theta") if priced else None)
         )
     return sentences

@@ -1,0 +1,82 @@
+"""What a channel that was not measured would have brought, as a factor on each parameter's error.
+
+The channel is imagined at the stamps of the pitch rate and as clear as it (the same noise over the same
+motion), with the bias that comes with it; the sensitivities of the present fit then give the Cramér-Rao
+bound with it.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.flight.messages import FloatArray
+from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
+from advisor.oem.covariance import cramer_rao, influence
+from advisor.oem.problem import Assembly, Signal, assemble
+from advisor.oem.solution import Solution
+
+WORTH_NAMING = 1.05
+"""Factor on an error from which on it is named."""
+
+
+def price(solution: Solution, output: str) -> FloatArray | None:
+    """(8,) error of each parameter without ``output`` over that with it, order of ``PARAMETERS``.
+
+    Parameters
+    ----------
+    output : ``a_z`` or ``theta``, not measured in any record of the solution.
+
+    Returns
+    -------
+    array or None
+        None when it cannot be told: a_z takes an air speed, and both take an input that tells something.
+    """
+    records = solution.problem.records
+    if output == "a_z" and any(record.airspeed is None for record in records):
+        return None
+    imagined = tuple(
+        replace(record, outputs={**record.outputs, output: Signal(t, np.zeros(len(t)))})
+        for record in records
+        for t in [record.outputs["q"].t[np.isfinite(record.outputs["q"].y)]]
+    )
+    assembly = assemble(replace(solution.problem, records=imagined))
+    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
+    respond(assembly.grid, solution.optimum.shared, solution.optimum.local, y, g)
+    noise = solution.optimum.noise.copy()
+    noise[OUTPUTS.index(output)] = (
+        noise[OUTPUTS.index("q")] * _spread(assembly, y, output) / _spread(assembly, y, "q")
+    )
+    with_it = _errors(assembly, g, noise)
+    without = _errors(solution.assembly, solution.sensitivities, solution.optimum.noise)
+    if with_it is None or without is None:
+        return None
+    return np.asarray(without / np.maximum(with_it, 1e-300))
+
+
+def in_words(factors: FloatArray | None) -> str:
+    """The sentence for the notes; empty when nothing is known."""
+    if factors is None:
+        return ""
+    named = [
+        f"{name} {factor:.2f}"
+        for name, factor in zip(PARAMETERS, factors, strict=True)
+        if factor > WORTH_NAMING
+    ]
+    if not named:
+        return f" No error is more than {100.0 * (WORTH_NAMING - 1.0):.0f} % larger for that."
+    return (
+        f" Had it been as clear as the pitch rate, errors would be smaller by the factors {', '.join(named)}."
+    )
+
+
+def _spread(assembly: Assembly, y: FloatArray, output: str) -> float:
+    """Root mean square motion of an output within the manoeuvres."""
+    return float(np.sqrt(np.mean([np.var(y[rows[output]]) for rows in assembly.rows])))
+
+
+def _errors(assembly: Assembly, g: FloatArray, noise: FloatArray) -> FloatArray | None:
+    effect = influence(assembly, g, noise)
+    if effect is None:
+        return None
+    return np.sqrt(np.diag(cramer_rao(assembly, effect.rows, noise)))

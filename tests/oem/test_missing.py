@@ -1,0 +1,55 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.oem.estimator import estimate
+from advisor.oem.missing import in_words, price
+from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.solution import solve
+from tests.oem.builders import UAV, elevator_3211, flown, simulate, trim_alpha, trim_elevator
+
+SPEED_M_S = 25.0
+NOISE = 0.02
+
+
+def record(*outputs):
+    """The small aircraft with every channel equally clear, and of these only ``outputs`` handed on."""
+    rng = np.random.default_rng(3)
+    t = np.arange(0.0, 8.0, 0.02)
+    u = elevator_3211(t, trim=trim_elevator(UAV), amplitude=0.03, unit_s=0.4)
+    x = simulate(UAV, [trim_alpha(UAV), 0.0], t, u, t)
+    alpha_dot = UAV[0] + UAV[1] * x[:, 0] + (1.0 + UAV[2]) * x[:, 1] + UAV[3] * u
+    clean = {"alpha": x[:, 0], "q": x[:, 1], "theta": x[:, 2]}
+    clean["a_z"] = SPEED_M_S * (alpha_dot - x[:, 1]) - 9.80665
+    noisy = {n: Signal(t, y + NOISE * y.std() * rng.standard_normal(len(t))) for n, y in clean.items()}
+    speed = Signal(t[[0, -1]], np.full(2, SPEED_M_S))
+    return Record(Signal(t, u), {n: noisy[n] for n in outputs}, airspeed=speed)
+
+
+def errors(*outputs):
+    return np.sqrt(np.diag(solve(Problem((record(*outputs),))).covariance_cr))
+
+
+@pytest.mark.parametrize("output", ["a_z", "theta"])
+def test_the_price_of_a_missing_channel_is_what_the_fit_with_it_shows(output):
+    without = solve(Problem((record("alpha", "q"),)))
+    real = errors("alpha", "q") / errors("alpha", "q", output)
+    np.testing.assert_allclose(price(without, output), real, rtol=0.1)
+
+
+def test_without_air_speed_the_price_of_acceleration_is_unknown_and_nothing_is_said():
+    without = solve(Problem((replace(record("alpha", "q"), airspeed=None),)))
+    assert price(without, "a_z") is None
+    assert in_words(None) == ""
+
+
+def test_a_channel_that_would_bring_nothing_is_said_to():
+    assert "more than 5 % larger" in in_words(np.ones(len(PARAMETERS)))
+
+
+def test_the_notes_of_an_estimate_put_the_price_beside_the_missing_channel():
+    found = estimate(flown(UAV, unit_s=0.4, noise=0.02, length_s=8.0), Aircraft(elevator=Elevator(lag_s=0.0)))
+    note = next(note for note in found.notes if "pitch attitude" in note)
+    assert "by the factors" in note or "more than 5 %" in note
