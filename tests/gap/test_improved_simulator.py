@@ -10,7 +10,7 @@ from advisor.aircraft import PARAMETERS
 from advisor.cli import advisor
 from advisor.config import load_aircraft
 from sim.compare import distances
-from sim.flight import Flight
+from sim.effects.fitting import flight_of
 from sim.modelled import modelled_flight
 from sim.record import record
 from sim.scenario import Scenario, scenario_from
@@ -23,7 +23,7 @@ def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, Pat
     """A flight with a late command, the simulator that knows nothing of it, and the improved one."""
     folder = tmp_path_factory.mktemp("late")
     flight, believed, improved = folder / "flight.tlog", folder / "believed.yaml", folder / "improved.yaml"
-    flown = Flight(scenario_from(yaml.safe_load(CAMPAIGN.read_text())))
+    flown = flight_of(scenario_from(yaml.safe_load(CAMPAIGN.read_text())))
     record(flown, flight)
     truth = flown.engine.truth.as_dict()
     assert set(truth) == set(PARAMETERS)
