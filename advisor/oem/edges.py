@@ -29,7 +29,10 @@ WIDTH_S = 1e-4
 DIFFERENCE_S = 2e-4
 ROUNDS = 2
 GAIN_PER_EDGE = 3.0
-"""Twice the log-likelihood that each edge must bring."""
+"""Twice the log-likelihood that each edge must bring ..."""
+GAIN_UPRIGHT = 3.0
+"""... or all of them together, standing upright in the middle of their intervals, where no time is fitted:
+a ramp and a step in its middle look alike and differ in M_δe."""
 MOST_MANEUVERS = 20
 CLOSE_ENOUGH = 1e-9
 """Promised change of log J per sample at which a search on the way is done."""
@@ -79,13 +82,15 @@ def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
         return plain
     own = np.empty((len(plain.fitted), 0)) if extra is None else extra
     near, problem, assembly, optimum = plain.optimum, plain.problem, plain.assembly, plain.optimum
-    columns = own
+    columns, upright = own, 0.0
     for round_ in range(ROUNDS + 1):
         problem = _edged(plain.problem, edges, records)
         assembly, optimum = search(problem, begin=(near.shared, near.local), flat=CLOSE_ENOUGH)
         if optimum.status != CONVERGED:
             return plain
         near = optimum
+        if round_ == 0:
+            upright = plain.optimum.log_likelihood_cost - optimum.log_likelihood_cost
         columns = np.column_stack([own, _by_edges(plain.problem, edges, records, optimum, assembly.owner)])
         if round_ == ROUNDS:
             break
@@ -96,7 +101,8 @@ def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
             return plain
         steps = effect.rows[:, len(PARAMETERS) + own.shape[1] :].T @ (assembly.z - y)
         edges = _moved(edges, steps, records)
-    if plain.optimum.log_likelihood_cost - optimum.log_likelihood_cost < GAIN_PER_EDGE * count:
+    gain = plain.optimum.log_likelihood_cost - optimum.log_likelihood_cost
+    if gain < GAIN_PER_EDGE * count and upright < GAIN_UPRIGHT:
         return plain
     final = evaluate(problem, assembly, optimum, columns, kept=own.shape[1])
     return final if isinstance(final, Solution) else plain

@@ -77,8 +77,9 @@ def _solved(problem: Problem, method: Method = "gauss-newton") -> Solution | NoE
     stamps instead of linear; large steps get times of their own (``edges``).
     """
     best = solve(problem, method=method)
-    straight = tuple(replace(record, path=None) for record in problem.records)
-    best = _clearer(best, replace(problem, records=straight), method)
+    if any(record.path is not None and record.airspeed is not None for record in problem.records):
+        straight = tuple(replace(record, path=None) for record in problem.records)
+        best = _clearer(best, replace(problem, records=straight), method)
     if any(large_steps(record.elevator).interval for record in problem.records):
         return best
     records = problem.records if isinstance(best, NoEstimate) else best.problem.records

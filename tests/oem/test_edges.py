@@ -11,7 +11,7 @@ from tests.oem.builders import UAV, flown, maneuver, simulate, trim_alpha, trim_
 RATE = 50.0
 
 
-def flown_between_stamps(seed, share, sign):
+def flown_between_stamps(seed, share, sign, noise=0.02):
     """The small aircraft; steps happen at ``share`` of the interval between stamps."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 8.0, 1.0 / RATE)
@@ -26,7 +26,7 @@ def flown_between_stamps(seed, share, sign):
 
     x = simulate(UAV, [trim_alpha(UAV), 0.0], fine, command(fine), t[1:-1])
     outputs = {
-        name: Signal(t[1:-1], x[:, c] + 0.02 * x[:, c].std() * rng.standard_normal(len(x)))
+        name: Signal(t[1:-1], x[:, c] + noise * x[:, c].std() * rng.standard_normal(len(x)))
         for name, c in (("alpha", 0), ("q", 1))
     }
     return Record(Signal(t, command(t)), outputs)
@@ -39,6 +39,14 @@ def test_steps_between_stamps_do_not_pass_for_other_derivatives(share):
     off = np.abs(found.theta - UAV) / np.sqrt(np.diag(found.covariance)[:8])
     assert np.all(off < 4.0)
     assert np.max(np.abs(plain.theta - UAV) / np.sqrt(np.diag(plain.covariance)[:8])) > 8.0
+
+
+def test_steps_in_the_middle_between_stamps_are_told_from_ramps():
+    plain = solve(Problem(tuple(flown_between_stamps(k, 0.5, (-1) ** k, noise=0.01) for k in range(2))))
+    found = with_edges(plain)
+    off = np.abs(found.theta - UAV) / np.sqrt(np.diag(found.covariance)[:8])
+    assert np.all(off < 3.5)
+    assert np.max(np.abs(plain.theta - UAV) / np.sqrt(np.diag(plain.covariance)[:8])) > 4.0
 
 
 def test_a_command_that_is_linear_between_stamps_is_left_alone():
