@@ -52,7 +52,9 @@ def command(
     if as_json:
         from advisor.report.document import analysis_document
 
-        click.echo(json.dumps(analysis_document(state, str(log), aircraft, problems), allow_nan=False, indent=1))
+        click.echo(
+            json.dumps(analysis_document(state, str(log), aircraft, problems), allow_nan=False, indent=1)
+        )
     elif state is not None and not problems:
         from rich.console import Console
 

@@ -15,7 +15,7 @@ FLUSH_EVERY_S = 0.5
 
 
 def default_recording(now: datetime | None = None) -> Path:
-    """Where a recording goes when the user names no place: one file a session, named by its start in UTC."""
+    """Where a recording goes when the user names no place: one file a flight, named by its start in UTC."""
     stamp = (now or datetime.now(UTC)).strftime("%Y-%m-%dT%H-%M-%SZ")
     return Path(platformdirs.user_data_dir("inflight-advisor")) / "recordings" / f"{stamp}.tlog"
 
