@@ -16,6 +16,7 @@ from advisor.decision.verdict import FlightTestVerdict, RuleProgress
 from advisor.decision.warnings import warnings
 from advisor.oem.estimate import Estimate
 
+_NO_SCALE_PERCENT = 1000.0
 INFORMATION_LIMIT_PERCENT = 100.0
 """The rule ``information`` counts in percent of the tolerance."""
 
@@ -99,8 +100,10 @@ def _sentence(history: Sequence[Flown], plan: CampaignPlan, criterion: float | N
         return f"CONTINUE: {len(accepted)} of {plan.window} accepted manoeuvres."
     verb = "STOP TESTING" if stop else "CONTINUE"
     held = "" if stop else f"; {_scattered_most(accepted, plan)} scatters most"
+    # Of a parameter near zero the relative scatter has no scale; its digits would only pretend one.
+    agreement = f"agree within {criterion:.0f} %" if criterion < _NO_SCALE_PERCENT else "do not agree"
     return (
-        f"{verb}: the last {plan.window} accepted manoeuvres agree within {criterion:.0f} % "
+        f"{verb}: the last {plan.window} accepted manoeuvres {agreement} "
         f"(limit {plan.limit_percent:.0f} %){held}."
     )
 
