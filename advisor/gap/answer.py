@@ -53,12 +53,12 @@ def answer(
     doubtful = np.maximum(floor, DOUBT * e.stated)
     coherent_gap = float(np.mean(e.coherence.power / doubtful**2))
     removed = max(float(np.mean((first.mean_square - last.mean_square) / floor**2)), 0.0)
-    bias = alpha_bias_cause(kinematics, floor, problem)
     speed = airspeed_cause(problem, stages[-1].fitted, last, floor)
     air_cause = _air_cause(e)
     late = alpha_lag_cause(kinematics, problem, [s.added for s in stages if s.added is not None])
     unexplained = coherent_gap / max(coherent_gap + removed, 1e-12)
     named = [s.added for s in stages if s.added is not None]
+    bias = alpha_bias_cause(kinematics, named, problem)
     unknown = coherent_gap > VISIBLE and (unexplained > UNEXPLAINED or not named)
     unknown = (unknown or restless(e)) and late is None
     causes = tuple(

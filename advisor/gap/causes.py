@@ -124,11 +124,19 @@ def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, flo
     return tuple(sorted(scores.items(), key=lambda item: -item[1]))
 
 
-def alpha_bias_cause(check: KinematicCheck, floor: FloatArray, problem: Problem) -> Cause | None:
-    """A constant offset of α, from the climb rate: the dynamics cannot tell it from Z_0 and M_0."""
+def alpha_bias_cause(check: KinematicCheck, named: Sequence[Judged], problem: Problem) -> Cause | None:
+    """A constant offset of α, from the climb rate: the dynamics cannot tell it from Z_0 and M_0.
+
+    A scale error shifts the trim, too; only what the named one leaves over is an offset.
+    """
     if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
         return None
-    if abs(check.bias_rad) < max(SMALLEST_BIAS_RAD, 4.0 * check.bias_std_rad):
+    least = max(SMALLEST_BIAS_RAD, 4.0 * check.bias_std_rad)
+    trim = float(np.mean([flight.trim[0] for flight in problem.flights.flights]))
+    scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
+    # The trim was read with the offset taken out already, if it was worth taking out.
+    with_offset = trim + check.bias_rad
+    if abs(check.bias_rad) < least or (scale and abs(check.bias_rad - scale * with_offset) < least):
         return None
     return Cause(
         "alpha_bias", "alpha_sensor", 0.9, {"bias_rad": Value(check.bias_rad, check.bias_std_rad)},
