@@ -33,9 +33,9 @@ from advisor.mavlink.transports import open_transport
 from advisor.mavlink.watch import LinkWatch
 from advisor.problems import UnusableInputError
 
-BATCH_S = 0.009
+BATCH_S = 0.012
 """Frames gather this long before they are decoded and handed over together."""
-PAUSE_S = 0.002
+PAUSE_S = 0.003
 """Rest between two looks at a busy socket, so that several packets share one look."""
 REOPEN_EVERY_S = 1.0
 QUEUE_LENGTH = 12_000  # batches: more than a minute behind at full load
