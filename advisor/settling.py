@@ -10,6 +10,8 @@ from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.oem.following import Follower
 
+REFRESH_S = 0.2
+"""Vehicle time between two estimates: eyes follow no faster."""
 SPAN_S = 0.5
 """The standard deviations are compared over this much further response."""
 GAIN = 0.01
@@ -25,7 +27,7 @@ class Settled:
 
 
 class Settling:
-    """Estimates again whenever the manoeuvre being flown has grown."""
+    """Estimates again as the manoeuvre being flown grows."""
 
     def __init__(self, aircraft: Aircraft) -> None:
         self._follower = Follower(aircraft)
@@ -43,7 +45,7 @@ class Settling:
             self._number, self._newest_s, self._settled = flying.number, -np.inf, None
             self._stds.clear()
         newest_s = flying.span.end_s
-        if newest_s <= self._newest_s:
+        if newest_s < self._newest_s + REFRESH_S:
             return self._settled
         self._newest_s = newest_s
         estimated = self._follower.refresh(flying)
