@@ -53,11 +53,12 @@ class Stage:
         return "\n".join(rows[y].replace("\xa0", " ").rstrip() for y in sorted(rows))
 
     async def still_page(self) -> str:
-        """The page once nothing on it moves any more."""
-        before, now = "", self.page()
-        while now != before:
+        """The page once nothing on it has moved for a while, even on a busy machine."""
+        now, still = self.page(), 0
+        while still < 6:
             await self.pilot.pause(0.25)
             before, now = now, self.page()
+            still = still + 1 if now == before else 0
         return now
 
     def words(self, selector: str = "Lines") -> str:
