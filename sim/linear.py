@@ -1,6 +1,5 @@
 """The short-period model: as a linearisation of the nonlinear aircraft, and as an aircraft of its own."""
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -81,14 +80,3 @@ def linearise(record: NDArray[np.void], trim: Trim, width: float = 1e-5) -> Shor
         float(by_q[1]),
         float(by_elevator[1]),
     )
-
-
-def short_period_from(values: Mapping[str, float]) -> ShortPeriod:
-    """Build the model from a mapping of all eight names.
-
-    Raises
-    ------
-    KeyError
-        A parameter is missing.
-    """
-    return ShortPeriod(**{name: float(values[name]) for name in ShortPeriod.__dataclass_fields__})

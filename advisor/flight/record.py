@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray, IntArray
+from advisor.flight.messages import FloatArray
 
 # The channels the advisor knows, and their SI units. Signs: alpha, pitch rate and
 # pitch positive nose up; elevator positive trailing edge down; body z points down.
@@ -25,20 +25,6 @@ UNITS = {
     "climb_rate": "m/s",
     "height": "m",
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Samples:
-    """New samples of one channel, in order of arrival."""
-
-    channel: str
-    """A key of ``UNITS``."""
-    t: FloatArray
-    """Shape (n,). Vehicle time, seconds since boot, unwrapped."""
-    y: FloatArray
-    """Shape (n,). Value in the SI unit of ``UNITS``."""
-    order: IntArray
-    """Shape (n,). Arrival index of the message that carried the sample."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,8 @@ from statistics import median
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Rule
+from advisor.aircraft import Rule
 from advisor.decision.acceptance import ALLOWED_INCREASE, Costs, continuous_improvement, separate_computation
-from advisor.decision.pooling import beliefs_at_one_speed, pool
 from advisor.decision.scatter import scatter_percent
 from advisor.decision.verdict import RuleResult
 from advisor.flight.messages import FloatArray
@@ -125,25 +124,3 @@ def _needed(campaign: Sequence[Estimate], accepting: Accepting, reading: Reading
         if len(taken) >= reading.members and reading.criterion(np.array(taken[-reading.members :])) < 25.0:
             return number
     return None
-
-
-def reported_errors(
-    campaigns: Sequence[Sequence[Estimate]], truth: FloatArray
-) -> Mapping[str, Mapping[str, float]]:
-    """Median error in percent after three manoeuvres for each value the paper may have reported."""
-    first = [campaign[:3] for campaign in campaigns]
-    values = {
-        "mean of the window": [np.mean([e.theta for e in c], axis=0) for c in first],
-        "last manoeuvre": [c[-1].theta for c in first],
-        "all together": [pool(beliefs_at_one_speed(c)).theta for c in first],
-    }
-    return {
-        name: dict(
-            zip(
-                PARAMETERS,
-                (100.0 * np.median(np.abs(np.array(v) / truth - 1.0), axis=0)).tolist(),
-                strict=True,
-            )
-        )
-        for name, v in values.items()
-    }
