@@ -15,7 +15,8 @@ from advisor.gap.floor import white_noise
 from advisor.gap.holdout import mean_squares
 from advisor.gap.probes import KNOTS_S, disturbance_course
 from advisor.gap.problem import Problem
-from advisor.oem.turbulence import CHANNELS, Rows, find_turbulence
+from advisor.oem.innovations import CHANNELS
+from advisor.oem.turbulence import Rows, find_turbulence
 
 _LEAST_GAIN = 40.0
 """Log likelihood by which moving air must beat coloured instruments."""

@@ -18,7 +18,8 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.turbulence import Turbulence, packed, system_of, turbulence_in, whiten
+from advisor.oem.innovations import gains_of
+from advisor.oem.turbulence import Turbulence, system_of, turbulence_in
 
 
 def filter_error_estimate(
@@ -58,7 +59,7 @@ def filter_error_estimate(
         information, gradient = np.zeros((8, 8)), np.zeros(8)
         for maneuver, fits in zip(maneuvers, start.fits, strict=False):
             t, channel, columns = _linear(maneuver, fits, theta, start.theta)
-            _, white = whiten(t, channel, columns, np.append(system_of(start), speed), packed(found.air))
+            white = gains_of(t, channel, np.append(system_of(start), speed), found.air).innovations(columns)
             own = white[:, 9:]
             project = np.linalg.qr(own)[0]
             kept = white[:, :9] - project @ (project.T @ white[:, :9])

@@ -1,44 +1,17 @@
 """Moving air in what a fit leaves over: turbulence told from instruments, by a Kalman filter's likelihood.
 
-About a simulated flight the model is linear:
-
-    δα̇ = Z_α (δα + η) + (1 + Z_q) δq,   δq̇ = M_α (δα + η) + M_q δq,   δθ̇ = δq,   η̇ = −η/T_g + white
-
-with η the gust angle w/V, plus coloured noise of each sensor's own. A gust enters the vane, the lift and
-the moment together, an instrument's noise only its own channel: the likelihoods of the two tell them apart
-(Jategaonkar, *Flight Vehicle System Identification*, chapter 5).
+A gust enters the vane, the lift and the moment together, an instrument's noise only its own channel: the
+likelihoods of the two tell them apart (the filter: ``innovations``).
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
 
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate
-
-STATES = 8
-CHANNELS = ("alpha", "q", "a_z", "theta")
-ALPHA, Q, A_Z, THETA = range(4)
-_LARGE = 1e3
-
-
-@dataclass(frozen=True)
-class AirModel:
-    """Noise of the instruments and motion of the air, as standard deviations in SI."""
-
-    white: FloatArray
-    """Shape (4,): white noise of α, q, a_z, θ."""
-    coloured: FloatArray
-    """Shape (4,): noise with memory, by channel."""
-    memory_s: float
-    """Of the coloured noise."""
-    gust: float
-    """Of the gust angle w/V, rad; 0 for still air."""
-    gust_memory_s: float
-    seen_by_alpha: float = 1.0
-    """1 when the α channel reads the air (a vane), 0 when it is made from inertial sensors."""
+from advisor.oem.innovations import ALPHA, CHANNELS, AirModel, gains_of
 
 
 @dataclass(frozen=True)
@@ -52,105 +25,9 @@ class Rows:
     speed: float
 
 
-@njit(cache=True)
-def whiten(
-    t: FloatArray, channel: np.ndarray, columns: FloatArray, system: FloatArray, noise: FloatArray
-) -> tuple[float, FloatArray]:
-    """Run one filter over several columns at once: the gains are the same for all.
-
-    Parameters
-    ----------
-    t, channel
-        Shape (n,), ascending times and channel of every row.
-    columns
-        Shape (n, k): residual first, then sensitivities.
-    system
-        Z_α, Z_q, M_α, M_q, V.
-    noise
-        White (4), coloured (4), memory, gust, gust memory, seen by α.
-
-    Returns
-    -------
-    -2 log likelihood of the first column without its constant, and all columns whitened, shape (n, k).
-    """
-    n, k = columns.shape
-    out = np.empty((n, k))
-    z_a, z_q, m_a, m_q, speed = system[0], system[1], system[2], system[3], system[4]
-    memory, gust, gust_memory, seen = noise[8], noise[9], noise[10], noise[11]
-    A = np.zeros((4, 4))
-    A[0, 0], A[0, 1], A[0, 3] = z_a, 1.0 + z_q, z_a
-    A[1, 0], A[1, 1], A[1, 3] = m_a, m_q, m_a
-    A[2, 1] = 1.0
-    H = np.zeros((4, STATES))
-    H[ALPHA, 0], H[ALPHA, 3], H[ALPHA, 4] = 1.0, seen, 1.0
-    H[Q, 1], H[Q, 5] = 1.0, 1.0
-    H[A_Z, 0], H[A_Z, 1], H[A_Z, 3], H[A_Z, 6] = speed * z_a, speed * z_q, speed * z_a, 1.0
-    H[THETA, 2], H[THETA, 7] = 1.0, 1.0
-    P = np.zeros((STATES, STATES))
-    P[0, 0], P[1, 1], P[2, 2] = _LARGE, _LARGE, _LARGE
-    P[3, 3] = gust * gust
-    for c in range(4):
-        P[4 + c, 4 + c] = noise[4 + c] ** 2
-    X = np.zeros((STATES, k))
-    F = np.eye(STATES)
-    cost = 0.0
-    for i in range(n):
-        dt = t[i] - t[i - 1] if i > 0 else 0.0
-        if dt > 1e-9:
-            A[3, 3] = 0.0
-            step = np.eye(4) + A * dt + (A @ A) * (0.5 * dt * dt)
-            keep_gust, keep = np.exp(-dt / gust_memory), np.exp(-dt / memory)
-            step[3, 3] = keep_gust
-            F[:4, :4] = step
-            for c in range(4):
-                F[4 + c, 4 + c] = keep
-            P = F @ P @ F.T
-            fresh = gust * gust * (1.0 - keep_gust**2)
-            P[3, 3] += fresh
-            # The gust that arises within the step already acts on the states.
-            for a in range(2):
-                P[a, 3] += 0.5 * step[a, 3] * fresh
-                P[3, a] += 0.5 * step[a, 3] * fresh
-            for c in range(4):
-                P[4 + c, 4 + c] += noise[4 + c] ** 2 * (1.0 - keep**2)
-            X = F @ X
-        c = channel[i]
-        h = H[c]
-        Ph = P @ h
-        variance = h @ Ph + noise[c] ** 2
-        root = np.sqrt(variance)
-        gain = Ph / variance
-        for j in range(k):
-            predicted = 0.0
-            for s in range(STATES):
-                predicted += h[s] * X[s, j]
-            innovation = columns[i, j] - predicted
-            out[i, j] = innovation / root
-            for s in range(STATES):
-                X[s, j] += gain[s] * innovation
-        for a in range(STATES):
-            for b in range(STATES):
-                P[a, b] -= gain[a] * Ph[b]
-        if variance < 0.1 * _LARGE:
-            cost += np.log(variance) + out[i, 0] ** 2
-    return cost, out
-
-
-def packed(air: AirModel) -> FloatArray:
-    """Shape (12,), as ``whiten`` takes it."""
-    return np.concatenate(
-        [air.white, air.coloured, [air.memory_s, air.gust, air.gust_memory_s, air.seen_by_alpha]]
-    )
-
-
 def cost_of(rows: Sequence[Rows], system: FloatArray, air: AirModel) -> float:
     """-2 log likelihood of residuals under an air model, summed over manoeuvres."""
-    noise = packed(air)
-    total = 0.0
-    for r in rows:
-        cost, _ = whiten(r.t, r.channel, r.left[:, None], np.append(system, r.speed), noise)
-        total += cost
-    return total
+    return sum(gains_of(r.t, r.channel, np.append(system, r.speed), air).cost(r.left) for r in rows)
 
 
 @dataclass(frozen=True)
@@ -213,7 +90,8 @@ def _descend(
     rows: Sequence[Rows], system: FloatArray, start: AirModel, moving: bool
 ) -> tuple[AirModel, float]:
     """Coordinate search in the logarithms of the noise figures, steps halved from a factor of two."""
-    x = np.log(np.maximum(packed(start), 1e-12))
+    figures = [*start.white, *start.coloured, start.memory_s, start.gust, start.gust_memory_s]
+    x = np.log(np.maximum(figures, 1e-12))
     free = [*range(9), 9, 10] if moving else [*range(9)]
     present = {int(c) for r in rows for c in np.unique(r.channel)}
     free = [i for i in free if i >= 8 or i % 4 in present]
@@ -261,7 +139,7 @@ def turbulence_in(estimated: Estimate, seen_by_alpha: bool = True) -> Turbulence
 
 
 def system_of(estimated: Estimate) -> FloatArray:
-    """Z_α, Z_q, M_α, M_q of an estimate, as ``whiten`` takes them before the speed."""
+    """Z_α, Z_q, M_α, M_q of an estimate, as ``gains_of`` takes them before the speed."""
     return np.array([estimated.value(name) for name in ("Z_alpha", "Z_q", "M_alpha", "M_q")])
 
 
