@@ -10,11 +10,18 @@ from advisor.oem.problem import Signal
 
 ORDERS: Mapping[str, tuple[int, ...]] = {
     "3-2-1-1": (3, 2, 1, 1),
-    "1-1-2-3": (1, 1, 2, 3),
+    "3-1-1-1-1": (3, 1, 1, 1, 1),
+    "1-2-2-1-1": (1, 2, 2, 1, 1),
+    "1-2-2-1": (1, 2, 2, 1),
     "2-1-1": (2, 1, 1),
     "doublet": (1, 1),
 }
-"""Durations of the steps in units of time; the sides alternate."""
+"""Durations of the steps in units of time; the sides alternate.
+
+None is longer than the textbook's 3-2-1-1. A long first step shows the stiffness, the run of equal steps
+behind it stays at the short period; half a step first (1-2-2-...) swings the aircraft evenly about trim,
+which leaves room for more stick within the same angle of attack.
+"""
 
 SHORTEST_UNIT_S = 0.2
 """Shorter steps cannot be flown by hand, and a servo does not follow them."""

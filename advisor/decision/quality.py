@@ -33,7 +33,6 @@ LEAST_R2: Mapping[str, float] = {"q": 0.85, "alpha": 0.70}
 """Least share of the response that the model must explain, white noise left out of account."""
 LARGEST_UNREST_PERCENT = 8.0
 """Largest pitch rate that the elevator does not explain while it is at rest, beside the peak."""
-_RICH = ("3-2-1-1", "reverse 3-2-1-1", "doublet", "multisine")
 
 
 def judge_quality(
@@ -164,7 +163,7 @@ def _poor(maneuver: Maneuver, estimate: Estimate, already: list[Reason]) -> list
     if value <= limit or any(reason.code == "amplitude" for reason in already):
         return []
     cure = f"use about {_times(value / limit)} the stick"
-    if maneuver.span.kind not in _RICH:
+    if maneuver.span.kind == "pulse":
         cure = "fly a 3-2-1-1: this input tells too little of it"
     text = f"{worst} known to {value:.0f} % only (limit {limit:.0f}); {cure}"
     return [Reason("information", text, value, limit)]

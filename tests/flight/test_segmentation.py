@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from advisor.decision.inputs import ORDERS, StepInput
 from advisor.flight.segmentation import Segmenter
 from tests.flight.elevators import PATTERNS, Stream, coloured, length, slewed, stamps, steps
 
@@ -102,6 +103,18 @@ def test_a_record_that_begins_just_before_the_input_will_do():
     (span,) = found(Stream(whole.t[whole.t > 4.8], whole.u[whole.t > 4.8]))
     assert span.kind == "3-2-1-1"
     assert span.record_from_s == pytest.approx(4.82, abs=0.03)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_what_the_advisor_recommends_is_recognised_when_flown(order):
+    for unit_s in (0.2, 0.5, 1.2):
+        for nose_up_first in (True, False):
+            option = StepInput(order, unit_s, 2.0 * DEG, nose_up_first)
+            t = np.arange(0.0, 12.0 + 2.0 * option.duration_s, 0.02)
+            (span,) = found(Stream(t, option.elevator(0.5 * DEG, 6.0, 12.0).at(t)))
+            assert span.start_s == pytest.approx(6.0, abs=0.05)
+            assert span.last_step_s == pytest.approx(6.0 + option.duration_s, abs=0.05)
+            assert len(span.steps) == len(ORDERS[order]) + 1
 
 
 def test_a_pulse_is_found_when_nothing_moves_around_it():
