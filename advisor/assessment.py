@@ -4,6 +4,7 @@ import math
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.decision.history import Flown
+from advisor.decision.judge import COLOURED
 from advisor.decision.quality import judge_quality
 from advisor.flight.kinematics import check_alpha
 from advisor.flight.maneuver import Maneuver
@@ -14,8 +15,6 @@ from advisor.oem.filter_error import filter_error_estimate
 from advisor.oem.solution import Method
 from advisor.oem.turbulence import turbulence_in
 
-COLOURED = 0.5
-"""Lag-1 correlation of a residual below which nothing drives it."""
 UNEXPLAINED = 0.004
 """Share of the pitch rate's variance that moving air leaves unexplained at the least."""
 
@@ -30,6 +29,7 @@ def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newto
         (*_cautions(maneuver, aircraft), *air),
         maneuver=maneuver,
         second_opinion=opinion,
+        air_moved=bool(air),  # it is spoken of only then
     )
 
 

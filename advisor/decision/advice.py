@@ -7,7 +7,7 @@ import numpy as np
 from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.decision.choice import Choice, best_input
 from advisor.decision.conditions import Conditions, find_conditions
-from advisor.decision.history import Flown
+from advisor.decision.history import Flown, usable_estimates
 from advisor.decision.information import Knowledge, knowledge
 from advisor.decision.inputs import StepInput
 from advisor.decision.judge import accepted_estimates
@@ -30,7 +30,7 @@ def next_input(history: Sequence[Flown], aircraft: Aircraft, stopped: bool) -> N
     if conditions is None:
         spoken = _same_but_better(history[-1]) if history else _first_input(aircraft)
         return NextInput(f"next: {spoken}", _without_a_model(history, plan))
-    known = knowledge([e for flown in history if (e := flown.usable)], plan)
+    known = knowledge(usable_estimates(history), plan)
     choice = _choose(conditions, known, plan)
     if choice is None:
         spoken, std = "the same again", conditions.last_std
@@ -44,7 +44,7 @@ def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | Non
     conditions = find_conditions(history, aircraft)
     if conditions is None:
         return None
-    known = knowledge([e for flown in history if (e := flown.usable)], aircraft.campaign)
+    known = knowledge(usable_estimates(history), aircraft.campaign)
     choice = _choose(conditions, known, aircraft.campaign)
     return choice[0] if choice else None
 

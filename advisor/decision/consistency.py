@@ -1,10 +1,12 @@
 """Do the manoeuvres agree as well as their errors say: which one is the odd one, and how much wider to be."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
+import numpy as np
 from scipy.special import chdtri
 
-from advisor.decision.pooling import Belief, inconsistency, pool
+from advisor.decision.pooling import Belief, Shared, disagreement, inconsistency, pool, pool_shared
 
 WIDEN_BELOW = 0.05
 """Chance level below which scatter between manoeuvres widens the intervals."""
@@ -16,8 +18,18 @@ FEWEST = 4
 """With fewer manoeuvres nobody knows which one is odd."""
 
 
-def odd_ones(beliefs: Sequence[Belief]) -> tuple[int, ...]:
-    """Indices of manoeuvres that contradict all the others, which agree among themselves.
+@dataclass(frozen=True, slots=True)
+class Odd:
+    """How far a manoeuvre is from what all the others say."""
+
+    sigma: float
+    """Mahalanobis distance of its derivatives."""
+    limit: float
+    """What chance exceeds once in a thousand."""
+
+
+def odd_ones(beliefs: Sequence[Belief]) -> Mapping[int, Odd]:
+    """Manoeuvres that contradict all the others, which agree among themselves, by their index.
 
     A search may end in a wrong minimum, or a gust may look like a response: such an estimate has a
     small stated error and would spoil every mean. At most a third of the manoeuvres is odd; more is
@@ -36,7 +48,15 @@ def odd_ones(beliefs: Sequence[Belief]) -> tuple[int, ...]:
             break
         inside.remove(candidate)
         odd.append(candidate)
-    return tuple(sorted(odd))
+    if not odd:
+        return {}
+    others = pool_shared([beliefs[i] for i in inside])
+    return {i: _distance(beliefs[i], others) for i in sorted(odd)}
+
+
+def _distance(odd: Belief, others: Shared) -> Odd:
+    distance, dof = disagreement(others, odd.shared)
+    return Odd(float(np.sqrt(distance)), float(np.sqrt(chdtri(max(dof, 1), ODD_BELOW))))
 
 
 def excess(beliefs: Sequence[Belief]) -> float:
@@ -58,7 +78,7 @@ def widened(belief: Belief, factor: float) -> Belief:
 
 def consensus(beliefs: Sequence[Belief]) -> tuple[Belief, float, tuple[int, ...]]:
     """Pooled belief without the odd manoeuvres, the widening in it, and who was left out."""
-    odd = odd_ones(beliefs)
+    odd = tuple(odd_ones(beliefs))
     agreeing = [belief for i, belief in enumerate(beliefs) if i not in odd]
     factor = excess(agreeing)
     return widened(pool(agreeing), factor), factor, odd

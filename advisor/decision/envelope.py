@@ -7,6 +7,7 @@ assumptions, with the number beside the limit.
 import numpy as np
 
 from advisor.aircraft import Aircraft
+from advisor.beside import beside
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
@@ -68,7 +69,8 @@ def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:
     shortest, least = float(np.min(np.diff(onsets))), _SHORTEST_STEP * period_s
     if shortest >= least:
         return []
-    text = f"steps too short, {shortest:.2f} s (at least {least:.2f}); hold each about {0.4 * period_s:.1f} s"
+    shown, limit = beside(shortest, least, 2)
+    text = f"steps too short, {shown} s (at least {limit}); hold each about {0.4 * period_s:.1f} s"
     return [Reason("steps", text, shortest, least)]
 
 
@@ -82,17 +84,14 @@ def flown(maneuver: Maneuver, name: str) -> FloatArray:
 
 def _rate(channels: list[Channel], period_s: float) -> list[Reason]:
     needed_hz = SAMPLES_PER_PERIOD / period_s
-    slow = [c for c in channels if not c.rate_hz >= needed_hz]
-    return [
-        Reason(
-            "rate",
-            f"{c.name} arrived at {c.rate_hz:.1f} Hz (this aircraft needs {needed_hz:.0f}); "
-            f"ask for more of {c.source.partition('.')[0]}",
-            c.rate_hz,
-            needed_hz,
-        )
-        for c in slow
-    ]
+    reasons = []
+    for c in channels:
+        if not c.rate_hz >= needed_hz:
+            rate, needed = beside(c.rate_hz, needed_hz, 1)
+            message = c.source.partition(".")[0]
+            text = f"{c.name} arrived at {rate} Hz (this aircraft needs {needed}); ask for more of {message}"
+            reasons.append(Reason("rate", text, c.rate_hz, needed_hz))
+    return reasons
 
 
 def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[Reason]:
@@ -103,7 +102,8 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
         edges = (maneuver.span.record_from_s, *c.t.tolist(), maneuver.span.end_s)
         gap = float(np.max(np.diff(edges)))
         if gap > limit:
-            text = f"{gap:.1f} s of {c.name} are missing (limit {limit:.2f}); check the link, fly it again"
+            missing, most_missing = beside(gap, limit, 1)
+            text = f"{missing} s of {c.name} are missing (limit {most_missing}); check the link, fly it again"
             reasons.append(Reason("gap", text, gap, limit))
     return sorted(reasons, key=lambda reason: -reason.value)[:1]
 
@@ -112,7 +112,8 @@ def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     free, least = maneuver.span.end_s - maneuver.span.last_step_s, _SHORTEST_FREE * period_s
     if free >= least:
         return []
-    text = f"free response too short, {free:.1f} s (at least {least:.1f}); hands still after the last step"
+    shown, limit = beside(free, least, 1)
+    text = f"free response too short, {shown} s (at least {limit}); hands still after the last step"
     return [Reason("free_response", text, free, least)]
 
 
@@ -120,9 +121,8 @@ def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:
     bank = float(np.degrees(np.max(np.abs(flown(maneuver, "bank")), initial=0.0)))
     if bank <= limit:
         return []
-    return [
-        Reason("bank", f"bank reached {bank:.0f} deg (limit {limit:.0f}); fly it wings level", bank, limit)
-    ]
+    shown, most = beside(bank, limit)
+    return [Reason("bank", f"bank reached {shown} deg (limit {most}); fly it wings level", bank, limit)]
 
 
 def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
@@ -137,7 +137,8 @@ def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     change = 100.0 * float(np.sort(np.abs(flown(maneuver, "airspeed") / trim - 1.0))[-2:][0])
     if change <= limit:
         return []
-    text = f"air speed changed by {change:.0f} % (limit {limit:.0f}); smaller steps, from steady speed"
+    shown, most = beside(change, limit)
+    text = f"air speed changed by {shown} % (limit {most}); smaller steps, from steady speed"
     return [Reason("airspeed", text, change, limit)]
 
 
@@ -145,7 +146,8 @@ def _alpha(maneuver: Maneuver, limit: float | None) -> list[Reason]:
     alpha = float(np.degrees(np.max(np.abs(flown(maneuver, "alpha")), initial=0.0)))
     if limit is None or alpha <= limit:
         return []
-    text = f"angle of attack reached {alpha:.1f} deg (limit {limit:.1f}); use less stick"
+    shown, most = beside(alpha, limit, 1)
+    text = f"angle of attack reached {shown} deg (limit {most}); use less stick"
     return [Reason("alpha", text, alpha, limit)]
 
 
@@ -157,7 +159,8 @@ def _saturation(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     share = 100.0 * float(np.mean(stuck)) if len(stuck) else 0.0
     if np.count_nonzero(stuck) < 2:
         return []
-    text = f"elevator at the end of its travel for {share:.0f} % of the time (limit 0); use less stick"
+    shown, most = beside(share, 0.0)
+    text = f"elevator at the end of its travel for {shown} % of the time (limit {most}); use less stick"
     return [Reason("saturation", text, share, 0.0)]
 
 
@@ -166,9 +169,8 @@ def _other_controls(maneuver: Maneuver) -> list[Reason]:
     for name in ("aileron", "rudder"):
         moved = float(np.degrees(np.ptp(flown(maneuver, name)))) / 2.0 if len(flown(maneuver, name)) else 0.0
         if moved > _OTHER_CONTROLS_DEG:
-            text = (
-                f"{name} moved by {moved:.0f} deg (limit {_OTHER_CONTROLS_DEG:.0f}); use the elevator alone"
-            )
+            shown, most = beside(moved, _OTHER_CONTROLS_DEG)
+            text = f"{name} moved by {shown} deg (limit {most}); use the elevator alone"
             reasons.append(Reason(name, text, moved, _OTHER_CONTROLS_DEG))
     return reasons
 
@@ -178,5 +180,6 @@ def _throttle(maneuver: Maneuver) -> list[Reason]:
     change = 100.0 * float(np.ptp(throttle)) if len(throttle) else 0.0
     if change <= _THROTTLE_PERCENT:
         return []
-    text = f"throttle moved by {change:.0f} % (limit {_THROTTLE_PERCENT:.0f}); leave it where it is"
+    shown, most = beside(change, _THROTTLE_PERCENT)
+    text = f"throttle moved by {shown} % (limit {most}); leave it where it is"
     return [Reason("throttle", text, change, _THROTTLE_PERCENT)]

@@ -4,6 +4,7 @@ Every rule is a function of the whole history. Nothing is carried from one call 
 so that excluding a manoeuvre by hand recomputes every decision that followed it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from advisor.decision.verdict import Reason
@@ -26,6 +27,8 @@ class Flown:
     """What was flown, for advice on what to fly next."""
     second_opinion: Estimate | None = None
     """Filter error's estimate, where the air moved."""
+    air_moved: bool = False
+    """Whether its residuals bear the mark of moving air."""
 
     @property
     def usable(self) -> Estimate | None:
@@ -33,3 +36,8 @@ class Flown:
         if isinstance(self.estimate, Estimate) and not self.reasons and self.excluded_because is None:
             return self.estimate
         return None
+
+
+def usable_estimates(history: Sequence[Flown]) -> list[Estimate]:
+    """Estimates of all usable manoeuvres, in the order flown."""
+    return [estimate for flown in history if (estimate := flown.usable)]

@@ -3,20 +3,27 @@
 from collections.abc import Mapping, Sequence
 
 from advisor.aircraft import CampaignPlan, Rule
+from advisor.beside import beside
 from advisor.decision.acceptance import MANEUVER_RULES
+from advisor.decision.consistency import Odd, odd_ones
 from advisor.decision.history import Flown
+from advisor.decision.pooling import beliefs_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
+
+COLOURED = 0.5
+"""Lag-1 correlation of a residual below which nothing drives it."""
 
 
 def judge_campaign(history: Sequence[Flown], plan: CampaignPlan) -> tuple[ManeuverVerdict, ...]:
     """Verdicts on all manoeuvres flown so far, in the same order, each with what every rule says.
 
-    A verdict depends only on the manoeuvres before it, unless one of them is excluded by hand.
+    A verdict depends only on the manoeuvres before it, unless one of them is excluded by hand; under the
+    rule ``information`` later ones may show that it contradicts all the others.
     """
-    by_rule = rule_results(history)
+    by_rule, odd = rule_results(history), contradicting(history)
     return tuple(
-        _verdict(flown, plan.rule, {name: results[i] for name, results in by_rule.items()})
+        _verdict(flown, plan.rule, {name: results[i] for name, results in by_rule.items()}, odd.get(i))
         for i, flown in enumerate(history)
     )
 
@@ -29,7 +36,18 @@ def judge(flown: Flown, history: Sequence[Flown], plan: CampaignPlan) -> Maneuve
 def rule_results(history: Sequence[Flown]) -> Mapping[Rule, tuple[RuleResult, ...]]:
     """What every rule says of every manoeuvre."""
     costs = [estimate.cost if (estimate := flown.usable) else None for flown in history]
-    return {name: rule(costs) for name, rule in MANEUVER_RULES.items()}
+    by_rule = {name: rule(costs) for name, rule in MANEUVER_RULES.items()}
+    odd = contradicting(history)
+    weighed = enumerate(by_rule["information"])
+    by_rule["information"] = tuple(RuleResult(r.accepted and i not in odd, r.limit) for i, r in weighed)
+    return by_rule
+
+
+def contradicting(history: Sequence[Flown]) -> Mapping[int, Odd]:
+    """Usable manoeuvres that contradict all the others, by their index: ``information`` leaves them out."""
+    usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
+    odd = odd_ones(beliefs_at_one_speed([estimate for _, estimate in usable]))
+    return {usable[k][0]: found for k, found in odd.items()}
 
 
 def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
@@ -41,8 +59,8 @@ def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
     ]
 
 
-def _verdict(flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult]) -> ManeuverVerdict:
-    reasons = _reasons(flown, rule, rules[rule])
+def _verdict(flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], odd: Odd | None) -> ManeuverVerdict:
+    reasons = _reasons(flown, rule, rules[rule], odd)
     notes = flown.estimate.notes if isinstance(flown.estimate, Estimate) else ()
     cautions = tuple(dict.fromkeys((*flown.cautions, *notes)))
     if flown.excluded_because is not None:
@@ -56,16 +74,15 @@ def _verdict(flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult]) -> Mane
     )
 
 
-def _reasons(flown: Flown, rule: Rule, result: RuleResult) -> tuple[Reason, ...]:
+def _reasons(flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None) -> tuple[Reason, ...]:
     if flown.excluded_because is not None:
         text = f"excluded by hand: {flown.excluded_because}"
         return (Reason("excluded", text, 1.0, 0.0), *flown.reasons)
     if isinstance(flown.estimate, NoEstimate):
         return (*flown.reasons, Reason(flown.estimate.code, flown.estimate.text, 0.0, 1.0))
-    if flown.reasons or result.accepted or result.limit is None:
+    if flown.reasons or result.accepted:
         return flown.reasons
-    cost, limit = flown.estimate.cost, result.limit
-    return (Reason("cost", _TOO_COSTLY[rule].format(cost=cost, limit=limit), cost, limit),)
+    return (_contradicts(odd),) if odd else (_too_costly(flown, flown.estimate, rule, result.limit or 0.0),)
 
 
 def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
@@ -76,13 +93,28 @@ def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
     return f"cost {flown.estimate.cost:.2g}, limit {result.limit:.2g}"
 
 
-_TOO_COSTLY: Mapping[Rule, str] = {
-    "continuous": (
-        "the model explains it less well than the last accepted one, cost {cost:.2g} (limit {limit:.2g}); "
-        "fly it again in calmer air"
-    ),
-    "separate": (
-        "the model explains it no better than half of the earlier ones, cost {cost:.2g} "
-        "(limit {limit:.2g}); fly it again"
-    ),
-}
+def _contradicts(odd: Odd) -> Reason:
+    distance, limit = beside(odd.sigma, odd.limit, 1)
+    text = f"contradicts all the others, {distance} sigma from them (limit {limit}); fly it again"
+    return Reason("odd", text, odd.sigma, odd.limit)
+
+
+def _too_costly(flown: Flown, estimate: Estimate, rule: Rule, limit: float) -> Reason:
+    than = "no better than half of the earlier ones" if rule == "separate" else _LESS_WELL
+    cost, most = beside(estimate.cost, limit, 2, "g")
+    text = f"the model explains it {than}, cost {cost} (limit {most}); {_another_try(flown, estimate, rule)}"
+    return Reason("cost", text, estimate.cost, limit)
+
+
+_LESS_WELL = "less well than the last accepted one"
+
+
+def _another_try(flown: Flown, estimate: Estimate, rule: Rule) -> str:
+    """What to do better: calmer air only where the air moved."""
+    if flown.air_moved:
+        return "fly it again in calmer air"
+    if rule == "separate":
+        return "fly it again"
+    if any(fits[name].lag1 > COLOURED for fits in estimate.fits for name in ("alpha", "q")):
+        return "fly it again with smaller steps, from steady flight"
+    return "fly it again; if the noise stays as large, check the instruments"

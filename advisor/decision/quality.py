@@ -15,6 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.beside import beside
 from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuver import Maneuver
@@ -92,9 +93,8 @@ def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reas
     what, unit = ("pitch rate", "deg/s") if name == "q" else ("angle of attack", "deg")
     peak = math.degrees(_peak(maneuver, name))
     limit = peak * factor if peak > 0.0 else LEAST_PITCH_RATE_DEG_S
-    text = (
-        f"too gentle, {what} {peak:.2g} {unit} (at least {limit:.2g}); use about {_times(factor)} the stick"
-    )
+    shown, least_peak = beside(peak, limit, 2, "g")
+    text = f"too gentle, {what} {shown} {unit} (at least {least_peak}); use about {_times(factor)} the stick"
     return [Reason("amplitude", text, peak, limit)]
 
 
@@ -113,9 +113,10 @@ def _rough_air(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reaso
     unrest = 100.0 * _beyond_noise(unexplained, q.y) / peak
     if unrest <= LARGEST_UNREST_PERCENT:
         return []
+    shown, most = beside(unrest, LARGEST_UNREST_PERCENT)
     text = (
-        f"rough air, {unrest:.0f} % of the pitch rate comes with the elevator at rest "
-        f"(limit {LARGEST_UNREST_PERCENT:.0f}); fly it in calmer air"
+        f"rough air, {shown} % of the pitch rate comes with the elevator at rest (limit {most}); "
+        "fly it in calmer air"
     )
     return [Reason("turbulence", text, unrest, LARGEST_UNREST_PERCENT)]
 
@@ -141,9 +142,10 @@ def _badly_explained(fits: Mapping[str, ChannelFit]) -> list[Reason]:
         explained = 1.0 - max(0.0, fit.rms**2 - noise) / spread if spread > 0.0 else 1.0
         if explained < least:
             what = "pitch rate" if name == "q" else "angle of attack"
+            shown, limit = beside(100.0 * max(0.0, explained), 100.0 * least)
             text = (
-                f"the model explains {100 * max(0.0, explained):.0f} % of {what} "
-                f"(at least {100 * least:.0f}); smaller steps, steady flight before, calm air"
+                f"the model explains {shown} % of {what} (at least {limit}); "
+                "smaller steps, steady flight before, calm air"
             )
             reasons.append(Reason("fit", text, explained, least))
     return reasons
@@ -165,7 +167,8 @@ def _poor(maneuver: Maneuver, estimate: Estimate, already: list[Reason]) -> list
     cure = f"use about {_times(value / limit)} the stick"
     if maneuver.span.kind == "pulse":
         cure = "fly a 3-2-1-1: this input tells too little of it"
-    text = f"{worst} known to {value:.0f} % only (limit {limit:.0f}); {cure}"
+    shown, most = beside(value, limit)
+    text = f"{worst} known to {shown} % only (limit {most}); {cure}"
     return [Reason("information", text, value, limit)]
 
 

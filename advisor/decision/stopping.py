@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft import Aircraft, CampaignPlan, Rule
+from advisor.beside import beside
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
-from advisor.decision.history import Flown
+from advisor.decision.history import Flown, usable_estimates
 from advisor.decision.information import Knowledge, knowledge
 from advisor.decision.judge import accepted_estimates, rule_results
 from advisor.decision.scatter import scatter_percent, scattered_most, window
@@ -56,7 +57,8 @@ def progress(history: Sequence[Flown], rule: Rule, plan: CampaignPlan) -> RulePr
     taken: list[Estimate] = []
     value, sufficient = None, False
     for number, (flown, ok) in enumerate(zip(history, accepted, strict=True), start=1):
-        if ok and (estimate := flown.usable):
+        # The rule information weighs all and finds for itself which contradict the others, at every moment.
+        if (ok or rule == "information") and (estimate := flown.usable):
             taken.append(estimate)
             if rule == "information":
                 known = knowledge(taken, plan)
@@ -88,24 +90,23 @@ def _holds_now(history: Sequence[Flown], plan: CampaignPlan, criterion: float | 
     if criterion is None:
         return False
     if plan.rule == "information":
-        return knowledge(accepted_estimates(history, plan.rule), plan).sufficient
+        return knowledge(usable_estimates(history), plan).sufficient
     return criterion < plan.limit_percent
 
 
 def _sentence(history: Sequence[Flown], plan: CampaignPlan, criterion: float | None, stop: bool) -> str:
-    accepted = accepted_estimates(history, plan.rule)
     if plan.rule == "information":
-        return _information_sentence(knowledge(accepted, plan) if accepted else None, stop)
+        usable = usable_estimates(history)
+        return _information_sentence(knowledge(usable, plan) if usable else None, stop)
+    accepted = accepted_estimates(history, plan.rule)
     if criterion is None:
         return f"CONTINUE: {len(accepted)} of {plan.window} accepted manoeuvres."
     verb = "STOP TESTING" if stop else "CONTINUE"
     held = "" if stop else f"; {_scattered_most(accepted, plan)} scatters most"
     # Of a parameter near zero the relative scatter has no scale; its digits would only pretend one.
-    agreement = f"agree within {criterion:.0f} %" if criterion < _NO_SCALE_PERCENT else "do not agree"
-    return (
-        f"{verb}: the last {plan.window} accepted manoeuvres {agreement} "
-        f"(limit {plan.limit_percent:.0f} %){held}."
-    )
+    scatter, limit = beside(criterion, plan.limit_percent)
+    agreement = f"agree within {scatter} %" if criterion < _NO_SCALE_PERCENT else "do not agree"
+    return f"{verb}: the last {plan.window} accepted manoeuvres {agreement} (limit {limit} %){held}."
 
 
 def _information_sentence(known: Knowledge | None, stop: bool) -> str:
@@ -120,9 +121,8 @@ def _information_sentence(known: Knowledge | None, stop: bool) -> str:
         reason = known.not_identifiable.get(known.holding_back, "cannot be estimated from these manoeuvres")
         return f"CONTINUE: {known.holding_back} {reason.removesuffix('.')}."
     if known.percent >= INFORMATION_LIMIT_PERCENT:
-        return (
-            f"CONTINUE: the error of {known.holding_back} is {known.percent / 100.0:.1f} times its tolerance."
-        )
+        times, _ = beside(known.percent / INFORMATION_LIMIT_PERCENT, 1.0, 1)
+        return f"CONTINUE: the error of {known.holding_back} is {times} times its tolerance."
     if np.isnan(known.surprise):
         return "CONTINUE: narrow enough; one more manoeuvre to check the prediction."
     return (

@@ -71,7 +71,11 @@ def _locked_out(history: Sequence[Flown], plan: CampaignPlan) -> list[str]:
             refused = 0 if result.accepted else refused + 1
     if refused < plan.window:
         return []
+    moved = any(flown.air_moved for flown in history[-refused:])
+    why = (
+        "the air has become rougher" if moved else "the aircraft, its instruments or the flying have changed"
+    )
     return [
-        f"{refused} usable manoeuvres in a row were refused for their cost alone: the air has become rougher "
-        "or the aircraft has changed. Exclude the manoeuvre that set the limit, or use the rule information."
+        f"{refused} usable manoeuvres in a row were refused for their cost alone: {why}. "
+        "Exclude the manoeuvre that set the limit, or use the rule information."
     ]

@@ -11,6 +11,7 @@ manoeuvre is judged against its own natural frequency (`advisor.decision.quality
 from collections.abc import Collection, Mapping
 from math import isfinite
 
+from advisor.beside import beside
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
@@ -128,7 +129,7 @@ def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[P
         Problem(
             "rate",
             f"{message} arrives {_at(rate_hz)}, too slow to identify a short period "
-            f"(at least {SLOWEST_HZ:.0f} Hz, better {_ASK_HZ} Hz).",
+            f"(at least {SLOWEST_HZ:g} Hz, better {_ASK_HZ} Hz).",
             f"Ask for {_ASK_HZ} Hz: {_ask(message, vehicle)}.",
         )
         for message, rate_hz in slow.items()
@@ -136,7 +137,7 @@ def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[P
 
 
 def _at(rate_hz: float) -> str:
-    return f"at {rate_hz:.1f} Hz" if isfinite(rate_hz) else "hardly at all"
+    return f"at {beside(rate_hz, SLOWEST_HZ, 1)[0]} Hz" if isfinite(rate_hz) else "hardly at all"
 
 
 def _message(status: ChannelStatus) -> str:

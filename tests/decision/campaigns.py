@@ -1,6 +1,7 @@
 """Campaigns written down by hand: estimates with chosen values, costs and errors."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -47,6 +48,12 @@ def estimate(
 def flown(costs: Sequence[float]) -> list[Flown]:
     """A campaign of usable manoeuvres with these costs."""
     return [Flown(estimate(cost=cost)) for cost in costs]
+
+
+def with_residual(estimate: Estimate, residual: FloatArray) -> Estimate:
+    """The same estimate with other residuals, in both channels alike."""
+    fits = {name: replace(fit, measured=residual) for name, fit in estimate.fits[0].items()}
+    return replace(estimate, fits=(fits,))
 
 
 def with_change(parameter: str, factor: float) -> FloatArray:

@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from advisor.aircraft import CampaignPlan
 from advisor.decision.history import Flown
 from advisor.decision.judge import accepted_estimates, judge, judge_campaign
 from advisor.decision.verdict import Reason
-from advisor.oem.estimate import NoEstimate
-from tests.decision.campaigns import estimate, flown
+from advisor.oem.estimate import Estimate, NoEstimate
+from tests.decision.campaigns import SAMPLES, drawn, estimate, flown, with_change, with_residual
 
 QUIET = Reason("amplitude", "too gentle, pitch rate 3 deg/s; use about 1.5 times the stick", 3.0, 5.0)
 PLAN = CampaignPlan()
@@ -50,7 +52,36 @@ def test_a_cost_above_the_limit_is_a_reason_with_both_numbers() -> None:
     assert (reason.code, reason.value, reason.limit) == ("cost", 3e-9, 2e-9)
     assert verdict.sentence.startswith("REPEAT: ")
     assert "3e-09" in verdict.sentence
-    assert "calmer air" in verdict.sentence
+
+
+def test_calmer_air_is_asked_for_only_where_the_air_moved() -> None:
+    first, rough = flown([1e-9, 3e-9])
+    assert isinstance(rough.estimate, Estimate)
+    noise = np.random.default_rng(1).standard_normal(SAMPLES)
+    white = replace(rough, estimate=with_residual(rough.estimate, noise))
+    coloured = replace(rough, estimate=with_residual(rough.estimate, np.cumsum(noise)))
+    said = [
+        judge_campaign([first, m], PLAN)[-1].sentence
+        for m in (replace(white, air_moved=True), replace(coloured, air_moved=True), coloured, white)
+    ]
+    assert ["calmer air" in sentence for sentence in said] == [True, True, False, False]
+    assert "smaller steps" in said[2]
+    assert "check the instruments" in said[3]
+
+
+def test_a_manoeuvre_that_contradicts_all_the_others_is_refused_by_the_rule_information_alone() -> None:
+    rng = np.random.default_rng(2)
+    history = [Flown(drawn(rng)) for _ in range(5)]
+    history[1] = Flown(drawn(rng, with_change("M_alpha", 1.5)))
+    verdicts = judge_campaign(history, replace(PLAN, rule="information"))
+    assert [v.accepted for v in verdicts] == [True, False, True, True, True]
+    (reason,) = verdicts[1].reasons
+    assert reason.code == "odd"
+    assert reason.value > reason.limit
+    assert verdicts[1].sentence.startswith("REPEAT: contradicts all the others, ")
+    assert judge_campaign(history, PLAN)[1].rules["continuous"].accepted
+    # As long as it was the newest of two nobody could know which of them was odd.
+    assert judge_campaign(history[:2], replace(PLAN, rule="information"))[1].accepted
 
 
 def test_a_manoeuvre_without_an_estimate_is_refused_with_its_reason() -> None:

@@ -3,6 +3,7 @@
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
+from advisor.beside import beside
 from advisor.campaign_state import JudgedManeuver
 from advisor.oem.estimate import Estimate
 from advisor.tui.panes.last_verdict import symbol_and_word
@@ -41,7 +42,9 @@ def _lines(judged: JudgedManeuver) -> list[str]:
     lines = [f"{symbol} {word}  manoeuvre {judged.maneuver.number}: {without_word(verdict.sentence)}"]
     if judged.excluded_because:
         lines.append(f"excluded by hand: {judged.excluded_because}")
-    lines += [f"  {r.code}: {r.value:.3g} (limit {r.limit:.3g})  {r.text}" for r in verdict.reasons]
+    for r in verdict.reasons:
+        value, limit = beside(r.value, r.limit, 3, "g")
+        lines.append(f"  {r.code}: {value} (limit {limit})  {r.text}")
     if isinstance(estimate, Estimate):
         for name, fit in estimate.fits[0].items():
             q = channel(name)
