@@ -12,6 +12,7 @@ from sim.effects.fitting import KINDS, flight_of, without_effects
 from sim.flight import Sample, noise_sigma
 from sim.linear import ShortPeriod
 from sim.scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
+from sim.trim import TrimError
 
 Group = Literal["clean", "hard", "jsbsim", "none", "parameters", "outside", "two"]
 GROUPS: tuple[Group, ...] = ("clean", "hard", "jsbsim", "none", "parameters", "outside", "two")
@@ -176,7 +177,11 @@ def _sized(
 ) -> Case | None:
     """Draw sizes until the effect shows; None: this flight cannot show it."""
     quiet = replace(scenario, noise=Noise(), air=Air(), clock=replace(scenario.clock, jitter_s=0.0))
-    flight = flight_of(without_effects(quiet))
+    try:
+        flight = flight_of(without_effects(quiet))
+    except TrimError:
+        # An airframe and a speed that do not go together are drawn again.
+        return None
     truth = flight.engine.truth
     belief = _believed(truth, generator) if group == "parameters" else truth
     if not names:
