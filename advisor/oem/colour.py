@@ -6,7 +6,7 @@ Real residuals are a mixture of the two: sensor noise that forgets at once and s
 the model that last. Sample autocorrelations of residuals come out too small, because the fitted
 parameters have eaten part of the slow noise; restricted maximum likelihood (Patterson &
 Thompson, *Biometrika* 58, 1971) looks only at what no parameter can explain and is free of that
-bias. Whitening is a scalar Kalman filter.
+bias.
 """
 
 import math
@@ -19,6 +19,7 @@ from scipy.optimize import minimize
 from scipy.signal import lfilter
 
 from advisor.flight.messages import FloatArray
+from advisor.oem.whitening import schedule, whiten
 
 MEMORIES = (-0.4, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.993)
 """First guesses of φ."""
@@ -165,20 +166,8 @@ def _restricted(block: FloatArray, memory: float, share: float) -> tuple[float, 
     ``block`` (n, p + 1): regressors and residual; Γ that of unit-variance x.
     """
     n, width = block.shape
-    white = np.empty((width, n))
-    state = np.zeros(width)
-    predicted = 1.0
-    determinants = 0.0
-    for k in range(n):
-        total = predicted + share
-        root = 1.0 / np.sqrt(total)
-        gain = memory * predicted / total
-        determinants += np.log(total)
-        for j in range(width):
-            innovation = block[k, j] - state[j]
-            white[j, k] = innovation * root
-            state[j] = memory * state[j] + gain * innovation
-        predicted = memory * memory * predicted * (1.0 - predicted / total) + 1.0 - memory * memory
+    scale, gain, determinants = schedule(n, memory, share)
+    white = whiten(block, memory, scale, gain)
     gram = np.empty((width, width))
     for i in range(width):
         for j in range(i + 1):

@@ -135,59 +135,58 @@ def cramer_rao(assembly: Assembly, rows: FloatArray, noise: FloatArray) -> Float
     return (rows * noise[assembly.channel, None] ** 2).T @ rows
 
 
-def coloured(
-    assembly: Assembly,
-    rows: FloatArray,
-    residual: FloatArray,
-    g: FloatArray,
-    known: Coloured | None = None,
-) -> tuple[FloatArray, Coloured]:
-    """AᵀΓA, shape (8 + k, 8 + k), with the colour of each output pooled over the manoeuvres.
+def colours_of(assembly: Assembly, residual: FloatArray, g: FloatArray) -> Mapping[str, Colour]:
+    """Output name to the colour of its noise, pooled over the manoeuvres."""
+    return {
+        output: find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
+        for output, stretches in _stretches(assembly).items()
+    }
 
-    The colour is itself an estimate. Its uncertainty is carried to each variance (Satterthwaite's
-    degrees of freedom), and the variance enlarged by the square of Student's over Gauss's 97.5 %
-    point, so that ±1.96 standard deviations hold the truth in 95 % of cases.
 
-    Parameters
-    ----------
-    known : what was found a moment ago, to be used again.
+def coloured(assembly: Assembly, rows: FloatArray, noise: Coloured) -> FloatArray:
+    """AᵀΓA, shape (8 + k, 8 + k), each standard deviation widened."""
+    total = np.zeros((rows.shape[1], rows.shape[1]))
+    for output, stretches in _stretches(assembly).items():
+        for s in stretches:
+            total += product(rows[s], noise.colours[output])
+    widened: FloatArray = total * np.outer(noise.widening, noise.widening)
+    return widened
+
+
+def widening(assembly: Assembly, rows: FloatArray, colours: Mapping[str, Colour]) -> FloatArray:
+    """(8 + k,) factor on each standard deviation for not knowing the colours exactly.
+
+    The colours are themselves estimates. Their uncertainty is carried to each variance (Satterthwaite's
+    degrees of freedom), and the deviation enlarged by Student's over Gauss's 97.5 % point, so that
+    ±1.96 standard deviations hold the truth in 95 % of cases.
     """
-    width = rows.shape[1]
-    total = np.zeros((width, width))
-    spread = np.zeros(width)
-    colours: dict[str, Colour] = {}
-    for output in OUTPUTS:
-        stretches = [named[output] for named in assembly.rows if output in named]
-        if not stretches:
-            continue
+    variance, spread = np.zeros(rows.shape[1]), np.zeros(rows.shape[1])
+    for output, stretches in _stretches(assembly).items():
+        colour = colours[output]
 
         def part(colour: Colour, stretches: list[slice] = stretches) -> FloatArray:
-            summed: FloatArray = np.sum([product(rows[s], colour) for s in stretches], axis=0)
+            summed: FloatArray = np.sum([np.diag(product(rows[s], colour)) for s in stretches], axis=0)
             return summed
 
-        if known is not None:
-            total += part(known.colours[output])
-            continue
-        colour = find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
-        colours[output] = colour
         own = part(colour)
-        total += own
-        slopes = np.zeros((len(colour.uncertainty), width))
-        slopes[0] = np.diag(own)
+        slopes = [own]
         for i in range(1, len(colour.uncertainty)):
             step = np.zeros(3)
             step[i] = DIFFERENCE
-            slopes[i] = np.diag(part(moved(colour, step)) - part(moved(colour, -step))) / (2.0 * DIFFERENCE)
+            slopes.append((part(moved(colour, step)) - part(moved(colour, -step))) / (2.0 * DIFFERENCE))
+        variance += own
         spread += np.einsum("ij,ik,kj->j", slopes, colour.uncertainty, slopes)
-    found = known or Coloured(colours, _widening(np.diag(total), spread))
-    widened: FloatArray = total * np.outer(found.widening, found.widening)
-    return widened, found
-
-
-def _widening(variance: FloatArray, spread: FloatArray) -> FloatArray:
-    """Student's over Gauss's 97.5 % point, for variances whose own variance is ``spread``."""
     freedom = np.full(len(variance), 1e9)
     uncertain = spread > 0.0
     freedom[uncertain] = np.maximum(2.0 * variance[uncertain] ** 2 / spread[uncertain], LEAST_FREEDOM)
-    widening: FloatArray = np.asarray(stdtrit(freedom, 0.975) / GAUSS_975, np.float64)
-    return widening
+    factor: FloatArray = np.asarray(stdtrit(freedom, 0.975) / GAUSS_975, np.float64)
+    return factor
+
+
+def _stretches(assembly: Assembly) -> dict[str, list[slice]]:
+    """Output name to its rows in each manoeuvre that has it."""
+    return {
+        output: [named[output] for named in assembly.rows if output in named]
+        for output in OUTPUTS
+        if any(output in named for named in assembly.rows)
+    }

@@ -11,14 +11,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import chi2
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
-from advisor.oem.covariance import influence
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.problem import Problem, Record, Signal, assemble
-from advisor.oem.solution import Solution, evaluate, search
+from advisor.oem.solution import Solution, evaluate, response, search
+from advisor.oem.weighing import Weighing
 
 LARGE = 0.25
 """A step is large that covers this share of the command's range within one interval ..."""
@@ -28,11 +29,12 @@ WIDTH_S = 1e-4
 """Duration of a sharpened step."""
 DIFFERENCE_S = 2e-4
 ROUNDS = 2
-GAIN_PER_EDGE = 3.0
-"""Twice the log-likelihood that each edge must bring ..."""
+CHANCE = 1e-3
+"""Steps are left as ramps when times of no meaning would gain as much with this chance ..."""
 GAIN_UPRIGHT = 3.0
-"""... or all of them together, standing upright in the middle of their intervals, where no time is fitted:
-a ramp and a step in its middle look alike and differ in M_δe."""
+"""... and when less than this, twice a log-likelihood, is gained by all of them standing upright in the
+middle of their intervals, where no time is fitted: a ramp and a step in its middle look alike and differ
+in M_δe."""
 MOST_MANEUVERS = 20
 CLOSE_ENOUGH = 1e-9
 """Promised change of log J per sample at which a search on the way is done."""
@@ -82,27 +84,27 @@ def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
         return plain
     own = np.empty((len(plain.fitted), 0)) if extra is None else extra
     near, problem, assembly, optimum = plain.optimum, plain.problem, plain.assembly, plain.optimum
-    columns, upright = own, 0.0
+    weighing = Weighing.by(plain.noise, plain.assembly)
+    before = weighing.misfit(plain.residual, plain.sensitivities)
+    columns, gain, upright = own, 0.0, 0.0
     for round_ in range(ROUNDS + 1):
         problem = _edged(plain.problem, edges, records)
         assembly, optimum = search(problem, begin=(near.shared, near.local), flat=CLOSE_ENOUGH)
         if optimum.status != CONVERGED:
             return plain
         near = optimum
+        y, g = response(assembly, optimum)
+        gain = before - weighing.misfit(assembly.z - y, g)
         if round_ == 0:
-            upright = plain.optimum.log_likelihood_cost - optimum.log_likelihood_cost
+            upright = gain
         columns = np.column_stack([own, _by_edges(plain.problem, edges, records, optimum, assembly.owner)])
         if round_ == ROUNDS:
             break
-        y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
-        respond(assembly.grid, optimum.shared, optimum.local, y, g)
-        effect = influence(assembly, g, optimum.noise, columns)
-        if effect is None:
+        rows = weighing.influence(g, columns)
+        if rows is None:
             return plain
-        steps = effect.rows[:, len(PARAMETERS) + own.shape[1] :].T @ (assembly.z - y)
-        edges = _moved(edges, steps, records)
-    gain = plain.optimum.log_likelihood_cost - optimum.log_likelihood_cost
-    if gain < GAIN_PER_EDGE * count and upright < GAIN_UPRIGHT:
+        edges = _moved(edges, rows[:, len(PARAMETERS) + own.shape[1] :].T @ (assembly.z - y), records)
+    if gain < chi2.isf(CHANCE, count) and upright < GAIN_UPRIGHT:
         return plain
     final = evaluate(problem, assembly, optimum, columns, kept=own.shape[1])
     return final if isinstance(final, Solution) else plain

@@ -61,9 +61,9 @@ class Estimate:
     covariance: FloatArray
     """Shape (8, 8). Corrected for coloured residuals."""
     cost: float
-    """J = det R of Eq. (7) over angle of attack and pitch rate."""
+    """The lowest J = det R of Eq. (7) over angle of attack and pitch rate."""
     fits: tuple[Mapping[str, ChannelFit], ...]
-    """One mapping of output name to fit per manoeuvre."""
+    """One mapping of output name to fit per manoeuvre, the fit of lowest cost."""
     iterations: int
     not_identifiable: Mapping[str, str]
     """Parameter name to the reason, in words; such a parameter has no usable value."""
@@ -75,6 +75,9 @@ class Estimate:
     """Speed at which the derivatives are given; None when no air speed was measured."""
     notes: tuple[str, ...] = ()
     """What the user must know about these numbers, one sentence each."""
+    theta_of_lowest_cost: FloatArray | None = None
+    """Shape (8,), the parameters of ``cost`` and ``fits`` where they are not ``theta``: with coloured noise
+    the smallest error lies elsewhere (``efficient``)."""
 
     @property
     def std(self) -> FloatArray:

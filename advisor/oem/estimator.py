@@ -8,6 +8,7 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.oem.edges import large_steps, with_edges
+from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
 from advisor.oem.notes import notes
@@ -17,6 +18,7 @@ from advisor.oem.problem import Problem
 from advisor.oem.servo_lag import Lag, by_lag, find_lag
 from advisor.oem.solution import Method, Solution, solve
 from advisor.oem.surface import Servo
+from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
 CLEARLY = 10.0
@@ -95,7 +97,9 @@ def _clearer(best: Solution | NoEstimate, other: Problem, method: Method) -> Sol
     rival = solve(other, method=method, begin=begin)
     if isinstance(rival, NoEstimate):
         return best
-    gain = best.optimum.log_likelihood_cost - rival.optimum.log_likelihood_cost
+    weighing = Weighing.by(best.noise, best.assembly)
+    misfit = weighing.misfit(best.residual, best.sensitivities)
+    gain = misfit - weighing.misfit(rival.residual, rival.sensitivities)
     return rival if gain > CLEARLY else best
 
 
@@ -106,7 +110,7 @@ def report(
     *,
     lag: Lag | None = None,
     lagged: FloatArray | None = None,
-    priced: bool = True,
+    quick: bool = False,
 ) -> Estimate:
     """A solution as the rest of the program sees it.
 
@@ -114,12 +118,13 @@ def report(
     ----------
     lag : what the search for a servo lag found, when one was made.
     lagged : (8,) the estimate had the servo a lag of ``SUPPOSED_LAG_S``, when the servo is unknown.
-    priced : say what missing channels cost (some milliseconds).
+    quick : leave out what takes milliseconds: what missing channels cost, and the efficient estimate.
     """
+    best = solution if quick else efficient(solution)
     return Estimate(
-        theta=solution.theta,
-        covariance_cr=solution.covariance_cr[:N, :N],
-        covariance=solution.covariance[:N, :N],
+        theta=best.theta,
+        covariance_cr=best.covariance_cr[:N, :N],
+        covariance=best.covariance[:N, :N],
         cost=solution.cost,
         fits=channel_fits(solution),
         iterations=solution.optimum.iterations,
@@ -127,7 +132,8 @@ def report(
         correlated=correlated(solution.covariance_cr[:N, :N]),
         condition=solution.influence.condition,
         airspeed_m_s=solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s,
-        notes=notes(solution, prepared, aircraft, lag, lagged, priced=priced),
+        notes=notes(solution, prepared, aircraft, lag, lagged, best=best, priced=not quick),
+        theta_of_lowest_cost=None if best is solution else solution.theta,
     )
 
 

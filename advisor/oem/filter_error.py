@@ -53,12 +53,13 @@ def filter_error_estimate(
         derived = any(m.channels["alpha"].provenance == "derived" for m in maneuvers)
         found = turbulence_in(start, seen_by_alpha=not derived)
     speed = start.airspeed_m_s or 20.0
-    theta = start.theta.copy()
+    fitted_at = start.theta if start.theta_of_lowest_cost is None else start.theta_of_lowest_cost
+    theta = fitted_at.copy()
     information, step = np.eye(len(theta)), np.zeros(len(theta))
     for _ in range(3):
         information, gradient = np.zeros((8, 8)), np.zeros(8)
         for maneuver, fits in zip(maneuvers, start.fits, strict=False):
-            t, channel, columns = _linear(maneuver, fits, theta, start.theta)
+            t, channel, columns = _linear(maneuver, fits, theta, fitted_at)
             white = gains_of(t, channel, np.append(system_of(start), speed), found.air).innovations(columns)
             own = white[:, 9:]
             project = np.linalg.qr(own)[0]

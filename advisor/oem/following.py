@@ -49,4 +49,4 @@ class Follower:
         self._last = solution if isinstance(solution, Solution) else None
         if isinstance(solution, NoEstimate):
             return solution
-        return report(solution, prepared, self._aircraft, priced=False)
+        return report(solution, prepared, self._aircraft, quick=True)

@@ -19,7 +19,8 @@ def notes(
     lag: Lag | None,
     lagged: FloatArray | None,
     *,
-    priced: bool = True,
+    best: Solution,
+    priced: bool,
 ) -> tuple[str, ...]:
     """Collect the sentences.
 
@@ -27,6 +28,7 @@ def notes(
     ----------
     lag : result of the search for a servo lag, when one was made.
     lagged : (8,) the estimate under ``SUPPOSED_LAG_S`` of servo lag, when the servo is unknown.
+    best : the solution the values are taken from, ``solution`` or the efficient one.
     priced : say in numbers what missing channels cost.
     """
     sentences = [
@@ -37,6 +39,7 @@ def notes(
         _edges(solution, prepared),
         _offset(solution, prepared),
         _vane(aircraft),
+        _weighed(solution, best),
         *_missing(solution, prepared, priced),
     ]
     return tuple(sentence for sentence in sentences if sentence)
@@ -112,6 +115,18 @@ def _offset(solution: Solution, prepared: Prepared) -> str:
 def _vane(aircraft: Aircraft) -> str:
     arm = aircraft.alpha.vane_arm_m
     return f"Angle of attack was moved {arm:g} m from the vane to the centre of gravity." if arm else ""
+
+
+def _weighed(solution: Solution, best: Solution) -> str:
+    if best is solution:
+        return ""
+    memories = ", ".join(
+        f"{output} {colour.memory:.2f}" for output, colour in solution.noise.colours.items() if colour.memory
+    )
+    return (
+        f"The noise remembers (from sample to sample: {memories}) and is nothing but noise: values and errors"
+        " are those of generalised least squares, which weighs it as it is; the cost stays output error's."
+    )
 
 
 def _missing(solution: Solution, prepared: Prepared, priced: bool) -> list[str]:

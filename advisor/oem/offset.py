@@ -14,12 +14,12 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, respond
-from advisor.oem.covariance import influence
 from advisor.oem.edges import CLOSE_ENOUGH, DIFFERENCE_S, large_steps
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.problem import Assembly, Problem, assemble
-from advisor.oem.solution import Solution, evaluate, search
+from advisor.oem.solution import Solution, evaluate, response, search
 from advisor.oem.surface import Servo
+from advisor.oem.weighing import Weighing
 
 ROUNDS = 4
 SETTLED_S = 1e-5
@@ -37,6 +37,8 @@ class Shifted(NamedTuple):
     optimum: Optimum
     slope: FloatArray
     """(N, 1) derivative of the outputs by the offset."""
+    misfit: float
+    """Twice the negative log-likelihood but for a constant, as ``Weighing`` has it."""
 
 
 def with_offset(plain: Solution) -> Solution:
@@ -45,37 +47,40 @@ def with_offset(plain: Solution) -> Solution:
     if all(large_steps(record.elevator).interval for record in records):
         return plain
     half = float(np.median(np.concatenate([np.diff(record.elevator.t) for record in records]))) / 2.0
+    weighing = Weighing.by(plain.noise, plain.assembly)
     found = [
-        _best(plain, held=False, middle=0.0, half=half),
-        _best(plain, held=True, middle=-half, half=half),
+        _best(plain, weighing, held=False, middle=0.0, half=half),
+        _best(plain, weighing, held=True, middle=-half, half=half),
     ]
     usable = [shifted for shifted in found if shifted is not None]
     if not usable:
         return plain
-    best = min(usable, key=lambda shifted: shifted.optimum.log_likelihood_cost)
-    if plain.optimum.log_likelihood_cost - best.optimum.log_likelihood_cost < CLEARLY:
+    best = min(usable, key=lambda shifted: shifted.misfit)
+    if weighing.misfit(plain.residual, plain.sensitivities) - best.misfit < CLEARLY:
         return plain
     final = evaluate(best.problem, best.assembly, best.optimum, best.slope, kept=0)
     return final if isinstance(final, Solution) else plain
 
 
-def _best(plain: Solution, *, held: bool, middle: float, half: float) -> Shifted | None:
+def _best(plain: Solution, weighing: Weighing, *, held: bool, middle: float, half: float) -> Shifted | None:
     """Gauss-Newton on the offset with everything else refitted, within ``half`` of the ``middle``."""
     records = tuple(replace(record, held=held) for record in plain.problem.records)
     near, offset, best = plain.optimum, middle, None
     for _ in range(ROUNDS):
         problem = replace(plain.problem, records=records, servo=_later(plain.problem.servo, offset))
         assembly, optimum = search(problem, begin=(near.shared, near.local), flat=CLOSE_ENOUGH)
-        worse = best is not None and optimum.log_likelihood_cost >= best.optimum.log_likelihood_cost
-        if optimum.status != CONVERGED or worse:
+        if optimum.status != CONVERGED:
             break
-        near, best = optimum, Shifted(problem, assembly, optimum, _by_offset(problem, assembly, optimum))
-        y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
-        respond(assembly.grid, optimum.shared, optimum.local, y, g)
-        effect = influence(assembly, g, optimum.noise, best.slope)
-        if effect is None:
+        y, g = response(assembly, optimum)
+        misfit = weighing.misfit(assembly.z - y, g)
+        if best is not None and misfit >= best.misfit:
+            break
+        slope = _by_offset(problem, assembly, optimum)
+        near, best = optimum, Shifted(problem, assembly, optimum, slope, misfit)
+        rows = weighing.influence(g, slope)
+        if rows is None:
             return None
-        step = float(effect.rows[:, PARAMETERS_BEFORE] @ (assembly.z - y))
+        step = float(rows[:, PARAMETERS_BEFORE] @ (assembly.z - y))
         moved = float(np.clip(offset + step, middle - half, middle + half))
         if abs(moved - offset) < SETTLED_S:
             break

@@ -8,9 +8,18 @@ import numpy as np
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
-from advisor.oem.covariance import REPORTED, Coloured, Influence, coloured, cramer_rao, influence
+from advisor.oem.covariance import (
+    REPORTED,
+    Coloured,
+    Influence,
+    coloured,
+    colours_of,
+    cramer_rao,
+    influence,
+    widening,
+)
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend, weigh
+from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend
 from advisor.oem.problem import Assembly, Problem, assemble
 from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
@@ -41,6 +50,8 @@ class Solution:
     """(8 + k, 8 + k) corrected for coloured residuals."""
     noise: Coloured
     """Colour of each output's noise."""
+    extra: FloatArray | None = None
+    """(N, e) derivatives by parameters estimated besides, such as the times of edges; e >= k."""
 
     @property
     def residual(self) -> FloatArray:
@@ -126,14 +137,15 @@ def evaluate(
     extra, noise : as in ``covariance.influence`` and in ``solve``.
     kept : how many of the extra parameters shall have errors of their own, the first ones; default all.
     """
-    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
-    respond(assembly.grid, optimum.shared, optimum.local, y, g)
+    y, g = response(assembly, optimum)
     effect = influence(assembly, g, optimum.noise, extra)
     if effect is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
     if kept is not None:
         effect = replace(effect, rows=effect.rows[:, : len(PARAMETERS) + kept])
-    corrected, found = coloured(assembly, effect.rows, assembly.z - y, g, noise)
+    if noise is None:
+        colours = colours_of(assembly, assembly.z - y, g)
+        noise = Coloured(colours, widening(assembly, effect.rows, colours))
     return Solution(
         problem=problem,
         assembly=assembly,
@@ -143,9 +155,17 @@ def evaluate(
         influence=effect,
         theta=reported(optimum.shared, optimum.local),
         covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise),
-        covariance=corrected,
-        noise=found,
+        covariance=coloured(assembly, effect.rows, noise),
+        noise=noise,
+        extra=extra,
     )
+
+
+def response(assembly: Assembly, optimum: Optimum) -> tuple[FloatArray, FloatArray]:
+    """Outputs (N,) and sensitivities (N, 14) of the model at an optimum."""
+    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
+    respond(assembly.grid, optimum.shared, optimum.local, y, g)
+    return y, g
 
 
 def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
@@ -160,6 +180,3 @@ def noise_floor(assembly: Assembly) -> FloatArray:
     for c in np.unique(assembly.channel):
         floor[c] = max(LEAST_NOISE * float(np.std(assembly.z[assembly.channel == c])), 1e-300)
     return floor
-
-
-__all__ = ["Method", "Solution", "evaluate", "noise_floor", "reported", "solve", "weigh"]

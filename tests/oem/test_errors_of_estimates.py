@@ -46,9 +46,10 @@ def test_the_coloured_product_is_that_with_the_full_matrix():
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.95])
-def test_intervals_hold_the_truth_and_plain_ones_do_not_when_noise_is_coloured(memory):
+def test_errors_are_at_the_bound_and_intervals_hold_the_truth_whatever_the_colour(memory):
     row = study(120, memory, 1, seed=4)
     assert row.failed == 0
+    assert row.efficiency.mean() < 1.06
     assert 0.91 < row.corrected.mean() < 0.98
     assert (row.plain.mean() > 0.91) == (memory == 0.0)
 
@@ -61,7 +62,4 @@ def test_two_thousand_manoeuvres_reach_the_bound_and_hold_their_intervals(memory
     row = study(2000, memory, together)
     assert row.failed == 0
     assert np.all((row.corrected > 0.93) & (row.corrected < 0.97)), row.corrected
-    if memory == 0.0:
-        # A mean square of 2,000 draws scatters by 3.2 %.
-        assert np.all(np.abs(row.efficiency - 1.0) < 0.05 + 2 * 0.032), row.efficiency
-        assert abs(row.efficiency.mean() - 1.0) < 0.05
+    assert np.all(np.abs(row.efficiency - 1.0) < 0.05), row.efficiency

@@ -1,0 +1,86 @@
+"""The whitening filter of noise that is white plus a first-order autoregression.
+
+With Γ = L·Lᵀ the autocovariance of
+
+    ν_k = w_k + x_k,   x_{k+1} = φ·x_k + e_k,   var x = 1,   var w = share,
+
+the innovations of a scalar Kalman filter over ν, each over its standard deviation, are L⁻¹·ν
+(Harvey, *Forecasting, Structural Time Series Models and the Kalman Filter*, section 3.4). The filter
+begins with the stationary variance of x, so nothing has to settle.
+"""
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Whitening:
+    """L⁻¹ of one stretch of samples."""
+
+    memory: float
+    """φ."""
+    scale: FloatArray
+    """(n,) one over the standard deviation of each innovation."""
+    gain: FloatArray
+    """(n,) what the state takes of each innovation."""
+
+    @classmethod
+    def of(cls, samples: int, memory: float, white_share: float, variance: float = 1.0) -> "Whitening":
+        """The filter for a stretch of noise whose coloured part has ``variance``."""
+        scale, gain, _ = schedule(samples, memory, white_share)
+        return cls(memory, scale / np.sqrt(variance), gain)
+
+    def forward(self, rows: FloatArray) -> FloatArray:
+        """L⁻¹·rows, shape (n, k)."""
+        return whiten(np.ascontiguousarray(rows), self.memory, self.scale, self.gain).T
+
+    def backward(self, rows: FloatArray) -> FloatArray:
+        """L⁻ᵀ·rows, shape (n, k)."""
+        return whiten_adjoint(np.ascontiguousarray(rows), self.memory, self.scale, self.gain)
+
+
+@numba.njit(cache=True)
+def schedule(samples: int, memory: float, white_share: float) -> tuple[FloatArray, FloatArray, float]:
+    """``scale`` and ``gain`` of a ``Whitening`` with var x = 1, and log det Γ."""
+    scale, gain = np.empty(samples), np.empty(samples)
+    log_determinant = 0.0
+    predicted = 1.0
+    for i in range(samples):
+        total = predicted + white_share
+        scale[i] = 1.0 / np.sqrt(total)
+        gain[i] = memory * predicted / total
+        log_determinant += np.log(total)
+        predicted = memory * memory * predicted * (1.0 - predicted / total) + 1.0 - memory * memory
+    return scale, gain, log_determinant
+
+
+@numba.njit(cache=True)
+def whiten(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray) -> FloatArray:
+    """(L⁻¹·rows)ᵀ, shape (k, n): transposed, because what follows are products along time."""
+    n, width = rows.shape
+    white = np.empty((width, n))
+    state = np.zeros(width)
+    for i in range(n):
+        for j in range(width):
+            innovation = rows[i, j] - state[j]
+            white[j, i] = innovation * scale[i]
+            state[j] = memory * state[j] + gain[i] * innovation
+    return white
+
+
+@numba.njit(cache=True)
+def whiten_adjoint(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray) -> FloatArray:
+    """L⁻ᵀ·rows, shape (n, k): the recursion of ``whiten`` run backwards."""
+    n, width = rows.shape
+    result = np.empty((n, width))
+    carried = np.zeros(width)
+    for i in range(n - 1, -1, -1):
+        for j in range(width):
+            own = scale[i] * rows[i, j]
+            result[i, j] = own + gain[i] * carried[j]
+            carried[j] = (memory - gain[i]) * carried[j] - own
+    return result
