@@ -21,7 +21,8 @@ from scipy.stats import chi2
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
-from advisor.oem.covariance import Coloured, coloured, widening
+from advisor.oem.colour import moved
+from advisor.oem.covariance import DIFFERENCE, Coloured, coloured, widening
 from advisor.oem.solution import Solution
 from advisor.oem.weighing import Weighing
 
@@ -76,13 +77,35 @@ def efficient_step(solution: Solution) -> Step | None:
     exact = Coloured(colours, np.ones(N))
     before, after = coloured(assembly, plain, exact), coloured(assembly, rows, exact)
     change: FloatArray = rows.T @ solution.residual
+    covariance = coloured(assembly, rows, Coloured(colours, widening(assembly, rows, colours)))
     long = _chance(change, coloured(assembly, rows - plain, exact), np.sqrt(np.diag(after)))
     return Step(
         change=change,
-        covariance=coloured(assembly, rows, Coloured(colours, widening(assembly, rows, colours))),
+        covariance=covariance + 2.0 * _unsure(solution, change),
         gain=float(np.max(1.0 - np.diag(after) / np.diag(before))),
         chances=np.array([*_remembering(solution, weighing), long]),
     )
+
+
+def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
+    """(8, 8) covariance of the step for not knowing the colours, by which it is weighed, exactly.
+
+    The estimate's covariance is larger by it than with known colours, and the usual formula with estimated
+    ones smaller: it counts twice (Kenward & Roger, *Biometrics* 53, 1997).
+    """
+    total = np.zeros((N, N))
+    for output, colour in solution.noise.colours.items():
+        slopes = np.zeros((len(colour.uncertainty), N))
+        for i in range(len(slopes)):
+            step = np.zeros(3)
+            step[i] = DIFFERENCE
+            other = {**solution.noise.colours, output: moved(colour, step)}
+            weighing = Weighing.by(Coloured(other, np.ones(N)), solution.assembly)
+            rows = weighing.influence(solution.sensitivities, solution.extra)
+            if rows is not None:
+                slopes[i] = (rows[:, :N].T @ solution.residual - change) / DIFFERENCE
+        total += slopes.T @ colour.uncertainty @ slopes
+    return total
 
 
 def _chance(change: FloatArray, covariance: FloatArray, unit: FloatArray) -> float:
