@@ -9,7 +9,8 @@ own optimum, and the cost there is evaluated by one and the same function.
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -17,9 +18,12 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares, minimize
 from scipy.signal import lsim
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.record import Channel
+from advisor.flight.stream import FlightStream
+from advisor.mavlink.tlog import read_tlog
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.batch import solve_many
 from advisor.oem.following import Follower
@@ -32,6 +36,7 @@ Array = NDArray[np.float64]
 
 NOISE = 0.05
 SAMPLES = 500
+LOG = Path(__file__).parents[1] / "logs" / "arduplane-calm.tlog"
 
 
 @dataclass(frozen=True)
@@ -357,24 +362,29 @@ def batch() -> None:
 def follow() -> None:
     """Load of estimating anew at each of 50 samples a second while the manoeuvre is being flown."""
     data = make()
+    channels = {"elevator": data.u, "alpha": data.z[:, 0], "q": data.z[:, 1]}
+    span = Span(0.0, 1.0, 8.0, float(data.t[-1]), "3-2-1-1", (), "")
+    simulated = Maneuver(1, 0, span, {name: Channel(name, data.t, y) for name, y in channels.items()})
+    servo = Aircraft(elevator=Elevator(calibration=((1000, 25.0), (1500, 0.0), (2000, -25.0)), lag_s=0.14))
+    stream = FlightStream(servo)
+    events = [event for columns in read_tlog(LOG) for event in stream.feed(columns)]
+    recorded = next(event.maneuver for event in events if isinstance(event, ManeuverFlown))
+    print("\nComplete estimate at every sample of 50 Hz, from the third second on:")
+    load("simulated, alpha and q", simulated, Aircraft())
+    load("recorded flight, alpha, q, a_z, theta at stamps of their own, speed moving", recorded, servo)
 
-    def so_far(k: int) -> Maneuver:
-        channels = {
-            "elevator": Channel("elevator", data.t[:k], data.u[:k]),
-            "alpha": Channel("alpha", data.t[:k], data.z[:k, 0]),
-            "q": Channel("q", data.t[:k], data.z[:k, 1]),
-        }
-        span = Span(0.0, 1.0, 8.0, float(data.t[k - 1]), "3-2-1-1", (), "")
-        return Maneuver(1, 0, span, channels)
 
-    cuts = [so_far(k) for k in range(150, SAMPLES)]
-    Follower(Aircraft()).refresh(cuts[-1])
-    follower = Follower(Aircraft())
+def load(name: str, maneuver: Maneuver, aircraft: Aircraft) -> None:
+    """Print what following a manoeuvre sample by sample takes."""
+    stamps = maneuver.channels["q"].t[150:]
+    cuts = [
+        replace(maneuver, channels={name: c.cut(-math.inf, t) for name, c in maneuver.channels.items()})
+        for t in stamps.tolist()
+    ]
+    Follower(aircraft).refresh(cuts[-1])
+    follower = Follower(aircraft)
     seconds = cpu(lambda: [follower.refresh(cut) for cut in cuts]) / len(cuts)
-    load = 100 * seconds * 50
-    print(
-        f"\nComplete estimate at every sample of 50 Hz: {1e3 * seconds:.2f} ms each, {load:.1f} % of a core"
-    )
+    print(f"  {name}: {1e3 * seconds:.2f} ms each, {100 * seconds * 50:.1f} % of a core")
 
 
 def main() -> None:

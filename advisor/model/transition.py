@@ -3,14 +3,13 @@
 The solution is x(h) = φ₀(hA)·x + h·φ₁(hA)·u + h²·φ₂(hA)·v with φₖ(X) = Σ Xⁿ/(n+k)!. By the
 theorem of Cayley and Hamilton every power of a 2×2 matrix is p·I + r·X, so that each φₖ is two
 scalars that depend on T = tr X and D = det X only, and so are their derivatives: the series
-below runs on scalars, to round-off. φ₃ serves the integral of the pitch rate, which is the
-pitch angle.
+below runs on scalars, to round-off, for the highest order; the others follow from
+φₖ = I/k! + X·φₖ₊₁. φ₃ serves the integral of the pitch rate, which is the pitch angle.
 """
 
 import math
 
 import numba
-import numpy as np
 
 from advisor.flight.messages import FloatArray
 
@@ -46,42 +45,41 @@ def fill(row: FloatArray, a11: float, a12: float, a21: float, a22: float, h: flo
     trace = x11 + x22
     determinant = x11 * x22 - x12 * x21
     size = abs(trace) + math.sqrt(abs(determinant))
-    scale = np.ones(ORDERS)
-    for k in range(1, ORDERS):
-        scale[k] = scale[k - 1] / k
-    # Xⁿ = p·I + r·X, and the derivatives of p and r by T and by D; n = 0 to begin with.
-    p, r = 1.0, 0.0
-    p_t, r_t = 0.0, 0.0
-    p_d, r_d = 0.0, 0.0
-    sums = np.zeros((ORDERS, 6))
+    # φ₃ = p·I + r·X, the sum of Xⁿ/(n + 3)! with Xⁿ = a·I + b·X; and their derivatives by T and by D.
+    a, b, a_t, b_t, a_d, b_d = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    p, r, p_t, r_t, p_d, r_d = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    factor = 1.0 / 6.0
     power = 1.0
     n = 0
     while True:
-        for k in range(ORDERS):
-            sums[k, 0] += scale[k] * p
-            sums[k, 1] += scale[k] * r
-            sums[k, 2] += scale[k] * p_t
-            sums[k, 3] += scale[k] * r_t
-            sums[k, 4] += scale[k] * p_d
-            sums[k, 5] += scale[k] * r_d
+        p += factor * a
+        r += factor * b
+        p_t += factor * a_t
+        r_t += factor * b_t
+        p_d += factor * a_d
+        r_d += factor * b_d
         n += 1
         power *= size / n
         if n > 4 and power * n * n < 1e-18:
             break
+        a_t, b_t = -determinant * b_t, b + trace * b_t + a_t
+        a_d, b_d = -b - determinant * b_d, trace * b_d + a_d
+        a, b = -determinant * b, trace * b + a
+        factor /= n + 3
+    constant = 0.5
+    for k in range(ORDERS - 1, -1, -1):
+        j = 13 * k
+        unit = h**k
+        row[j], row[j + 1] = unit * (p + r * x11), unit * r * x12
+        row[j + 2], row[j + 3] = unit * r * x21, unit * (p + r * x22)
+        unit *= h
+        row[j + 4], row[j + 5] = unit * (p_t + r_t * x11), unit * r_t * x12
+        row[j + 6], row[j + 7] = unit * r_t * x21, unit * (p_t + r_t * x22)
+        row[j + 12] = unit * r
+        unit *= h
+        row[j + 8], row[j + 9] = unit * (p_d + r_d * x11), unit * r_d * x12
+        row[j + 10], row[j + 11] = unit * r_d * x21, unit * (p_d + r_d * x22)
         p_t, r_t = -determinant * r_t, r + trace * r_t + p_t
         p_d, r_d = -r - determinant * r_d, trace * r_d + p_d
-        p, r = -determinant * r, trace * r + p
-        for k in range(ORDERS):
-            scale[k] /= n + k
-    unit = 1.0
-    for k in range(ORDERS):
-        j = 13 * k
-        for i in range(3):
-            factor = unit * h**i
-            diagonal, along = factor * sums[k, 2 * i], factor * sums[k, 2 * i + 1]
-            row[j + 4 * i] = diagonal + along * x11
-            row[j + 4 * i + 1] = along * x12
-            row[j + 4 * i + 2] = along * x21
-            row[j + 4 * i + 3] = diagonal + along * x22
-        row[j + 12] = unit * h * sums[k, 1]
-        unit *= h
+        p, r = constant - determinant * r, trace * r + p
+        constant = 1.0

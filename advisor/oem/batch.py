@@ -11,10 +11,10 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, N_SHARED, Grid, Index, respond
+from advisor.model.response import N_SHARED, Grid, Index
 from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.gauss_newton import CONVERGED, cholesky, descend, normal_equations, solve_lower, weigh
+from advisor.oem.gauss_newton import CONVERGED, cholesky, descend, normal_equations, solve_lower
 from advisor.oem.problem import Problem, Record, Signal, assemble
 from advisor.oem.solution import noise_floor, solve
 
@@ -108,13 +108,13 @@ def _each(
     bounds = np.full((rows, 8), np.nan)
     noise = np.full((rows, 2), np.nan)
     iterations = np.full(rows, -1)
-    y, g = np.empty(z.shape[1]), np.empty((z.shape[1], N_PARAMETERS))
     for i in range(rows):
         optimum = descend(grid, z[i], channel, owner, free, floor, shared, local)
-        if optimum.status != CONVERGED or not respond(grid, optimum.shared, optimum.local, y, g):
+        if optimum.status != CONVERGED:
             continue
-        sigma, _ = weigh(z[i], y, channel, floor)
-        information, _ = normal_equations(grid, z[i], y, g, channel, owner, free, sigma)
+        information, _ = normal_equations(
+            grid, z[i], optimum.fitted, optimum.sensitivities, channel, owner, free, optimum.noise
+        )
         if not cholesky(information[0]):
             continue
         inverse = np.eye(len(free))
@@ -123,6 +123,6 @@ def _each(
             at = np.searchsorted(free, _POSITION[j])
             bounds[i, j] = np.sqrt(np.sum(inverse[:, at] ** 2))
             found[i, j] = optimum.shared[_POSITION[j]] if j % 4 else optimum.local[0, j // 4]
-        noise[i] = sigma[:2]
+        noise[i] = optimum.noise[:2]
         iterations[i] = optimum.iterations
     return found, bounds, noise, iterations

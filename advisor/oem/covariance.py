@@ -75,12 +75,13 @@ def influence(
     open_share = np.zeros(N_PARAMETERS)
     for named in assembly.rows:
         rows = slice(min(s.start for s in named.values()), max(s.stop for s in named.values()))
-        weighted = (g[rows][:, own] * weight[rows, None]).T
-        inverse, left_open = _inverse(weighted @ g[rows][:, own])
+        mine = g[rows][:, own]
+        weighted = (mine * weight[rows, None]).T
+        inverse, left_open = _inverse(weighted @ mine)
         open_share[own] = np.maximum(open_share[own], left_open)
         gain = inverse @ weighted
         mix = gain @ shared_g[rows]
-        projected[rows] = shared_g[rows] - g[rows][:, own] @ mix
+        projected[rows] = shared_g[rows] - mine @ mix
         parts.append((rows, gain, mix))
     information = projected.T @ (projected * weight[:, None])
     if not np.all(np.isfinite(information)):

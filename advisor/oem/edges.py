@@ -18,7 +18,7 @@ from advisor.flight.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.problem import Problem, Record, Signal, assemble
-from advisor.oem.solution import Solution, evaluate, response, search
+from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
 
 LARGE = 0.25
@@ -93,8 +93,8 @@ def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
         if optimum.status != CONVERGED:
             return plain
         near = optimum
-        y, g = response(assembly, optimum)
-        gain = before - weighing.misfit(assembly.z - y, g)
+        residual, g = assembly.z - optimum.fitted, optimum.sensitivities
+        gain = before - weighing.misfit(residual, g)
         if round_ == 0:
             upright = gain
         columns = np.column_stack([own, _by_edges(plain.problem, edges, records, optimum, assembly.owner)])
@@ -103,7 +103,7 @@ def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
         rows = weighing.influence(g, columns)
         if rows is None:
             return plain
-        edges = _moved(edges, rows[:, len(PARAMETERS) + own.shape[1] :].T @ (assembly.z - y), records)
+        edges = _moved(edges, rows[:, len(PARAMETERS) + own.shape[1] :].T @ residual, records)
     if gain < chi2.isf(CHANCE, count) and upright < GAIN_UPRIGHT:
         return plain
     final = evaluate(problem, assembly, optimum, columns, kept=own.shape[1])

@@ -15,7 +15,7 @@ from advisor.oem.solution import Solution, solve
 COLOUR_EVERY = 100
 """Refreshes between two fits of the noise's colour."""
 
-CLOSE_ENOUGH = 1e-6
+CLOSE_ENOUGH = 3e-5
 """Promised change of log J per sample at which a refresh is done: thousandths of a standard deviation."""
 
 

@@ -52,6 +52,10 @@ class Optimum(NamedTuple):
     log_likelihood_cost: float
     """Σ n_c·log σ_c²."""
     iterations: int
+    fitted: FloatArray
+    """(N,) outputs of the model there."""
+    sensitivities: FloatArray
+    """(N, 14) their derivatives by the parameters of the row's manoeuvre."""
 
 
 @numba.njit(cache=True)
@@ -243,7 +247,7 @@ def descend(
     y, g = np.empty(len(z)), np.empty((len(z), N_PARAMETERS))
     y_trial, g_trial = np.empty(len(z)), np.empty((len(z), N_PARAMETERS))
     if not respond(grid, shared, local, y, g):
-        return Optimum(OVERFLOW, shared, local, np.zeros(len(OUTPUTS)), np.inf, 0)
+        return Optimum(OVERFLOW, shared, local, np.zeros(len(OUTPUTS)), np.inf, 0, y, g)
     noise, cost = weigh(z, y, channel, floor)
     damping = 0.0
     status = EXHAUSTED
@@ -262,7 +266,7 @@ def descend(
                         accepted = True
                         break
                 if promise < flat * len(z):
-                    return Optimum(CONVERGED, shared, local, noise, cost, iteration)
+                    return Optimum(CONVERGED, shared, local, noise, cost, iteration, y, g)
             damping = max(FIRST_DAMPING, DAMPING_FACTOR * damping)
         if not accepted:
             # Not even a tiny step lowers the cost: round-off rules, there is nothing left to gain.
@@ -277,4 +281,4 @@ def descend(
         damping = damping / DAMPING_FACTOR if damping > LEAST_DAMPING else 0.0
     if status == EXHAUSTED and np.all(noise <= WITHOUT_NOISE * floor):
         status = CONVERGED
-    return Optimum(status, shared, local, noise, cost, iteration)
+    return Optimum(status, shared, local, noise, cost, iteration, y, g)

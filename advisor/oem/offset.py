@@ -17,7 +17,7 @@ from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.edges import CLOSE_ENOUGH, DIFFERENCE_S, large_steps
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.problem import Assembly, Problem, assemble
-from advisor.oem.solution import Solution, evaluate, response, search
+from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.surface import Servo
 from advisor.oem.weighing import Weighing
 
@@ -71,8 +71,8 @@ def _best(plain: Solution, weighing: Weighing, *, held: bool, middle: float, hal
         assembly, optimum = search(problem, begin=(near.shared, near.local), flat=CLOSE_ENOUGH)
         if optimum.status != CONVERGED:
             break
-        y, g = response(assembly, optimum)
-        misfit = weighing.misfit(assembly.z - y, g)
+        residual, g = assembly.z - optimum.fitted, optimum.sensitivities
+        misfit = weighing.misfit(residual, g)
         if best is not None and misfit >= best.misfit:
             break
         slope = _by_offset(problem, assembly, optimum)
@@ -80,7 +80,7 @@ def _best(plain: Solution, weighing: Weighing, *, held: bool, middle: float, hal
         rows = weighing.influence(g, slope)
         if rows is None:
             return None
-        step = float(rows[:, PARAMETERS_BEFORE] @ (assembly.z - y))
+        step = float(rows[:, PARAMETERS_BEFORE] @ residual)
         moved = float(np.clip(offset + step, middle - half, middle + half))
         if abs(moved - offset) < SETTLED_S:
             break

@@ -49,7 +49,7 @@ def descend_by_simplex(
     x = np.concatenate([shared[common], local[:, own].ravel()])
     best = cost(x)
     if best >= 1e300:
-        return Optimum(OVERFLOW, shared, local, np.zeros(4), best, 0)
+        return Optimum(OVERFLOW, shared, local, np.zeros(4), best, 0, y, none)
     iterations = 0
     status = EXHAUSTED
     for _ in range(MOST_ROUNDS):
@@ -73,6 +73,7 @@ def descend_by_simplex(
             status = CONVERGED
             break
     moved_shared, moved_local = unpack(x)
-    respond(grid, moved_shared, moved_local, y, none)
+    g = np.empty((len(z), N_PARAMETERS))
+    respond(grid, moved_shared, moved_local, y, g)
     noise, total = weigh(z, y, channel, floor)
-    return Optimum(status, moved_shared, moved_local, noise, float(total), iterations)
+    return Optimum(status, moved_shared, moved_local, noise, float(total), iterations, y, g)

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
+from advisor.model.response import OUTPUTS
 from advisor.oem.covariance import (
     REPORTED,
     Coloured,
@@ -37,10 +37,6 @@ class Solution:
     problem: Problem
     assembly: Assembly
     optimum: Optimum
-    fitted: FloatArray
-    """(N,) model outputs, rows as in ``assembly``."""
-    sensitivities: FloatArray
-    """(N, 14)."""
     influence: Influence
     theta: FloatArray
     """(8,) order of ``PARAMETERS``; Z_0 and M_0 are means over the manoeuvres."""
@@ -52,6 +48,16 @@ class Solution:
     """Colour of each output's noise."""
     extra: FloatArray | None = None
     """(N, e) derivatives by parameters estimated besides, such as the times of edges; e >= k."""
+
+    @property
+    def fitted(self) -> FloatArray:
+        """(N,) model outputs, rows as in ``assembly``."""
+        return self.optimum.fitted
+
+    @property
+    def sensitivities(self) -> FloatArray:
+        """(N, 14) their derivatives by the parameters of the row's manoeuvre."""
+        return self.optimum.sensitivities
 
     @property
     def residual(self) -> FloatArray:
@@ -137,21 +143,19 @@ def evaluate(
     extra, noise : as in ``covariance.influence`` and in ``solve``.
     kept : how many of the extra parameters shall have errors of their own, the first ones; default all.
     """
-    y, g = response(assembly, optimum)
+    g = optimum.sensitivities
     effect = influence(assembly, g, optimum.noise, extra)
     if effect is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
     if kept is not None:
         effect = replace(effect, rows=effect.rows[:, : len(PARAMETERS) + kept])
     if noise is None:
-        colours = colours_of(assembly, assembly.z - y, g)
+        colours = colours_of(assembly, assembly.z - optimum.fitted, g)
         noise = Coloured(colours, widening(assembly, effect.rows, colours))
     return Solution(
         problem=problem,
         assembly=assembly,
         optimum=optimum,
-        fitted=y,
-        sensitivities=g,
         influence=effect,
         theta=reported(optimum.shared, optimum.local),
         covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise),
@@ -159,13 +163,6 @@ def evaluate(
         noise=noise,
         extra=extra,
     )
-
-
-def response(assembly: Assembly, optimum: Optimum) -> tuple[FloatArray, FloatArray]:
-    """Outputs (N,) and sensitivities (N, 14) of the model at an optimum."""
-    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
-    respond(assembly.grid, optimum.shared, optimum.local, y, g)
-    return y, g
 
 
 def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
@@ -176,7 +173,8 @@ def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
 
 def noise_floor(assembly: Assembly) -> FloatArray:
     """(4,) smallest σ believed of each output, for data without noise."""
-    floor = np.zeros(len(OUTPUTS))
-    for c in np.unique(assembly.channel):
-        floor[c] = max(LEAST_NOISE * float(np.std(assembly.z[assembly.channel == c])), 1e-300)
-    return floor
+    count = np.maximum(np.bincount(assembly.channel, minlength=len(OUTPUTS)), 1)
+    mean = np.bincount(assembly.channel, assembly.z, len(OUTPUTS)) / count
+    deviation = assembly.z - mean[assembly.channel]
+    variance = np.bincount(assembly.channel, deviation**2, len(OUTPUTS)) / count
+    return np.maximum(LEAST_NOISE * np.sqrt(variance), 1e-300)
