@@ -90,7 +90,11 @@ def _solved(problem: Problem, method: Method = "gauss-newton") -> Solution | NoE
 
 
 def _clearer(best: Solution | NoEstimate, other: Problem, method: Method) -> Solution | NoEstimate:
-    """``best``, unless the other reading of the same data explains them clearly better."""
+    """``best``, unless the other reading of the same data explains them clearly better.
+
+    Better both as output error weighs them and as coloured noise does: where the model does not hold, as with
+    a servo unknown, the two may contradict each other.
+    """
     if isinstance(best, NoEstimate):
         return best
     begin = (best.optimum.shared, best.optimum.local) if method == "gauss-newton" else None
@@ -99,8 +103,9 @@ def _clearer(best: Solution | NoEstimate, other: Problem, method: Method) -> Sol
         return best
     weighing = Weighing.by(best.noise, best.assembly)
     misfit = weighing.misfit(best.residual, best.sensitivities)
-    gain = misfit - weighing.misfit(rival.residual, rival.sensitivities)
-    return rival if gain > CLEARLY else best
+    weighed = misfit - weighing.misfit(rival.residual, rival.sensitivities)
+    gain = best.optimum.log_likelihood_cost - rival.optimum.log_likelihood_cost
+    return rival if min(gain, weighed) > CLEARLY else best
 
 
 def report(

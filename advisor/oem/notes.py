@@ -2,12 +2,13 @@
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.messages import FloatArray
-from advisor.oem.identifiability import SUPPOSED_LAG_S
+from advisor.oem.identifiability import HIGH_CORRELATION, SUPPOSED_LAG_S, correlated
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.servo_lag import Lag
 from advisor.oem.solution import Solution
 
+N = len(PARAMETERS)
 NOTED_LAG_S = 0.05
 NOTED_SCALE = 0.02
 
@@ -40,6 +41,7 @@ def notes(
         _offset(solution, prepared),
         _vane(aircraft),
         _weighed(solution, best),
+        _correlated(solution),
         *_missing(solution, prepared, priced),
     ]
     return tuple(sentence for sentence in sentences if sentence)
@@ -126,6 +128,16 @@ def _weighed(solution: Solution, best: Solution) -> str:
     return (
         f"The noise remembers (from sample to sample: {memories}) and is nothing but noise: values and errors"
         " are those of generalised least squares, which weighs it as it is; the cost stays output error's."
+    )
+
+
+def _correlated(solution: Solution) -> str:
+    pairs = [f"{a} and {b}" for a, b, _ in correlated(solution.covariance_cr[:N, :N])]
+    if not pairs:
+        return ""
+    return (
+        f"Errors are correlated above {HIGH_CORRELATION:g}: {', '.join(pairs)}; this input tells them better"
+        " together than each alone."
     )
 
 

@@ -102,6 +102,7 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
         "estimates": parameters(judged.estimate),
         "second_opinion": parameters(judged.second_opinion),
         "not_identifiable": dict(estimate.not_identifiable) if estimate else {},
+        "identifiability": identifiability(estimate),
         "rules": {name: _rule(result) for name, result in verdict.rules.items()},
     }
 
@@ -121,6 +122,19 @@ def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
         for name, value, std, std_cr in zip(
             PARAMETERS, estimate.theta, estimate.std, estimate.std_cr, strict=True
         )
+    }
+
+
+def identifiability(estimate: Estimate | None) -> dict[str, Any] | None:
+    """How well the input told the parameters apart."""
+    if estimate is None:
+        return None
+    return {
+        "condition": number(estimate.condition),
+        "correlated": [
+            {"parameters": [first, second], "correlation": number(value)}
+            for first, second, value in estimate.correlated
+        ],
     }
 
 
@@ -164,6 +178,7 @@ def _model(model: Estimate | None) -> dict[str, Any] | None:
             ci95 = [entry["value"] - half, entry["value"] + half]
         document[name] = {**entry, "ci95": ci95}
     document["reference_airspeed_m_s"] = number(model.airspeed_m_s)
+    document["identifiability"] = identifiability(model)
     document["notes"] = list(model.notes)
     return document
 

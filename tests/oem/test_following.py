@@ -8,6 +8,7 @@ from advisor.oem.estimator import estimate
 from advisor.oem.following import Follower
 from advisor.oem.identifiability import natural_size
 from advisor.oem.warm import warm
+from advisor.report.document import identifiability
 from tests.oem.builders import JET, UAV, flown
 
 AIRCRAFT = Aircraft(elevator=Elevator(lag_s=0.0))
@@ -71,10 +72,20 @@ def test_natural_sizes_follow_the_poles_and_the_control_power():
     assert sizes["M_delta_e"] == 102.0
 
 
-def test_correlated_errors_are_named():
+def test_correlated_errors_are_named_in_words_and_in_the_document():
     found = estimate(flown(UAV, unit_s=0.4, noise=0.02), AIRCRAFT)
-    assert all(abs(c) > 0.9 for _, _, c in found.correlated)
-    assert found.condition > 1.0
+    assert [pair[:2] for pair in found.correlated] == [("M_q", "M_delta_e")]
+    assert any("correlated above 0.9: M_q and M_delta_e" in note for note in found.notes)
+    document = identifiability(found)
+    assert document["condition"] > 1.0
+    assert document["correlated"][0]["parameters"] == ["M_q", "M_delta_e"]
+    assert 0.9 < document["correlated"][0]["correlation"] < 1.0
+
+
+def test_errors_that_are_not_correlated_need_no_words():
+    found = estimate(flown(JET, amplitude=0.1, noise=0.02), AIRCRAFT)
+    assert found.correlated == ()
+    assert not any("correlated" in note for note in found.notes)
 
 
 def test_everything_can_be_compiled_ahead():
