@@ -64,7 +64,7 @@ def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
 def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:
     """Steps so short that neither servo nor aircraft follows them."""
     onsets = [onset for onset, _ in maneuver.span.steps]
-    if len(onsets) < 2:
+    if len(onsets) < 2 or maneuver.span.kind == "multisine":
         return []
     shortest, least = float(np.min(np.diff(onsets))), _SHORTEST_STEP * period_s
     if shortest >= least:

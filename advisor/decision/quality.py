@@ -66,8 +66,8 @@ def judge_quality(
 def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
     """Natural period of the short period in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
 
-    Where there is no estimate of a stable aircraft, two and a half of the shortest step: the
-    inputs of a test are matched to the aircraft.
+    Where there is no estimate of a stable aircraft, two and a half of the shortest step, or two of
+    a multisine's median lobes: the inputs of a test are matched to the aircraft.
     """
     if isinstance(estimate, Estimate):
         square = estimate.value("Z_alpha") * estimate.value("M_q")
@@ -75,7 +75,10 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
         if square > 0.0:
             return 2.0 * math.pi / math.sqrt(square)
     onsets = [onset for onset, _ in maneuver.span.steps]
-    return 2.5 * float(np.min(np.diff(onsets))) if len(onsets) > 1 else 1.0
+    if len(onsets) < 2:
+        return 1.0
+    swept = maneuver.span.kind == "multisine"
+    return 2.0 * float(np.median(np.diff(onsets))) if swept else 2.5 * float(np.min(np.diff(onsets)))
 
 
 def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reason]:

@@ -7,6 +7,7 @@ measured in the elevator's own stamps, so that live and replay cut at the same s
 
 import heapq
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,8 +17,8 @@ from advisor.flight.segmentation import Segmenter
 
 LATE_S = 0.3
 """Samples wait this long for packets that a link delivered out of order."""
-SETTLE_S = 0.7
-"""A manoeuvre is given out this long after its end, when every channel has arrived."""
+SETTLE_S = 1.1
+"""A manoeuvre is given out this long after its end: every channel has arrived, and a heartbeat."""
 
 
 class ElevatorWatch:
@@ -37,7 +38,7 @@ class ElevatorWatch:
         return self._segmenter.onset_s
 
     def mode_changed(self, t: float, order: int) -> None:
-        """The autopilot took another flight mode at vehicle time ``t``."""
+        """The autopilot took another flight mode, at vehicle time ``t`` at the earliest."""
         heapq.heappush(self._waiting, (t, order, None))
 
     def push(self, t: float, order: int, elevator: float) -> Iterator[ManeuverStarted | Span]:
@@ -64,6 +65,17 @@ class ElevatorWatch:
 
     def _release(self) -> None:
         t, _, elevator = heapq.heappop(self._waiting)
-        ended = self._segmenter.mode_changed(t) if elevator is None else self._segmenter.push(t, elevator)
+        if elevator is None:
+            self._ended = [_cut(span, t) for span in self._ended]
+            ended = self._segmenter.mode_changed(t)
+        else:
+            ended = self._segmenter.push(t, elevator)
         if ended is not None:
             self._ended.append(ended)
+
+
+def _cut(span: Span, t: float) -> Span:
+    """A manoeuvre whose free response had ended before it became known that the mode changed at ``t``."""
+    if span.end_s <= t:
+        return span
+    return replace(span, end_s=max(t, span.last_step_s), closed_by="mode change")

@@ -5,24 +5,19 @@ stretch itself: trim is the level at which it rests now, the amplitude is its la
 deviation from that, the quiet level is what the elevator does at trim before the first step.
 """
 
-from dataclasses import dataclass, replace
-from itertools import pairwise
-
 import numpy as np
 
 from advisor.flight.lobes import lobes, onsets, squareness, without_spikes
 from advisor.flight.maneuver import InputKind
 from advisor.flight.messages import FloatArray
+from advisor.flight.shape import BAND, Shape
+from advisor.flight.swept_input import recognise_swept
 
 RESTING_S = 0.5
 """How long the elevator must have rested before its past is looked at."""
-_SLOW_REST_S = 1.2
-"""Rest around an input whose own passes through trim may take longer than that."""
 SMALLEST_RAD = float(np.radians(0.15))
 """Smaller inputs than this are no test inputs."""
 
-_BAND = 0.3
-"""Within this share of the amplitude the elevator counts as at trim."""
 _SQUARE = {"pulse": 0.7, "doublet": 0.6, "other": 0.6}
 """Least share of an input's time spent on its levels: half a sine reaches 0.45, a hand's steps 0.62."""
 _SQUARE_3211 = 0.4
@@ -34,58 +29,14 @@ _SHARP_3211 = (0.33, 0.5)
 for a measured surface, drawn out by its servo, when much quiet before it speaks for a test input."""
 _HAND_S = (0.1, 0.25)
 """A hand needs at least the one for that part of a step, and at most the other."""
-_QUIET_S = {"pulse": 1.5, "doublet": 0.9, "multisine": 0.9, "other": 0.9}
+_QUIET_S = {"pulse": 1.5, "doublet": 0.9, "other": 0.9}
 """Inputs that a correction might resemble are told from it by the quiet before them: this long."""
 _JUST_BEGUN_S = 0.1
 """Enough quiet where the record itself begins only then."""
 _SLOWEST_STEP_S = 0.25
 """Samples farther apart than this hide the shape of an input."""
-_FEWEST_LOBES = 4
-"""Lobes of a multisine beyond the band around trim."""
 _LEAST_LEVEL = 0.4
 """A lobe smaller than this share of the largest is no step of a known input."""
-
-
-@dataclass(frozen=True, slots=True)
-class Shape:
-    """An input that was recognised."""
-
-    kind: InputKind
-    start_s: float
-    """The elevator leaves trim."""
-    last_step_s: float
-    """The elevator sets out on its way back to trim for the last time."""
-    over_s: float
-    """The elevator is back at trim."""
-    trim: float
-    """Level before and after, rad."""
-    amplitude: float
-    """Largest deviation from trim, rad."""
-    quiet: float
-    """Standard deviation at trim, before the input, rad."""
-    steps: tuple[tuple[float, float], ...]
-    """(onset s, level in rad from trim), the return to trim last."""
-
-    @property
-    def longest_s(self) -> float:
-        """Duration of the longest step."""
-        return max(b[0] - a[0] for a, b in pairwise(self.steps))
-
-    @property
-    def band(self) -> float:
-        """Deviation from trim that would be a new input, rad."""
-        share = _BAND if self.is_3211 else 0.7 * _BAND
-        return max(share * self.amplitude, min(4.0 * self.quiet, 0.45 * self.amplitude))
-
-    @property
-    def is_3211(self) -> bool:
-        """The pattern that by its timing alone cannot be mistaken for a correction."""
-        return is_3211(self.kind)
-
-
-def is_3211(kind: InputKind) -> bool:
-    """Whether this is a 3-2-1-1 or its reverse."""
-    return kind in ("3-2-1-1", "reverse 3-2-1-1")
 
 
 def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
@@ -107,18 +58,13 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
         return None
     trim = float(np.median(u[resting]))
     d = without_spikes(u) - trim
-    rest_range = float(np.ptp(d[resting]))
-    found = _recognised(t, d, trim, rest_range, RESTING_S)
-    if found is None and np.ptp(d[t >= t[-1] - _SLOW_REST_S]) <= 1.5 * rest_range + 0.5 * SMALLEST_RAD:
-        # A slow multisine lingers around trim on its way; it is whole only between longer rests.
-        found = _recognised(t, d, trim, rest_range, _SLOW_REST_S)
-        return found if found is not None and found.kind == "multisine" else None
-    return found
+    found = _recognised(t, d, trim, float(np.ptp(d[resting])))
+    return found if found is not None else recognise_swept(t, d, trim, SMALLEST_RAD)
 
 
-def _recognised(t: FloatArray, d: FloatArray, trim: float, rest_range: float, dwell_s: float) -> Shape | None:
-    """The input between the last rest of at least ``dwell_s`` and now."""
-    found = _extent(t, d, rest_range, dwell_s)
+def _recognised(t: FloatArray, d: FloatArray, trim: float, rest_range: float) -> Shape | None:
+    """The input of steps between the last rest and now."""
+    found = _extent(t, d, rest_range)
     if found is None:
         return None
     before, first, last = found
@@ -126,7 +72,7 @@ def _recognised(t: FloatArray, d: FloatArray, trim: float, rest_range: float, dw
     quiet = float(np.std(d[before:first]))
     if amplitude < max(SMALLEST_RAD, 5.0 * quiet) or rest_range > 0.4 * amplitude:
         return None
-    if abs(float(np.mean(d[before:first]))) > 0.5 * _BAND * amplitude:
+    if abs(float(np.mean(d[before:first]))) > 0.5 * BAND * amplitude:
         return None
     shape = _classify(t, d, first, last, trim, amplitude, quiet)
     if shape is None:
@@ -136,12 +82,10 @@ def _recognised(t: FloatArray, d: FloatArray, trim: float, rest_range: float, dw
         clear = rested_s >= _QUIET_S["other"] and amplitude >= 10.0 * quiet
         return shape if _is_sharp(t, d, shape, _SHARP_3211[int(clear)]) else None
     steady = rested_s >= _QUIET_S[shape.kind] and amplitude >= 8.0 * quiet
-    if shape.kind != "multisine" and steady and _is_sharp(t, d, shape, _SHARP):
-        return shape
-    return _multisine(t, d, first, shape)
+    return shape if steady and _is_sharp(t, d, shape, _SHARP) else None
 
 
-def _extent(t: FloatArray, d: FloatArray, rest_range: float, dwell_s: float) -> tuple[int, int, int] | None:
+def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, int] | None:
     """Indices: start of the quiet before, first and last sample away from trim.
 
     Goes back in time from the rest: the band around trim widens with the largest deviation
@@ -149,12 +93,12 @@ def _extent(t: FloatArray, d: FloatArray, rest_range: float, dwell_s: float) -> 
     would between two inputs.
     """
     largest = np.maximum.accumulate(np.abs(d)[::-1])[::-1]
-    band = np.maximum(_BAND * largest, max(0.5 * SMALLEST_RAD, rest_range))
+    band = np.maximum(BAND * largest, max(0.5 * SMALLEST_RAD, rest_range))
     away = np.flatnonzero(np.abs(d) > band)
     if len(away) == 0:
         return None
     last = int(away[-1])
-    gaps = np.flatnonzero(t[away[1:]] - t[away[:-1] + 1] >= dwell_s)
+    gaps = np.flatnonzero(t[away[1:]] - t[away[:-1] + 1] >= RESTING_S)
     if len(gaps):
         first = int(away[gaps[-1] + 1])
         before = int(away[gaps[-1]]) + 1
@@ -171,9 +115,9 @@ def _extent(t: FloatArray, d: FloatArray, rest_range: float, dwell_s: float) -> 
 def _classify(
     t: FloatArray, d: FloatArray, first: int, last: int, trim: float, amplitude: float, quiet: float
 ) -> Shape | None:
-    places = lobes(d, first, last, _BAND * amplitude)
+    places = lobes(d, first, last, BAND * amplitude)
     levels = np.array([float(np.median(d[a : b + 1])) for a, b in places])
-    if np.min(np.abs(levels)) < 0.5 * _BAND * amplitude:
+    if np.min(np.abs(levels)) < 0.5 * BAND * amplitude:
         return None
     times = onsets(t, d, places, levels)
     durations = np.diff(times)
@@ -228,25 +172,4 @@ def _kind(levels: FloatArray, durations: FloatArray, square: float, step_s: floa
         kind = "doublet"
     if square >= _SQUARE[kind] and (kind != "other" or len(levels) > 1):
         return kind
-    return "multisine" if len(levels) > 1 else None
-
-
-def _multisine(t: FloatArray, d: FloatArray, first: int, shape: Shape) -> Shape | None:
-    """The shape as a multisine: many reversals, quick ones, no dying away, and real quiet before.
-
-    A multisine swells: its first lobes may lie in the band around trim, so the quiet is looked
-    for up to three seconds before the elevator leaves that band.
-    """
-    levels = np.abs([level for _, level in shape.steps[:-1]])
-    if len(levels) < _FEWEST_LOBES or np.median(np.diff([onset for onset, _ in shape.steps])) > 1.5:
-        return None
-    early, late = np.max(levels[: len(levels) // 2]), np.max(levels[len(levels) // 2 :])
-    if not (late > 0.6 * early and early > 0.4 * late):
-        return None
-    for end in range(first, int(np.searchsorted(t, t[first] - 3.0)), -1):
-        rest = d[int(np.searchsorted(t, t[end] - _QUIET_S["multisine"])) : end]
-        if t[end] - t[0] < _QUIET_S["multisine"] or len(rest) < 3:
-            return None
-        if np.max(np.abs(rest)) <= 0.05 * shape.amplitude:
-            return replace(shape, kind="multisine", start_s=float(t[end]))
     return None

@@ -10,9 +10,10 @@ on the samples alone, not on how they were delivered.
 
 import numpy as np
 
-from advisor.flight.input_shape import RESTING_S, SMALLEST_RAD, Shape, recognise
+from advisor.flight.input_shape import RESTING_S, SMALLEST_RAD, recognise
 from advisor.flight.maneuver import Span
 from advisor.flight.messages import FloatArray
+from advisor.flight.shape import Shape
 
 LEAD_IN_S = 1.0
 """How much of the flight before the first step belongs to the record."""
@@ -22,6 +23,8 @@ _CHECK_S = 0.1
 """How often it looks."""
 _FREE_S = (3.0, 8.0)
 """Free response: as long as the input, but within these."""
+_LEAST_FREE_S = 2.5
+"""A multisine whose free response is cut short counts from so much on: slow wandering seldom rests so."""
 _LONGEST_GAP_S = 1.0
 _STEP_S = 0.12
 """A movement most of which happens within this time is a step."""
@@ -71,9 +74,9 @@ class Segmenter:
         return span
 
     def mode_changed(self, t: float) -> Span | None:
-        """The flight mode changed at ``t``: a free response ends there."""
+        """The flight mode changed, at ``t`` at the earliest: a free response ends there."""
         self._level, self._onset_s = None, None
-        return self._end("mode change", t)
+        return self._end("mode change", max(t, self._pending.over_s) if self._pending else t)
 
     def finish(self) -> Span | None:
         """No more samples will come."""
@@ -167,4 +170,7 @@ class Segmenter:
 
 def _least_free_s(shape: Shape) -> float:
     """How long the elevator must rest for an input to count when something cuts its free response."""
-    return 0.0 if shape.is_3211 else max(1.0, 2.0 * shape.longest_s)
+    if shape.is_3211:
+        return 0.0
+    least_s = max(1.0, 2.0 * shape.longest_s)
+    return min(least_s, _LEAST_FREE_S) if shape.kind == "multisine" else least_s

@@ -32,12 +32,12 @@ from advisor.flight.events import (
     Rebooted,
 )
 from advisor.flight.identity import Identity
-from advisor.flight.input_shape import is_3211
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import Columns, FloatArray, IntArray
 from advisor.flight.pieces import between, pieces
 from advisor.flight.record import UNITS, Channel
 from advisor.flight.segmentation import LEAD_IN_S
+from advisor.flight.shape import is_3211
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus, Tracks
@@ -47,6 +47,8 @@ from advisor.problems import Problem
 KEEP_S = 120.0
 """How far back channels reach: longer than any manoeuvre with its lead-in."""
 _OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
+_HEARTBEAT_S = 1.1
+"""The mode may have changed this long before a heartbeat tells it, or since the one before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +94,7 @@ class FlightStream:
         self._modes = [(-np.inf, self._who.mode)]
         self._first_s = np.nan
         self._master_s = np.nan
+        self._heartbeat_s = -np.inf
         self._theta = np.nan
 
     @property
@@ -183,7 +186,8 @@ class FlightStream:
             events.append(ModeChanged(self._who.mode, self._master_s))
             if np.isfinite(self._master_s):
                 order = min(int(c.order[0]) for c in piece)
-                self._watch.mode_changed(self._master_s, order)
+                earliest_s = max(self._heartbeat_s, self._master_s - _HEARTBEAT_S)
+                self._watch.mode_changed(earliest_s, order)
                 self._modes.append((self._master_s, self._who.mode))
             else:
                 self._modes = [(-np.inf, self._who.mode)]
@@ -231,6 +235,8 @@ class FlightStream:
                 continue
             now = np.searchsorted(orders, columns.order, side="right") - 1
             t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
+            if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
+                self._heartbeat_s = float(t[-1])
             for new in self._decode(columns, t, pitch[now], vehicle):
                 if new.channel == "elevator":
                     elevator.append(new)

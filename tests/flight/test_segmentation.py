@@ -133,6 +133,53 @@ def test_a_multisine_is_found():
     assert abs(span.start_s - 6.0) < 0.5
 
 
+def multisine(rng, duration_s):
+    """Harmonics of the duration with Schroeder's phases (Klein & Morelli 9.3), up to 2 Hz, of unit peak."""
+    harmonics = rng.integers(1, 3) + np.arange(rng.integers(5, 12))
+    harmonics = harmonics[harmonics / duration_s < 2.0]
+    phases = -np.pi * np.arange(1, len(harmonics) + 1) ** 2 / len(harmonics)
+
+    def wave(since):
+        x = 2.0 * np.pi * np.outer(harmonics, since) / duration_s
+        return np.sum(np.sin(x + phases[:, None]), axis=0)
+
+    return wave
+
+
+def sweep(rng, duration_s):
+    """From a low frequency to a high one or back, linear in time."""
+    low, high = rng.uniform(0.1, 0.3), rng.uniform(1.0, 2.5)
+    first, last = (low, high) if rng.random() < 0.7 else (high, low)
+    return lambda since: np.sin(2.0 * np.pi * (first * since + 0.5 * (last - first) / duration_s * since**2))
+
+
+@pytest.mark.parametrize("spoilt", ["clean", "noise", "amid corrections", "drift", "whole microseconds"])
+@pytest.mark.parametrize(("wave", "shortest_s", "longest_s"), [(multisine, 4.0, 20.0), (sweep, 8.0, 27.0)])
+def test_multisines_and_sweeps_are_found_whole_and_once_in_one_flight_mode(
+    wave, shortest_s, longest_s, spoilt
+):
+    for seed in SEEDS:
+        rng = np.random.default_rng((seed, len(spoilt)))
+        duration_s = rng.uniform(shortest_s, longest_s)
+        t = stamps(rng, 8.0 + duration_s + 12.0, rng.uniform(20.0, 60.0), jitter=0.2)
+        since = np.clip(t - 8.0, 0.0, duration_s)
+        swell = np.clip(np.minimum(since, duration_s - since) / rng.choice([0.1, 0.5, 1.0]), 0.0, 1.0)
+        amplitude = DEG * np.exp(rng.uniform(np.log(0.7), np.log(5.0)))
+        shape = swell * wave(rng, duration_s)(since)
+        u = amplitude * shape / np.max(np.abs(shape))
+        u += {
+            "noise": 0.03 * amplitude * rng.standard_normal(len(t)),
+            "amid corrections": 0.03 * amplitude * coloured(rng, t, 0.3),
+            "drift": 0.005 * amplitude * t,
+        }.get(spoilt, np.zeros(len(t)))
+        if spoilt == "whole microseconds":
+            u = np.round(u / (0.0625 * DEG)) * 0.0625 * DEG
+        (span,) = found(Stream(t, u + DEG * rng.uniform(-4.0, 4.0)))
+        assert span.kind == "multisine"
+        assert span.start_s == pytest.approx(8.0, abs=2.0)
+        assert span.last_step_s == pytest.approx(8.0 + duration_s, abs=1.0)
+
+
 def test_a_slow_multisine_that_swells_is_found_from_its_beginning():
     t = np.arange(0.0, 30.0, 0.02)
     since = np.clip(t - 8.0, 0.0, 9.0)
