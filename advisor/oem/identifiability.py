@@ -1,8 +1,11 @@
 """Which parameters this input tells, and which it does not. A good fit is no proof of either.
 
-Three ways to lose a parameter, each with its own sentence:
+Four ways to lose a parameter, each with its own sentence:
 
 - the data say nothing about it at all (a singular direction of the information matrix);
+- the elevator followed angle of attack and pitch rate, as a closed loop moves it: δe = k₀ + k₁·α + k₂·q makes
+  (1)-(2) hold for a whole plane of derivatives, and which of them fits best is decided by how the command
+  runs between its stamps;
 - its corrected error is as large as the size such a derivative has on this aircraft;
 - the servo is unknown, and a lag too small to be seen in the fit would change the value beyond
   use. That is how an over-damped aircraft fails, where α, q and δe move together.
@@ -17,12 +20,15 @@ from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.solution import Solution
+from advisor.oem.start import surface
 
 HIGH_CORRELATION = 0.9
 LARGEST_ERROR = 0.5
 """Corrected standard deviation over the natural size of the parameter."""
 LARGEST_SHIFT = 0.5
 """Change with the lag below over the new value or the natural size, whichever is larger."""
+LEAST_OWN_MOTION = 0.02
+"""Root mean square of the elevator's motion that no feedback explains, as a share of all of it."""
 SUPPOSED_LAG_S = 0.05
 """A servo lag nobody would notice in the fit."""
 
@@ -58,6 +64,13 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
     )
     std = np.sqrt(np.diag(solution.covariance))
     sizes = natural_size(solution.theta)
+    own = own_motion(solution)
+    if own < LEAST_OWN_MOTION:
+        text = (
+            "not identifiable from this input: the elevator followed angle of attack and pitch rate, as a"
+            f" closed loop moves it; only {100.0 * own:.1f} % of its motion was its own"
+        )
+        reasons = dict.fromkeys(sizes, text) | reasons
     for name, size in sizes.items():
         j = PARAMETERS.index(name)
         if name not in reasons and not std[j] <= LARGEST_ERROR * size:
@@ -81,6 +94,28 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
                     f" {SUPPOSED_LAG_S:g} s would turn {value:.3g} into {moved:.3g}; set elevator.lag_s"
                 )
     return reasons
+
+
+def own_motion(solution: Solution) -> float:
+    """Share of the elevator's motion, root mean square, that one feedback of α and q leaves unexplained."""
+    motion, feedback = [], []
+    for record, rows in zip(solution.problem.records, solution.assembly.rows, strict=True):
+        alpha, q = rows["alpha"], rows["q"]
+        t = solution.assembly.t
+        columns = np.column_stack(
+            [
+                surface(record, solution.problem.servo).at(t[q]),
+                np.interp(t[q], t[alpha], solution.fitted[alpha]),
+                solution.fitted[q],
+            ]
+        )
+        columns -= columns.mean(axis=0)
+        motion.append(columns[:, 0])
+        feedback.append(columns[:, 1:])
+    moved, states = np.concatenate(motion), np.concatenate(feedback)
+    left = moved - states @ np.linalg.lstsq(states, moved, rcond=None)[0]
+    size = float(np.linalg.norm(moved))
+    return float(np.linalg.norm(left)) / size if size > 0.0 else 1.0
 
 
 def correlated(covariance: FloatArray) -> tuple[tuple[str, str, float], ...]:

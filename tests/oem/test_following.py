@@ -9,7 +9,7 @@ from advisor.oem.following import Follower
 from advisor.oem.identifiability import natural_size
 from advisor.oem.warm import warm
 from advisor.report.document import identifiability
-from tests.oem.builders import JET, UAV, flown
+from tests.oem.builders import JET, UAV, elevator_3211, flown, maneuver, trim_alpha, trim_elevator
 
 AIRCRAFT = Aircraft(elevator=Elevator(lag_s=0.0))
 
@@ -58,6 +58,51 @@ def test_an_overdamped_aircraft_with_unknown_servo_gets_a_reason_instead_of_numb
     assert min(fit.r2 for fit in unknown.fits[0].values()) > 0.99
     known = estimate(flight, AIRCRAFT)
     assert "M_delta_e" not in known.not_identifiable
+
+
+def looped(theta, pilot, seed=0):
+    """The elevator follows angle of attack and pitch rate without delay, a pilot adds to it; Runge-Kutta."""
+    h = 0.001
+    t = np.arange(0.0, 10.0, h)
+    stick = pilot * elevator_3211(t, trim=0.0, amplitude=0.03, unit_s=0.5)
+    trim = np.array([trim_alpha(theta), 0.0])
+    a = np.array([[theta[1], 1.0 + theta[2]], [theta[5], theta[6]]])
+    closed = a + np.outer(theta[[3, 7]], LOOP)
+    x = np.zeros((len(t), 2))
+    x[0] = 0.03, 0.05
+    for k in range(len(t) - 1):
+        now, middle, then = stick[k], (stick[k] + stick[k + 1]) / 2.0, stick[k + 1]
+        k1 = closed @ x[k] + theta[[3, 7]] * now
+        k2 = closed @ (x[k] + h / 2.0 * k1) + theta[[3, 7]] * middle
+        k3 = closed @ (x[k] + h / 2.0 * k2) + theta[[3, 7]] * middle
+        k4 = closed @ (x[k] + h * k3) + theta[[3, 7]] * then
+        x[k + 1] = x[k] + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+    u = trim_elevator(theta) + x @ LOOP + stick
+    rng = np.random.default_rng(seed)
+    t, u, z = t[::20], u[::20], (x + trim)[::20]
+    z = z + 0.02 * z.std(axis=0) * rng.standard_normal(z.shape)
+    return maneuver(1, (t, u), {"alpha": (t, z[:, 0]), "q": (t, z[:, 1])})
+
+
+LOOP = np.array([0.3, 0.05])
+
+
+@pytest.mark.parametrize("servo", [Elevator(lag_s=0.0), Elevator()])
+@pytest.mark.parametrize("seed", range(4))
+def test_an_elevator_that_only_follows_the_motion_gives_no_numbers_however_good_the_fit(servo, seed):
+    found = estimate(looped(UAV, pilot=0.0, seed=seed), Aircraft(elevator=servo))
+    if isinstance(found, NoEstimate):
+        assert "equally well" in found.text
+        return
+    assert min(fit.r2 for fit in found.fits[0].values()) > 0.99
+    assert {"Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e"} <= set(found.not_identifiable)
+    assert "closed loop" in found.not_identifiable["M_delta_e"]
+
+
+def test_a_pilot_s_own_motion_in_a_closed_loop_identifies_the_aircraft_behind_it():
+    found = estimate(looped(UAV, pilot=1.0), AIRCRAFT)
+    assert not found.not_identifiable
+    assert found.value("M_alpha") == pytest.approx(UAV[5], rel=0.1)
 
 
 def test_control_derivatives_are_lost_when_only_the_free_motion_stands_out_of_the_noise():
