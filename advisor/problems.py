@@ -25,6 +25,9 @@ class UnusableInputError(Exception):
         self.problem = Problem(code, text, fix)
         super().__init__(str(self.problem))
 
+    def __reduce__(self) -> tuple[type["UnusableInputError"], tuple[str, str, str]]:
+        return type(self), (self.problem.code, self.problem.text, self.problem.fix)
+
 
 class ConfigurationError(Exception):
     """The user's call or file is wrong (exit code 2); the message lists every mistake."""

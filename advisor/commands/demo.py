@@ -1,5 +1,6 @@
 """``advisor demo``: the bundled aircraft flies, the advisor advises."""
 
+from functools import partial
 from pathlib import Path
 
 import click
@@ -53,4 +54,4 @@ def command(
     if speed is None:
         speed = HEADLESS_SPEED if headless() else 1.0
     flight = Demonstration(flown, speed, seed, record_to)
-    advise(LinkSource(lambda: flight, f"demonstration: {flown} aircraft", flight.over), aircraft)
+    advise(partial(LinkSource, flight, flight.over), f"demonstration: {flown} aircraft", aircraft)

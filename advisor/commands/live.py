@@ -1,17 +1,21 @@
 """``advisor live``: advise on a live link."""
 
-from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from types import TracebackType
 from typing import TYPE_CHECKING
 
 import click
 
 from advisor.aircraft import Rule
 from advisor.commands.options import aircraft_option, read_aircraft, rule_option, target_system_option
-from advisor.commands.screen import Listener, advise
+from advisor.commands.screen import advise
 from advisor.problems import ConfigurationError
 
 if TYPE_CHECKING:
+    from advisor.mavlink.announce import Announcer
     from advisor.mavlink.link import Link
 
 
@@ -72,39 +76,64 @@ def command(
     from advisor.tui.live import LinkSource
 
     parse_connection(master)
-    key = read_key(signing_key) if signing_key else None
     announcer = Announcer() if announce else None
+    connection = _Connection(
+        master,
+        source_system,
+        target_system,
+        record_to,
+        recorded=not no_record,
+        key=read_key(signing_key) if signing_key else None,
+        request_rates=request_rates,
+        announcer=announcer,
+    )
+    tell = partial(_announce, announcer) if announcer else None
+    advise(partial(LinkSource, connection), master, aircraft, target_system, tell)
 
-    def opening() -> "Link":
+
+@dataclass
+class _Connection(AbstractContextManager["Link"]):
+    """A link as the options describe it; nothing is loaded or opened before it is entered."""
+
+    master: str
+    source_system: int
+    target_system: int | None
+    record_to: Path | None
+    recorded: bool
+    key: bytes | None
+    request_rates: bool
+    announcer: "Announcer | None"
+
+    def __enter__(self) -> "Link":
         from advisor.mavlink.inquiry import Inquiry
         from advisor.mavlink.link import Link
         from advisor.mavlink.outgoing import Talker
         from advisor.mavlink.rates import STREAMS, RateRequest
         from advisor.mavlink.recorder import default_recording
 
-        talkers: list[Talker] = [announcer] if announcer else []
-        if request_rates:
+        talkers: list[Talker] = [self.announcer] if self.announcer else []
+        if self.request_rates:
             talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
-        return Link(
-            master,
-            source_system=source_system,
-            target_system=target_system,
-            record_to=None if no_record else record_to or default_recording(),
-            key=key,
+        self._link = Link(
+            self.master,
+            source_system=self.source_system,
+            target_system=self.target_system,
+            record_to=self.record_to or default_recording() if self.recorded else None,
+            key=self.key,
             talkers=talkers,
         )
+        return self._link.start()
 
-    tell = _announcing(announcer.judged) if announcer else None
-    advise(LinkSource(opening, master), aircraft, target_system, tell)
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._link.stop()
 
 
-def _announcing(judged: Callable[[int, str, str | None], object]) -> Listener:
+def _announce(announcer: "Announcer", event: object) -> None:
     from advisor.campaign import ManeuverJudged
 
-    def tell(event: object) -> None:
-        if isinstance(event, ManeuverJudged):
-            verdict = event.flight_test
-            stop = verdict.sentence if verdict.decision == "stop" else None
-            judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop)
-
-    return tell
+    if isinstance(event, ManeuverJudged):
+        verdict = event.flight_test
+        stop = verdict.sentence if verdict.decision == "stop" else None
+        announcer.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop)

@@ -1,5 +1,6 @@
 """``advisor replay``: a log played like a flight."""
 
+from functools import partial
 from math import inf
 from pathlib import Path
 
@@ -44,8 +45,10 @@ def command(
     """
     aircraft = read_aircraft(aircraft_file, rule)
     from advisor.tui.replay import LogPlayer
+    from advisor.tui.source import Tempo
 
-    advise(LogPlayer(log.name, lambda: _columns(log), speed), aircraft, target_system)
+    player = partial(LogPlayer, log.name, partial(_columns, log), speed)
+    advise(player, log.name, aircraft, target_system, tempo=Tempo(speed=speed))
 
 
 def _columns(log: Path) -> list[Columns]:

@@ -1,18 +1,19 @@
 """Running a campaign with a screen where there is one, as lines of text where there is none."""
 
+import gc
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
 from advisor.aircraft import Aircraft
 from advisor.flight.messages import Columns
-from advisor.problems import UnusableInputError
-from advisor.tui.campaign_like import CampaignLike
-from advisor.tui.source import Playable, Source
+from advisor.problems import Problem, UnusableInputError
+from advisor.tui.source import Source, Tempo
 
 if TYPE_CHECKING:
     from advisor.campaign import Campaign
@@ -28,59 +29,77 @@ def headless() -> bool:
 
 
 def advise(
-    source: Source, aircraft: Aircraft, target_system: int | None = None, tell: Listener | None = None
+    open_source: Callable[[], Source],
+    title: str,
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    tell: Listener | None = None,
+    tempo: Tempo | None = None,
 ) -> None:
     """Run a campaign on a source: in the terminal application, or as lines of text.
 
     Parameters
     ----------
+    open_source
+        Makes the source, in the process that estimates: it must be picklable, as must ``tell``.
+    title
+        What the source is called on the screens.
     tell
-        Called with every event of the campaign, from the thread that estimates.
+        Called with every event of the campaign, where it is estimated.
+    tempo
+        How a replay starts; None: the source is no replay.
 
     Raises
     ------
     UnusableInputError
         When the source can never serve, or has ended without anything to judge.
     """
+    make_campaign = partial(_campaign, aircraft, target_system, tell)
     if headless():
-        _narrate(source, aircraft, target_system, tell)
+        _narrate(open_source(), make_campaign(settle=False))
     else:
-        _show(source, aircraft, target_system, tell)
+        _show(open_source, partial(make_campaign, settle=True), aircraft, title, tempo)
 
 
-def _show(source: Source, aircraft: Aircraft, target_system: int | None, tell: Listener | None) -> None:
+def _campaign(
+    aircraft: Aircraft, target_system: int | None, tell: Listener | None, settle: bool
+) -> "Campaign":
+    from advisor.campaign import Campaign
+
+    return Campaign(aircraft, target_system, settle=settle, tell=tell)
+
+
+def _show(
+    open_source: Callable[[], Source],
+    make_campaign: "Callable[[], Campaign]",
+    aircraft: Aircraft,
+    title: str,
+    tempo: Tempo | None,
+) -> None:
     from advisor.tui.app import AdvisorApp
+    from advisor.tui.remote import RemoteConductor, Task
     from advisor.tui.settings import load_settings
 
-    campaigns: list[Campaign] = []
-
-    def make_campaign() -> CampaignLike:
-        # Called in the working thread, after the first paint: the numerical libraries load there.
-        from advisor.campaign import Campaign
-
-        campaigns.append(Campaign(aircraft, target_system, settle=True, tell=tell))
-        return campaigns[-1]
-
-    app = AdvisorApp(source, make_campaign, aircraft, load_settings())
+    conductor = RemoteConductor(Task(open_source, make_campaign))
+    app = AdvisorApp(conductor, aircraft, title, tempo, load_settings())
+    # What was imported lives as long as the screens: looking through it for garbage would hold up keys.
+    gc.freeze()
     app.run()
     if app.failure is not None:
         raise app.failure
-    if isinstance(source, Playable) and campaigns:
-        _refuse_if_unusable(campaigns[-1])
+    if tempo is not None:
+        _refuse_if_unusable(app.view.problems)
 
 
-def _narrate(source: Source, aircraft: Aircraft, target_system: int | None, tell: Listener | None) -> None:
-    from advisor.campaign import Campaign
+def _narrate(source: Source, campaign: "Campaign") -> None:
     from advisor.report.follow import follow
 
-    campaign = Campaign(aircraft, target_system, tell=tell)
     with closing(source):
         follow(_batches(source), campaign, click.echo)
-    _refuse_if_unusable(campaign)
+    _refuse_if_unusable(campaign.problems)
 
 
-def _refuse_if_unusable(campaign: "Campaign") -> None:
-    problems = campaign.problems
+def _refuse_if_unusable(problems: Sequence[Problem]) -> None:
     if problems:
         raise UnusableInputError(problems[0].code, problems[0].text, problems[0].fix)
 

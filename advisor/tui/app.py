@@ -1,8 +1,8 @@
-"""The terminal application: one source, one campaign, two screens."""
+"""The terminal application: one campaign, two screens."""
 
-import sys
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 from math import inf
 from time import monotonic
 from typing import Any, ClassVar
@@ -16,33 +16,35 @@ from textual.worker import Worker, WorkerState
 from advisor.aircraft import Aircraft
 from advisor.problems import UnusableInputError
 from advisor.tui import keys, replay_actions
-from advisor.tui.campaign_like import CampaignLike
-from advisor.tui.conductor import Conductor, Report
+from advisor.tui.conducting import Conducting, Report
 from advisor.tui.explaining import explanation, keys_at_hand
 from advisor.tui.hand import HandDecision
 from advisor.tui.screens.engineer import EngineerScreen
+from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
-from advisor.tui.source import Playable, Source
+from advisor.tui.source import Tempo
 from advisor.tui.themes import NAMES, THEMES
-from advisor.tui.view import view_before_first
+from advisor.tui.view import View, view_before_first
 
 _TWICE_WITHIN_S = 3.0
-_GIVE_WAY_S = 0.001
+_AT_ONCE_S = 0.001
 
 
 class AdvisorApp(replay_actions.ReplayActions, App[None]):
-    """Shows what a campaign says of a source, until the user leaves.
+    """Shows what a campaign says of a link, a log or a demonstration, until the user leaves.
 
     Parameters
     ----------
-    source : Source
-        A link, a log or a demonstration.
-    make_campaign : callable
-        Makes an empty `advisor.campaign.Campaign`; called in the working thread.
+    conductor : Conducting
+        Runs the campaign; started after the first paint, in a thread that only listens to it.
     aircraft : Aircraft
         The aircraft file: name, prior model, stop criterion.
+    title : str
+        What the source is called.
+    tempo : Tempo, optional
+        How a replay starts; None: the source is no replay.
     settings : Settings, optional
         Theme, first screen, keys.
     """
@@ -64,39 +66,41 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
 
     def __init__(
         self,
-        source: Source,
-        make_campaign: Callable[[], CampaignLike],
+        conductor: Conducting,
         aircraft: Aircraft,
+        title: str,
+        tempo: Tempo | None = None,
         settings: Settings | None = None,
     ) -> None:
         super().__init__()
         self.settings = settings or Settings()
-        self.source = source
-        self.view = view_before_first(aircraft, source)
-        self.conductor = Conductor(source, make_campaign, lambda report: self.post_message(self.Told(report)))
+        self.view = view_before_first(aircraft, title, tempo)
+        self.conductor = conductor
         self.failure: BaseException | None = None
         """What the caller must answer for: why the thread broke off, or why the input could not be used."""
         self._leaving_s = -inf
         for theme in THEMES:
             self.register_theme(theme)
         self.theme = self.settings.theme
+        # The palette would offer Textual's own, which have no colours for plots.
+        for name in set(self.available_themes) - set(NAMES):
+            self.unregister_theme(name)
         self.set_keymap(dict(self.settings.keys))
 
     async def on_mount(self) -> None:
-        """Paint first, then let the working thread import and compute."""
-        # The estimates' thread must give way sooner than the interpreter's 5 ms, lest keys wait for it.
-        sys.setswitchinterval(_GIVE_WAY_S)
+        """Paint first, then let the work begin."""
         await self.action_face(self.settings.screen)
-        self.call_after_refresh(self.run_worker, self.conductor.run, thread=True, exit_on_error=False)
+        run = partial(self.conductor.run, lambda report: self.post_message(self.Told(report)))
+        self.call_after_refresh(self.run_worker, run, thread=True, exit_on_error=False)
 
     def on_unmount(self) -> None:
-        """Let the working thread end."""
+        """Let the work end."""
         self.conductor.stop()
 
     def on_advisor_app_told(self, event: Told) -> None:
         """Show the newest report."""
         report = event.report
-        self.view = replace(
+        view = replace(
             self.view,
             state=report.state,
             health=report.health,
@@ -107,7 +111,7 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         if report.health.condition == "ended" and report.problems:
             problem = report.problems[0]
             self.failure = UnusableInputError(problem.code, problem.text, problem.fix)
-        self._show()
+        self.show(view)
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
         """Leave when the input turns out to be unusable; the caller says why."""
@@ -119,14 +123,16 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         """Hand a decision to the campaign."""
         self.conductor.decide(event.decision)
 
-    def _show(self) -> None:
+    def show(self, view: View) -> None:
+        """Show another moment on the screens."""
+        self.view = view
         for screen in self.screen_stack:
             if isinstance(screen, Face):
                 screen.show(self.view)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the replay's actions only in a replay."""
-        return action not in replay_actions.ACTIONS or isinstance(self.source, Playable)
+        return action not in replay_actions.ACTIONS or self.view.tempo is not None
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
         """Every action that has a key, after Textual's own commands."""
@@ -137,19 +143,21 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
     async def action_face(self, name: str) -> None:
         """Switch to the pilot's or the engineer's screen."""
         await self.switch_mode(name)
-        self._show()
+        self.show(self.view)
+
+    def delay_update(self, delay: float = _AT_ONCE_S) -> None:
+        """Paint at once: by itself Textual hides transitions for 50 ms, which mounted screens do not have."""
+        super().delay_update(_AT_ONCE_S)
 
     def action_next_theme(self) -> None:
         """Switch to the next theme."""
         here = NAMES.index(self.theme) if self.theme in NAMES else -1
-        self.theme = NAMES[(here + 1) % len(NAMES)]
-        self.notify(f"theme: {self.theme}", timeout=2)
+        theme = NAMES[(here + 1) % len(NAMES)]
+        self.notify(f"theme: {theme}", timeout=2)
+        self.theme = theme
 
     def action_explain(self) -> None:
         """Help for what has the focus."""
-        # Reading Markdown takes longer to import than the first screen to paint.
-        from advisor.tui.screens.explain import Explain
-
         self.push_screen(Explain(explanation(self)))
 
     def action_mark(self) -> None:
@@ -162,7 +170,7 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
 
     def action_leave(self) -> None:
         """Quit; on a live link only when asked twice."""
-        over = isinstance(self.source, Playable) or self.view.health.condition == "ended"
+        over = self.view.tempo is not None or self.view.health.condition == "ended"
         if over or monotonic() - self._leaving_s < _TWICE_WITHIN_S:
             self.exit()
             return

@@ -1,40 +1,25 @@
-"""The working thread: feeds one campaign from one source and reports what it says.
+"""The working side: feeds one campaign from one source and reports what it says.
 
-The estimation runs here, so that keys are answered while it does. No other
-thread touches the campaign; screens ask by the methods below, which only
-queue the request, and hear through ``tell``.
+No thread but the one in ``run`` touches the campaign; whoever asks by the methods
+below only leaves a request, and hears through ``tell``.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf
 from queue import Empty, SimpleQueue
 from threading import Event
 from time import monotonic
 
-from advisor.campaign_state import CampaignState
-from advisor.problems import Problem
 from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.chronicle import Chronicle
+from advisor.tui.conducting import Report, Tell
 from advisor.tui.goal import Goal
 from advisor.tui.hand import HandDecision
-from advisor.tui.source import LinkHealth, Playable, Playback, Source
+from advisor.tui.source import Playable, Source, Tempo
 
 REPORT_EVERY_S = 0.1
 _READ_TIMEOUT_S = 0.05
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Report:
-    """One moment of the campaign, the link and the replay."""
-
-    state: CampaignState
-    health: LinkHealth
-    playback: Playback | None
-    log: tuple[str, ...]
-    """What happened so far, oldest first."""
-    problems: tuple[Problem, ...] = ()
-    """Why nothing can be judged, while nothing has been."""
 
 
 class Conductor:
@@ -45,18 +30,13 @@ class Conductor:
     source : Source
         Where the data come from.
     make_campaign : callable
-        Makes an empty campaign; called in the working thread, so that the screen is
-        painted before the numerical libraries are imported. Called again for a rewind.
-    tell : callable
-        Receives a `Report` at most every `REPORT_EVERY_S`; must be safe to call from this thread.
+        Makes an empty campaign; called by ``run``, and again for a rewind.
     """
 
-    def __init__(
-        self, source: Source, make_campaign: Callable[[], CampaignLike], tell: Callable[[Report], object]
-    ) -> None:
+    def __init__(self, source: Source, make_campaign: Callable[[], CampaignLike]) -> None:
         self._source = source
         self._make_campaign = make_campaign
-        self._tell = tell
+        self._tell: Tell = lambda report: None
         self._requests: SimpleQueue[Callable[[CampaignLike], None]] = SimpleQueue()
         self._by_hand: list[HandDecision] = []
         self._pending: list[HandDecision] = []
@@ -66,14 +46,20 @@ class Conductor:
         self._rewound = False
         self._told_s = -inf
 
-    def run(self) -> None:
+    def run(self, tell: Tell) -> None:
         """Work until `stop`; the calling thread is the working thread.
+
+        Parameters
+        ----------
+        tell : callable
+            Receives a `Report` at most every `REPORT_EVERY_S`, in this thread.
 
         Raises
         ------
         UnusableInputError
             When the input can never serve.
         """
+        self._tell = tell
         try:
             while not self._stopped.is_set():
                 self._rewound = False
@@ -93,6 +79,16 @@ class Conductor:
     def jump(self, number: int) -> None:
         """Play on, or from the beginning, to just before a manoeuvre."""
         self._requests.put(lambda campaign: self._jump(campaign, number))
+
+    def play(self, tempo: Tempo) -> None:
+        """Hold a replay, let it go on, faster or slower."""
+        if isinstance(self._source, Playable):
+            self._source.play(tempo)
+
+    def step(self) -> None:
+        """Play the next tenth of a second of a held replay."""
+        if isinstance(self._source, Playable):
+            self._source.step()
 
     def _play(self, campaign: CampaignLike) -> None:
         """Feed one campaign until a rewind or the stop."""
@@ -156,19 +152,15 @@ class Conductor:
         if not isinstance(self._source, Playable):
             return
         known = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
-        before = self._goal.before if self._goal else self._source.playback()
-        self._goal = Goal(number, known.span.start_s if known else None, before)
+        self._goal = Goal(number, known.span.start_s if known else None)
         if known:
             self._source.rewind()
             self._pending = list(self._by_hand)
             self._rewound = True
-        self._source.pause(False)
-        self._source.set_speed(inf)
+        self._source.hurry(True)
 
     def _arrive(self) -> None:
-        """The jump is over, at its goal or at the end of the log: play on as before it."""
-        if self._goal is None or not isinstance(self._source, Playable):
-            return
-        self._source.set_speed(self._goal.before.speed)
-        self._source.pause(self._goal.before.paused)
-        self._goal = None
+        """The jump is over, at its goal or at the end of the log."""
+        if self._goal is not None and isinstance(self._source, Playable):
+            self._source.hurry(False)
+            self._goal = None

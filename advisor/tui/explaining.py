@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from rich.text import Text
 from textual.app import App
 
+from advisor.tui.help_page import help_page
 from advisor.tui.keys import ACTIONS
 
 
@@ -35,9 +37,14 @@ def keys_at_hand(app: App[None]) -> list[KeyAtHand]:
     ]
 
 
-def explanation(app: App[None]) -> str:
-    """Markdown: what the focused pane shows, what the screen is for, and the keys."""
+def explanation(app: App[None]) -> Text:
+    """What the focused pane shows, what the screen is for, and the keys."""
     around = (app.focused or app.screen).ancestors_with_self
-    pages = [node.HELP for node in around if node.HELP]
-    rows = "\n".join(f"| `{key.shown}` | {key.does} | {key.name} |" for key in keys_at_hand(app))
-    return "\n".join([*pages, "# Keys", "", "| key | does | name in settings |", "|---|---|---|", rows, ""])
+    page = help_page("\n\n".join([*(node.HELP for node in around if node.HELP), "# Keys"]))
+    rows = [("key", "does", "name in settings"), *((k.shown, k.does, k.name) for k in keys_at_hand(app))]
+    widths = [max(len(row[column]) for row in rows) + 2 for column in range(3)]
+    for row in rows:
+        page.append(
+            "".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() + "\n"
+        )
+    return page

@@ -3,19 +3,17 @@
 from dataclasses import dataclass
 
 from advisor.campaign_state import CampaignState
-from advisor.tui.source import Playback
 
 LEAD_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """Just before manoeuvre ``number`` is flown; afterwards the replay goes on as ``before``."""
+    """Just before manoeuvre ``number`` is flown."""
 
     number: int
     start_s: float | None
     """Vehicle time of its first step when it was judged before; None when it still lies ahead."""
-    before: Playback
 
     def reached(self, state: CampaignState) -> bool:
         """Whether the replay has come there, or past it."""

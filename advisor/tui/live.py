@@ -20,29 +20,17 @@ class LinkSource:
 
     Parameters
     ----------
-    opening
-        Makes the link, still closed. It is called and opened by the first ``read``, in the
-        reading thread, so that a screen is painted before the decoders are loaded.
-    title
-        What the status line calls it.
+    connection
+        Opens the link; entered by the first ``read``.
     over
         Says whether the far end has finished for good; a demonstration knows, a link never does.
     """
 
     def __init__(
-        self,
-        opening: "Callable[[], AbstractContextManager[Link]]",
-        title: str,
-        over: Callable[[], bool] = lambda: False,
+        self, connection: "AbstractContextManager[Link]", over: Callable[[], bool] = lambda: False
     ) -> None:
-        self._opening, self._title, self._over = opening, title, over
-        self._opened: AbstractContextManager[Link] | None = None
+        self._connection, self._over = connection, over
         self._link: Link | None = None
-
-    @property
-    def title(self) -> str:
-        """What it is, for the status line."""
-        return self._title
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
         """The next batch; None when the far end has finished and all of it was read.
@@ -53,9 +41,7 @@ class LinkSource:
             When the connection cannot be opened.
         """
         if self._link is None:
-            opened = self._opening()
-            self._link = opened.__enter__()
-            self._opened = opened
+            self._link = self._connection.__enter__()
         over = self._over()
         columns = self._link.read(timeout_s)
         return None if over and not columns else columns
@@ -76,9 +62,8 @@ class LinkSource:
 
     def close(self) -> None:
         """Stop listening; the recording is whole afterwards."""
-        if self._opened is not None:
-            self._opened.__exit__(None, None, None)
-            self._opened = None
+        if self._link is not None:
+            self._connection.__exit__(None, None, None)
 
 
 def _glance(link: LinkStatistics) -> tuple[Condition, str]:

@@ -19,9 +19,11 @@ from advisor.config import load_aircraft
 from advisor.flight.messages import Columns
 from advisor.mavlink.logs import open_log
 from advisor.tui.app import AdvisorApp
+from advisor.tui.conductor import Conductor
 from advisor.tui.plot.canvas import BITS, BLANK
 from advisor.tui.replay import LogPlayer
 from advisor.tui.settings import Face, Settings
+from advisor.tui.source import Tempo
 
 SIZES: dict[Face, tuple[int, int]] = {"pilot": (100, 30), "engineer": (180, 50)}
 _CELL_WIDTH, _CELL_HEIGHT, _BASELINE = 12.2, 24.4, 18.5
@@ -79,7 +81,8 @@ async def picture(log: Path, aircraft_file: Path | None, face: Face, after: int,
         return [columns for batch in open_log(log) for columns in batch]
 
     player = LogPlayer(log.name, load, inf)
-    app = AdvisorApp(player, lambda: Campaign(aircraft, settle=True), aircraft, Settings(theme, face))
+    conductor = Conductor(player, lambda: Campaign(aircraft, settle=True))
+    app = AdvisorApp(conductor, aircraft, log.name, Tempo(speed=inf), Settings(theme, face))
     async with app.run_test(size=SIZES[face]) as pilot:
         app.conductor.jump(after + 1)
         state = app.view.state
@@ -87,7 +90,7 @@ async def picture(log: Path, aircraft_file: Path | None, face: Face, after: int,
             await pilot.pause(0.02)
             state = app.view.state
             if len(state.maneuvers) >= after and state.flying and state.settling:
-                player.pause(True)
+                app.action_pause()
                 break
         await pilot.pause(0.3)
         return drawn(app.export_screenshot(title=f"advisor replay {log.name}"))

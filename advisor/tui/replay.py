@@ -5,7 +5,7 @@ from math import inf
 from threading import Event
 
 from advisor.flight.messages import Columns
-from advisor.tui.source import LinkHealth, Playback
+from advisor.tui.source import LinkHealth, Playback, Tempo
 from advisor.tui.timeline import Timeline
 
 STEP_S = 0.1
@@ -41,18 +41,13 @@ class LogPlayer:
         self._title = title
         self._load = load
         self._wait = wait
-        self._speed = speed
-        self._paused = False
+        self._tempo = Tempo(speed=speed)
+        self._hurrying = False
         self._steps = 0
         self._position_s = 0.0
         self._ended = False
         self._timeline: Timeline | None = None
         self._changed = Event()
-
-    @property
-    def title(self) -> str:
-        """The log's name."""
-        return self._title
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
         """The next stretch of the log when its time has come, see `Source.read`."""
@@ -62,17 +57,20 @@ class LogPlayer:
         if self._ended:
             return None
         self._changed.clear()
-        if self._steps:
+        tempo = self._tempo
+        if self._hurrying:
+            stretch_s = _FAST_SLICE_S
+        elif self._steps:
             self._steps -= 1
             stretch_s = STEP_S
-        elif self._paused:
+        elif tempo.paused:
             self._wait(self._changed, timeout_s)
             return ()
-        elif self._speed == inf:
+        elif tempo.speed == inf:
             stretch_s = _FAST_SLICE_S
         else:
-            stretch_s = STEP_S * max(1.0, self._speed)
-            self._wait(self._changed, stretch_s / self._speed)
+            stretch_s = STEP_S * max(1.0, tempo.speed)
+            self._wait(self._changed, stretch_s / tempo.speed)
             if self._changed.is_set():
                 return ()
         self._position_s = min(self._position_s + stretch_s, self._timeline.duration_s)
@@ -91,22 +89,21 @@ class LogPlayer:
     def playback(self) -> Playback:
         """Where it stands."""
         duration_s = self._timeline.duration_s if self._timeline else 0.0
-        return Playback(self._paused, self._speed, self._position_s, duration_s)
+        return Playback(self._position_s, duration_s, self._hurrying)
 
-    def pause(self, paused: bool) -> None:
-        """Hold or go on."""
-        self._paused = paused
-        self._changed.set()
-
-    def set_speed(self, speed: float) -> None:
-        """Multiple of real time, above 0; infinite: as fast as it can."""
-        self._speed = speed
+    def play(self, tempo: Tempo) -> None:
+        """Hold, go on, faster or slower."""
+        self._tempo = tempo
         self._changed.set()
 
     def step(self) -> None:
         """Deliver the next `STEP_S`, paused or not."""
         self._steps += 1
         self._changed.set()
+
+    def hurry(self, hurrying: bool) -> None:
+        """Play as fast as it can, or at the tempo again."""
+        self._hurrying = hurrying
 
     def rewind(self) -> None:
         """Start again with the first record. Only between two reads."""

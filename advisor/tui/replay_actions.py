@@ -1,11 +1,13 @@
 """What keys do to a replay."""
 
+from abc import abstractmethod
+from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING
 
-from advisor.tui.conductor import Conductor
+from advisor.tui.conducting import Conducting
 from advisor.tui.screens.face import Face
-from advisor.tui.source import Playable, Source
+from advisor.tui.source import Tempo
 from advisor.tui.view import View
 
 if TYPE_CHECKING:
@@ -22,42 +24,51 @@ ACTIONS = ("pause", "step", "faster", "slower", "jump", "jump_by")
 class ReplayActions(Base):
     """Actions of the application that exist only while a log is played."""
 
-    source: Source
-    conductor: Conductor
+    conductor: Conducting
     view: View
 
     def action_pause(self) -> None:
         """Hold the replay, or go on."""
-        if isinstance(self.source, Playable):
-            self.source.pause(not self.source.playback().paused)
+        self._play(replace(self._tempo, paused=not self._tempo.paused))
 
     def action_step(self) -> None:
         """Hold the replay and play a tenth of a second."""
-        if isinstance(self.source, Playable):
-            self.source.pause(True)
-            self.source.step()
+        self._play(replace(self._tempo, paused=True))
+        self.conductor.step()
 
     def action_faster(self) -> None:
         """Next higher speed."""
-        if isinstance(self.source, Playable):
-            now = self.source.playback().speed
-            self.source.set_speed(next((s for s in SPEEDS if s > now), inf))
+        speed = next((s for s in SPEEDS if s > self._tempo.speed), inf)
+        self._play(replace(self._tempo, speed=speed))
 
     def action_slower(self) -> None:
         """Next lower speed."""
-        if isinstance(self.source, Playable):
-            now = self.source.playback().speed
-            self.source.set_speed(next((s for s in reversed(SPEEDS) if s < now), SPEEDS[0]))
+        speed = next((s for s in reversed(SPEEDS) if s < self._tempo.speed), SPEEDS[0])
+        self._play(replace(self._tempo, speed=speed))
 
     def action_jump(self) -> None:
         """Ask for a manoeuvre and go to where it begins."""
         if isinstance(self.screen, Face):
-            self.screen.ask("Jump to manoeuvre number:", self._jump_to, integer=True)
+            self.screen.ask("Jump to manoeuvre number:", lambda answer: self._jump(int(answer)), integer=True)
 
     def action_jump_by(self, step: int) -> None:
         """Go to the next manoeuvre, or back to where the last one began."""
         flown = len(self.view.state.maneuvers)
-        self.conductor.jump(max(1, flown + step if step > 0 else flown))
+        self._jump(flown + step if step > 0 else flown)
 
-    def _jump_to(self, answer: str) -> None:
-        self.conductor.jump(max(1, int(answer)))
+    @abstractmethod
+    def show(self, view: View) -> None:
+        """Show another moment on the screens."""
+
+    @property
+    def _tempo(self) -> Tempo:
+        return self.view.tempo or Tempo()
+
+    def _play(self, tempo: Tempo) -> None:
+        """Show it at once, whatever the working side is busy with."""
+        self.conductor.play(tempo)
+        self.show(replace(self.view, tempo=tempo))
+
+    def _jump(self, number: int) -> None:
+        self.conductor.jump(max(1, number))
+        self.notify(f"jumping to manoeuvre {max(1, number)}", timeout=2)

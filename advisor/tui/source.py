@@ -23,10 +23,6 @@ class LinkHealth:
 class Source(Protocol):
     """Delivers batches of columns in order of arrival. All calls but ``health`` come from one thread."""
 
-    @property
-    def title(self) -> str:
-        """What it is, for the status line: ``udpin:0.0.0.0:14550``, ``flight7.tlog``."""
-
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
         """Wait at most ``timeout_s`` for the next batch; empty: nothing yet; None: the end.
 
@@ -47,33 +43,41 @@ class Source(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
+class Tempo:
+    """How the crew wants a replay to run."""
+
+    paused: bool = False
+    speed: float = 1.0
+    """1: as it was flown; infinite: as fast as it can."""
+
+
+@dataclass(frozen=True, slots=True)
 class Playback:
     """Where a replay stands."""
 
-    paused: bool
-    speed: float
-    """1: as it was flown; infinite: as fast as it can."""
     position_s: float
     """Seconds since the first record, silences shortened."""
     duration_s: float
     """Length on the same scale."""
+    hurrying: bool = False
+    """On the way to where someone wants it to be, whatever its tempo."""
 
 
 @runtime_checkable
 class Playable(Source, Protocol):
-    """A source that can be paused, stepped, sped up and started again. Any thread may call."""
+    """A source that can be paused, stepped, sped up and started again."""
 
     def playback(self) -> Playback:
         """Where it stands."""
 
-    def pause(self, paused: bool) -> None:
-        """Hold or go on."""
-
-    def set_speed(self, speed: float) -> None:
-        """Multiple of real time, above 0; infinite: as fast as it can."""
+    def play(self, tempo: Tempo) -> None:
+        """Change the tempo; any thread may call."""
 
     def step(self) -> None:
-        """While paused: deliver the next tenth of a second."""
+        """While paused: deliver the next tenth of a second; any thread may call."""
+
+    def hurry(self, hurrying: bool) -> None:
+        """Play as fast as it can, paused or not; afterwards the tempo holds again."""
 
     def rewind(self) -> None:
         """Start again with the first record; the caller starts a new campaign."""

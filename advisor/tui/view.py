@@ -6,7 +6,7 @@ from advisor.aircraft import Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.problems import Problem
-from advisor.tui.source import LinkHealth, Playback, Source
+from advisor.tui.source import LinkHealth, Playback, Tempo
 
 PATIENCE_S = 15.0
 """So long may the parameters and streams of a vehicle take to arrive before it is called a problem."""
@@ -19,9 +19,12 @@ class View:
     state: CampaignState
     health: LinkHealth
     playback: Playback | None
+    """Where a replay stands; None on a live link, and before the log is read."""
     aircraft: Aircraft
     title: str
     """What the source is called."""
+    tempo: Tempo | None = None
+    """How a replay is wanted to run; None on a live link."""
     log: tuple[str, ...] = ()
     """What happened so far, oldest first."""
     problems: tuple[Problem, ...] = ()
@@ -48,7 +51,7 @@ class View:
         return next((j for j in reversed(self.state.maneuvers) if j.excluded_because is None), None)
 
 
-def view_before_first(aircraft: Aircraft, source: Source) -> View:
+def view_before_first(aircraft: Aircraft, title: str, tempo: Tempo | None) -> View:
     """What there is to show before the first report: nothing flown, nothing heard."""
     plan = aircraft.campaign
     verdict = FlightTestVerdict(
@@ -64,4 +67,4 @@ def view_before_first(aircraft: Aircraft, source: Source) -> View:
         flight_test=verdict,
         model=None,
     )
-    return View(state, source.health(), None, aircraft, source.title)
+    return View(state, LinkHealth("waiting", f"Opening {title}."), None, aircraft, title, tempo)

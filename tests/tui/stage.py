@@ -13,9 +13,10 @@ from textual.widget import Widget
 
 from advisor.campaign_state import CampaignState
 from advisor.tui.app import AdvisorApp
+from advisor.tui.conductor import Conductor
 from advisor.tui.panes.lines import Lines
 from advisor.tui.settings import Settings
-from advisor.tui.source import Source
+from advisor.tui.source import Playable, Source, Tempo
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
 
@@ -81,7 +82,10 @@ async def stage(
     """The application over a campaign that goes through ``states``, shown the first of them."""
     campaign = StagedCampaign(states or (flights.state(),))
     source = source or HandFedSource()
-    app = AdvisorApp(source, lambda: campaign, flights.AIRCRAFT, settings)
+    tempo = Tempo() if isinstance(source, Playable) else None
+    app = AdvisorApp(
+        Conductor(source, lambda: campaign), flights.AIRCRAFT, "udpin:127.0.0.1:0", tempo, settings
+    )
     async with app.run_test(size=size) as pilot:
         here = Stage(app, pilot, campaign, source)
         await here.until(lambda: app.view.state.vehicle == campaign.state.vehicle and app.is_attached)

@@ -77,8 +77,6 @@ class StagedCampaign:
 class HandFedSource:
     """Delivers what a test puts into it."""
 
-    title = "udpin:127.0.0.1:0"
-
     def __init__(self) -> None:
         self.batches: SimpleQueue[Sequence[Columns] | Exception | None] = SimpleQueue()
         self.condition = LinkHealth(

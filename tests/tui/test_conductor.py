@@ -11,7 +11,8 @@ import pytest
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.flight.messages import Columns
 from advisor.problems import UnusableInputError
-from advisor.tui.conductor import Conductor, Report
+from advisor.tui.conducting import Report
+from advisor.tui.conductor import Conductor
 from advisor.tui.hand import HandDecision
 from advisor.tui.replay import LogPlayer
 from tests.tui import flights
@@ -56,7 +57,7 @@ class Flown:
         self.campaigns: list[CountingCampaign] = []
         self.reports: list[Report] = []
         self.script: list[tuple[Callable[[Report], bool], Callable[[], None]]] = []
-        self.conductor = Conductor(self.player, self._make, self._tell)
+        self.conductor = Conductor(self.player, self._make)
 
     def _make(self) -> CountingCampaign:
         self.campaigns.append(CountingCampaign())
@@ -74,7 +75,7 @@ class Flown:
     def run(self, campaigns: int = 1) -> None:
         """To the end of the log in the last of so many campaigns."""
         self.when(lambda report: over(report) and len(self.campaigns) == campaigns, self.conductor.stop)
-        self.conductor.run()
+        self.conductor.run(self._tell)
 
 
 def over(report: Report) -> bool:
@@ -102,7 +103,7 @@ def test_jumping_back_starts_a_new_campaign_and_ends_just_before_the_manoeuvre()
     flight.when(over, lambda: flight.conductor.jump(3))
     flight.run(campaigns=2)
     before = next(k for k, report in enumerate(flight.reports) if over(report))
-    landed = next(r for r in flight.reports[before:] if not over(r) and r.playback.speed == 2.0)
+    landed = next(r for r in flight.reports[before:] if not over(r) and not r.playback.hurrying)
     assert len(flight.campaigns) == 2
     assert len(landed.state.maneuvers) == 2
     assert 27.0 <= landed.state.now_s <= 27.6
@@ -115,16 +116,16 @@ def test_jumping_ahead_keeps_the_campaign_and_the_pace():
     flight.run()
     arrived = next(r for r in flight.reports if r.state.flying is not None and r.state.flying.number == 2)
     assert len(flight.campaigns) == 1
-    assert flight.player.playback().speed == 1.0
+    assert not arrived.playback.hurrying
     assert len(arrived.state.maneuvers) == 1
     assert flight.campaigns[0].fed == list(range(4 * A_MANEUVER))
 
 
-def test_a_jump_beyond_the_end_stops_there_at_the_old_pace():
+def test_a_jump_beyond_the_end_stops_there():
     flight = Flown(speed=2.0)
     flight.when(always, lambda: flight.conductor.jump(99))
     flight.run()
-    assert flight.player.playback().speed == 2.0
+    assert not flight.player.playback().hurrying
 
 
 def test_decisions_by_hand_survive_a_jump_back():
@@ -166,9 +167,8 @@ def test_a_decision_on_a_manoeuvre_still_to_come_waits_for_it():
 def test_unusable_input_ends_the_thread_and_closes_the_source():
     source = HandFedSource()
     source.batches.put(UnusableInputError("rate", "AOA_SSA arrives at 4 Hz.", "Ask for 50 Hz."))
-    conductor = Conductor(source, staged, lambda report: None)
     with pytest.raises(UnusableInputError):
-        conductor.run()
+        Conductor(source, staged).run(lambda report: None)
     assert source.closed
 
 
@@ -179,10 +179,10 @@ def test_the_campaign_is_made_in_the_working_thread_only():
         made.append(staged())
         return made[-1]
 
-    conductor = Conductor(HandFedSource(), make, lambda report: None)
+    conductor = Conductor(HandFedSource(), make)
     assert not made
     conductor.stop()
-    conductor.run()
+    conductor.run(lambda report: None)
     assert len(made) <= 1
 
 

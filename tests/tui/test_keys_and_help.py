@@ -1,11 +1,13 @@
 """Keys can be found, explained and changed; what they do is also in the palette."""
 
+import re
+
 import pytest
-from textual.widgets import DataTable, Markdown
-from textual.widgets._footer import FooterKey
+from textual.widgets import DataTable, Static
 
 from advisor.tui import keys
 from advisor.tui.explaining import keys_at_hand
+from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.pane import Pane
 from advisor.tui.replay import LogPlayer
 from advisor.tui.screens.engineer import PANES, EngineerScreen
@@ -20,13 +22,30 @@ from tests.tui.stand_ins import HandFedSource, columns
 ENGINEER = Settings(screen="engineer")
 
 
-def footer(here: Stage) -> set[str]:
-    return {key.description for key in here.app.screen.query(FooterKey)}
+def footer(here: Stage) -> str:
+    return str(here.app.screen.query_one(KeysLine).render())
 
 
 async def test_the_footer_names_the_keys_of_the_screen():
     async with stage(settings=ENGINEER) as here:
-        await here.until(lambda: {"Pilot", "Engineer", "Help", "Quit", "Exclude", "Note"} <= footer(here))
+        await here.until(lambda: "x Exclude  n Note  p Pilot  e Engineer  ? Help  q Quit" in footer(here))
+        assert "^p Commands" in footer(here)
+        await here.press("p")
+        await here.until(lambda: "x Exclude" not in footer(here))
+
+
+async def test_a_narrow_footer_leaves_keys_away_and_cuts_none_in_two():
+    async with stage(settings=ENGINEER, size=(40, 24)) as here:
+        await here.until(lambda: "p Pilot" in footer(here))
+        assert footer(here).endswith(" ")
+        assert len(footer(here)) <= 40
+
+
+async def test_a_click_on_a_key_of_the_footer_presses_it():
+    async with stage() as here:
+        await here.until(lambda: "e Engineer" in footer(here))
+        await here.pilot.click(KeysLine, offset=(footer(here).index("e Engineer") + 2, 0))
+        await here.until(lambda: isinstance(here.app.screen, EngineerScreen))
 
 
 async def test_a_live_link_has_no_keys_of_a_replay():
@@ -49,9 +68,9 @@ async def test_help_explains_the_pane_that_has_the_focus():
         for number, pane in enumerate(PANES, 1):
             await here.press(str(number), "question_mark")
             await here.until(lambda: isinstance(here.app.screen, Explain))
-            text = here.app.screen.query_one(Markdown).source
-            assert text.startswith((pane.HELP or "").splitlines()[0])
-            assert "| `x` | Exclude | exclude |" in text
+            text = str(here.app.screen.query_one(Static).render())
+            assert text.startswith((pane.HELP or "").splitlines()[0].removeprefix("# "))
+            assert re.search(r"\nx +Exclude +exclude\n", text)
             await here.press("escape")
             assert isinstance(here.app.screen, EngineerScreen)
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from textual.color import Color
+from textual.theme import Theme
 from textual.widgets import DataTable
 
 from advisor.tui.panes.big_word import BigWord
@@ -84,14 +85,35 @@ async def test_every_axis_carries_its_unit(size: tuple[int, int]):
                     assert around(plot, Pane).region.contains_region(plot.region), plot
 
 
-@pytest.mark.parametrize("theme", NAMES)
-async def test_every_theme_paints_both_screens(theme: str):
-    async with stage(flights.state(3), settings=Settings(theme=theme)) as here:
+@pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+async def test_every_theme_paints_both_screens(theme: Theme):
+    async with stage(flights.state(3), settings=Settings(theme=theme.name)) as here:
         await here.press("e")
-        assert here.app.theme == theme
-        plot = next(iter(here.app.screen.query(Plot)))
-        inks = {str(plot.get_component_styles(f"plot--{ink}").color.hex) for ink in ("measured", "fitted")}
-        assert len(inks) == 2
+        assert here.app.theme == theme.name
+        plot = here.app.screen.query_one("#fit-alpha", Plot)
+        await here.until(lambda: bool(plot.chart.series))
+        assert {theme.variables["ink-measured"], theme.variables["ink-fitted"]} <= colours(plot)
+
+
+async def test_a_theme_changed_on_one_screen_is_there_on_the_other():
+    async with stage(flights.state(3)) as here:
+        await here.press("e")
+        plot = here.app.screen.query_one("#fit-alpha", Plot)
+        await here.until(lambda: THEMES[0].variables["ink-fitted"] in colours(plot))
+        await here.press("p", "t", "e")
+        await here.until(lambda: THEMES[1].variables["ink-fitted"] in colours(plot))
+        assert here.app.screen.styles.background == Color.parse(THEMES[1].background)
+
+
+async def test_only_themes_that_can_paint_everything_are_offered():
+    async with stage() as here:
+        assert set(here.app.available_themes) == set(NAMES)
+
+
+def colours(plot: Plot) -> set[str]:
+    """Every colour of ink on a plot."""
+    painted = [segment.style for y in range(plot.size.height) for segment in plot.render_line(y)]
+    return {style.color.get_truecolor().hex for style in painted if style and style.color}
 
 
 @pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)

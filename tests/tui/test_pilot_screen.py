@@ -94,8 +94,8 @@ async def test_before_the_first_heartbeat_the_screen_says_what_it_waits_for():
     source = HandFedSource()
     source.condition = LinkHealth("waiting", "No vehicle heard yet; check that it sends to this address.")
     async with stage(nothing, source=source) as here:
+        await here.until(lambda: "check that it sends to this address" in here.words("Why"))
         assert here.app.screen.query_one(BigWord).word == "WAIT"
-        assert "check that it sends to this address" in here.words("Why")
         assert "no angle of attack heard yet" in here.words()
 
 

@@ -4,6 +4,7 @@ from advisor.aircraft import Aircraft
 from advisor.campaign import Campaign
 from advisor.demo import Demonstration
 from advisor.tui.app import AdvisorApp
+from advisor.tui.conductor import Conductor
 from advisor.tui.live import LinkSource
 from advisor.tui.panes.big_word import BigWord
 from advisor.tui.settings import Settings
@@ -12,14 +13,14 @@ from tests.tui.stage import Stage
 
 async def test_a_flight_over_a_real_link_is_followed_to_the_stop():
     flight = Demonstration("linear", speed=10.0, seed=1)
-    source = LinkSource(lambda: flight, "demonstration", flight.over)
+    source = LinkSource(flight, flight.over)
     campaigns: list[Campaign] = []
 
     def make() -> Campaign:
         campaigns.append(Campaign(Aircraft(), settle=True))
         return campaigns[-1]
 
-    app = AdvisorApp(source, make, Aircraft(), Settings(screen="engineer"))
+    app = AdvisorApp(Conductor(source, make), Aircraft(), "demonstration", None, Settings(screen="engineer"))
     async with app.run_test(size=(80, 24)) as pilot:
         here = Stage(app, pilot, campaigns, source)
         await here.until(lambda: len(app.view.state.maneuvers) >= 1, patience_s=60.0)

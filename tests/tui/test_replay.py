@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from advisor.flight.messages import Columns
 from advisor.tui.replay import STEP_S, LogPlayer
-from advisor.tui.source import Playable
+from advisor.tui.source import Playable, Tempo
 from advisor.tui.timeline import LONGEST_SILENCE_S, Timeline
 from tests.tui.stand_ins import columns
 
@@ -70,10 +70,21 @@ def test_double_speed_takes_half_as_long():
 
 def test_a_paused_player_delivers_nothing_until_stepped():
     player = LogPlayer("x", log, 1.0, Clock().wait)
-    player.pause(True)
+    player.play(Tempo(paused=True))
     assert not player.read(0.01)
     player.step()
     assert indices(player.read(0.01) or ()) == list(range(6))
+    assert not player.read(0.01)
+
+
+def test_a_hurrying_player_waits_for_nothing_and_then_keeps_its_tempo():
+    clock = Clock()
+    player = LogPlayer("x", log, 1.0, clock.wait)
+    player.play(Tempo(paused=True))
+    player.hurry(True)
+    assert indices(player.read(0.01) or ()) == list(range(26))
+    assert clock.waited_s == 0.0
+    player.hurry(False)
     assert not player.read(0.01)
 
 

@@ -14,35 +14,41 @@ class Ask(Horizontal):
     """Asks for a reason, a note or a number; escape leaves everything as it is.
 
     It is a line and no dialog, so that what the question is about stays in sight.
-
-    Parameters
-    ----------
-    question : str
-        What is asked.
-    answered : callable
-        Receives the answer; an empty one is not taken.
-    integer : bool
-        Take whole numbers only.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Leave it")]
 
-    def __init__(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._question = question
-        self._answered = answered
-        self._integer = integer
+        self._answered: Callable[[str], object] = lambda answer: None
         self._focused_before: Widget | None = None
 
     def compose(self) -> ComposeResult:
         """Question beside answer."""
-        yield Label(self._question, markup=False)
-        yield Input(type="integer" if self._integer else "text", compact=True)
+        yield Label(markup=False)
+        yield Input(compact=True)
 
-    def on_mount(self) -> None:
-        """Take the keys until the answer is given."""
-        self._focused_before = self.screen.focused
-        self.query_one(Input).focus()
+    def put(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
+        """Show a question and take the keys; one still open is replaced.
+
+        Parameters
+        ----------
+        question : str
+            What is asked.
+        answered : callable
+            Receives the answer; an empty one is not taken.
+        integer : bool
+            Take whole numbers only.
+        """
+        if not self.has_class("-open"):
+            self._focused_before = self.screen.focused
+        self._answered = answered
+        self.query_one(Label).update(question)
+        answer = self.query_one(Input)
+        answer.type = "integer" if integer else "text"
+        answer.value = ""
+        self.add_class("-open")
+        answer.focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Hand the answer on."""
@@ -55,4 +61,4 @@ class Ask(Horizontal):
     def action_leave(self) -> None:
         """Give the keys back."""
         self.screen.set_focus(self._focused_before)
-        self.remove()
+        self.remove_class("-open")

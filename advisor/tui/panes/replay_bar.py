@@ -4,6 +4,7 @@ from math import isinf
 
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
+from advisor.tui.source import Playback
 from advisor.tui.view import View
 from advisor.tui.words import clock
 
@@ -15,13 +16,14 @@ class ReplayBar(Part, Lines):
 
     def show(self, view: View) -> None:
         """Write the line when the source is a replay."""
-        playback = view.playback
-        self.set_class(playback is not None, "-playing")
-        if playback is None:
+        tempo, playback = view.tempo, view.playback or Playback(0.0, 0.0)
+        self.set_class(tempo is not None, "-playing")
+        if tempo is None:
             return
-        speed = "max" if isinf(playback.speed) else f"{playback.speed:g} ×"
+        speed = "max" if isinf(tempo.speed) else f"{tempo.speed:g} ×"
         share = playback.position_s / playback.duration_s if playback.duration_s else 0.0
         place = "━" * round(share * _WIDTH) + "─" * (_WIDTH - round(share * _WIDTH))
-        state = "❚❚ paused" if playback.paused else "► replay"
+        state = "❚❚ paused" if tempo.paused else "► replay"
         times = f"{clock(playback.position_s)} of {clock(playback.duration_s)}"
-        self.write(f"{state}  {speed}  {place}  {times}")
+        jump = "  ►► jumping" if playback.hurrying else ""
+        self.write(f"{state}  {speed}  {place}  {times}{jump}")

@@ -2,7 +2,6 @@
 
 from itertools import pairwise
 from textwrap import wrap
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,24 +12,22 @@ from textual.widget import Widget
 
 from advisor.tui.plot.axis import round_axis
 from advisor.tui.plot.canvas import Canvas
-from advisor.tui.plot.chart import INKS, Chart
+from advisor.tui.plot.chart import INKS, Chart, Ink
 from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
 from advisor.tui.plot.legend import legend
 
 _ROWS_PER_TICK = 3
 _COLUMNS_PER_TICK = 12
+_BOLD: frozenset[Ink] = frozenset({"fitted", "limit"})
 
 
 class Plot(Widget):
     """Paints a `Chart`; repaints only when the chart, the size or the theme changes."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {"plot--axis", *(f"plot--{ink}" for ink in INKS)}
-
     def __init__(self, chart: Chart, *, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._chart = chart
         self._strips: list[Strip] | None = None
-        self._looks: dict[str, Style] = {}
 
     @property
     def chart(self) -> Chart:
@@ -52,32 +49,25 @@ class Plot(Widget):
         """A new theme needs new colours."""
         super().notify_style_update()
         self._strips = None
-        self._looks.clear()
 
     def render_line(self, y: int) -> Strip:
         """One line of the painted chart."""
         if self._strips is None:
             self._strips = self._paint(self.size.width, self.size.height)
-        return self._strips[y] if y < len(self._strips) else Strip.blank(self.size.width, self._style("base"))
+        return self._strips[y] if y < len(self._strips) else Strip.blank(self.size.width, self.rich_style)
 
-    def _style(self, part: str) -> Style:
-        """The style sheet's style of a part; looking it up anew takes as long as painting."""
-        if part not in self._looks:
-            base = self.rich_style
-            special = (
-                Style() if part == "base" else self.get_component_rich_style(f"plot--{part}", partial=True)
-            )
-            self._looks[part] = base + special
-        return self._looks[part]
+    def _inks(self, base: Style) -> list[Style]:
+        """The theme's colours; as component classes they would be looked up anew at every change of focus."""
+        colours = self.app.theme_variables
+        return [base + Style(color=colours[f"ink-{ink}"], bold=ink in _BOLD) for ink in INKS]
 
     def _paint(self, width: int, height: int) -> list[Strip]:
-        chart, base = self._chart, self._style("base")
-        label_style = self._style("axis")
+        chart, base = self._chart, self.rich_style
         if not chart.series:
-            return _sentence(f"{chart.y_label}: {chart.why_empty}", width, label_style)
+            return _sentence(f"{chart.y_label}: {chart.why_empty}", width, base)
         if width < 16 or height < 4:
-            return _sentence(f"{chart.y_label}: too little room for a plot.", width, label_style)
-        inks = [self._style(ink) for ink in INKS]
+            return _sentence(f"{chart.y_label}: too little room for a plot.", width, base)
+        inks = self._inks(base)
         rows = height - 2
         heights = [s.y for s in chart.series] + [np.array([level.y]) for level in chart.levels]
         y_axis = round_axis(heights, max(1, rows // _ROWS_PER_TICK))
@@ -95,12 +85,12 @@ class Plot(Widget):
         side = down_the_side(y_axis, rows, gutter)
         foot = along_the_foot(x_axis, chart.x_label, gutter, width)
         return [
-            legend(chart, width, label_style, inks),
+            legend(chart, width, base, inks),
             *(
-                Strip([Segment(side[row], label_style), *_runs(text, canvas.ink[row], inks, base)], width)
+                Strip([Segment(side[row], base), *_runs(text, canvas.ink[row], inks, base)], width)
                 for row, text in enumerate(canvas.text())
             ),
-            Strip([Segment(foot, label_style)], width),
+            Strip([Segment(foot, base)], width),
         ]
 
 

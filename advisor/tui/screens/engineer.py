@@ -5,14 +5,15 @@ from dataclasses import replace
 from textual.app import ComposeResult
 from textual.containers import Container
 from textual.events import Resize
-from textual.widgets import Footer
 
 from advisor.tui import keys
 from advisor.tui.hand import HandDecision, Verb
+from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.channels import Channels
 from advisor.tui.panes.criterion import Criterion
 from advisor.tui.panes.event_log import EventLog
 from advisor.tui.panes.fit import Fit
+from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
 from advisor.tui.panes.pane import Pane
@@ -56,7 +57,8 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
             for pane in _PLACES:
                 yield pane()
         yield ReplayBar()
-        yield Footer(compact=True)
+        yield Ask()
+        yield KeysLine()
 
     def on_mount(self) -> None:
         """Begin with the fit beside the manoeuvres."""

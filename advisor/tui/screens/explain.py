@@ -2,24 +2,25 @@
 
 from typing import ClassVar
 
+from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.screen import ModalScreen
-from textual.widgets import Markdown
+from textual.widgets import Static
 
 
 class Explain(ModalScreen[None]):
-    """Shows Markdown; any of escape, q and ? closes it."""
+    """Shows a text; any of escape, q and ? closes it."""
 
     CSS_PATH = "../styles/explain.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,question_mark", "dismiss", "Close")]
 
-    def __init__(self, markdown: str) -> None:
+    def __init__(self, page: Text) -> None:
         super().__init__()
-        self._markdown = markdown
+        self._page = page
 
     def compose(self) -> ComposeResult:
         """Text that scrolls."""
         with VerticalScroll(id="help"):
-            yield Markdown(self._markdown)
+            yield Static(self._page)

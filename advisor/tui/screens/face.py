@@ -4,6 +4,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from textual.css.query import NoMatches
+from textual.events import Event, ScreenResume
 from textual.message import Message
 from textual.screen import Screen
 
@@ -16,6 +17,8 @@ from advisor.tui.view import View
 class Face(Screen[None]):
     """A screen that is shown a `View` whenever there is a new one."""
 
+    AUTO_FOCUS = ""
+
     class Decided(Message):
         """Someone decided something by hand."""
 
@@ -23,10 +26,15 @@ class Face(Screen[None]):
             super().__init__()
             self.decision = decision
 
+    async def on_event(self, event: Event) -> None:
+        """Come back as it was left: a theme changed meanwhile is applied by the switch itself."""
+        if isinstance(event, ScreenResume):
+            event.refresh_styles = False
+        await super().on_event(event)
+
     def ask(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
-        """Ask for one line at the foot of the screen; a question still open is replaced."""
-        self.query(Ask).remove()
-        self.mount(Ask(question, answered, integer=integer))
+        """Ask for one line at the foot of the screen."""
+        self.query_one(Ask).put(question, answered, integer=integer)
 
     def show(self, view: View) -> None:
         """Update every part that wants to be to a new moment."""

@@ -2,11 +2,12 @@
 
 from textual.app import ComposeResult
 from textual.events import Resize
-from textual.widgets import Footer
 
+from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.big_word import BigWord, Why
 from advisor.tui.panes.crew_notes import CrewNotes
 from advisor.tui.panes.gauge import Gauge
+from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.last_verdict import LastVerdict
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import StatusLine
@@ -43,7 +44,8 @@ The large word is what to do now:
         yield Gauge()
         yield CrewNotes()
         yield ReplayBar()
-        yield Footer(compact=True)
+        yield Ask()
+        yield KeysLine()
 
     def on_resize(self, event: Resize) -> None:
         """On a tall terminal the verdict is written large too."""

@@ -1,0 +1,46 @@
+"""The keys that work now, on the last line of every screen."""
+
+from rich.style import Style
+from rich.text import Text
+from textual.binding import Binding
+from textual.screen import Screen
+from textual.widgets import Static
+
+
+class KeysLine(Static):
+    """Key and what it does, in the order of their worth; a click on one presses it.
+
+    One line of text where Textual's footer mounts a widget for every key anew whenever the focus moves.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._keys: list[tuple[str, str, str]] = []
+
+    def on_mount(self) -> None:
+        """Follow what has the focus."""
+        self.screen.bindings_updated_signal.subscribe(self, self._follow)
+
+    def on_resize(self) -> None:
+        """Show as many as have room."""
+        self._write()
+
+    def _follow(self, screen: Screen[object]) -> None:
+        first: dict[str, Binding] = {}
+        for active in screen.active_bindings.values():
+            if active.binding.show and active.enabled:
+                first.setdefault(active.binding.action, active.binding)
+        keys = [(b.key, self.app.get_key_display(b), b.description) for b in first.values()]
+        if keys != self._keys:
+            self._keys = keys
+            self._write()
+
+    def _write(self) -> None:
+        line = Text(no_wrap=True)
+        for key, display, does in self._keys:
+            if line.cell_len + len(display) + len(does) + 3 > self.size.width:
+                break
+            press = {"@click": f"app.simulate_key('{key}')"}
+            line.append(f" {display}", Style(bold=True, meta=press))
+            line.append(f" {does} ", Style(meta=press))
+        self.update(line, layout=False)

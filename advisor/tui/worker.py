@@ -1,0 +1,67 @@
+"""The process behind a `RemoteConductor`: task and requests on standard input, reports on standard output.
+
+python -m advisor.tui.worker
+"""
+
+import os
+import pickle
+import signal
+import sys
+import traceback
+from contextlib import suppress
+from threading import Thread
+from typing import IO
+
+from advisor.tui.changes import changes
+from advisor.tui.conducting import Report
+from advisor.tui.conductor import Conductor
+
+
+class Reporter:
+    """Writes the first report, then what changed in each."""
+
+    def __init__(self, pipe: IO[bytes]) -> None:
+        self._pipe = pipe
+        self._last: Report | None = None
+
+    def tell(self, report: Report) -> None:
+        """Send one report."""
+        self.send(report if self._last is None else changes(self._last, report))
+        self._last = report
+
+    def send(self, message: object) -> None:
+        """Write at once."""
+        pickle.dump(message, self._pipe, pickle.HIGHEST_PROTOCOL)
+        self._pipe.flush()
+
+
+def serve(conductor: Conductor, requests: IO[bytes]) -> None:
+    """Do what is asked for; when nobody can ask any more, stop."""
+    with suppress(EOFError):
+        while True:
+            name, arguments = pickle.load(requests)
+            getattr(conductor, name)(*arguments)
+    conductor.stop()
+
+
+def main() -> None:
+    """Conduct one campaign from its task to its end; what breaks it off is the last message."""
+    # An interrupt is for the screens, which then stop this process in order.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Closed at the end, upon which the other side closes the requests and ``serve`` returns.
+    with suppress(BrokenPipeError), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as reports:
+        # What a library prints must not fall among the reports.
+        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+        reporter = Reporter(reports)
+        try:
+            task = pickle.load(sys.stdin.buffer)
+            conductor = Conductor(task.open_source(), task.make_campaign)
+            Thread(target=serve, args=(conductor, sys.stdin.buffer)).start()
+            conductor.run(reporter.tell)
+        except Exception as failure:
+            failure.add_note(traceback.format_exc())
+            reporter.send(failure)
+
+
+if __name__ == "__main__":
+    main()

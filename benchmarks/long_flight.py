@@ -1,0 +1,48 @@
+"""An hour of flight out of a log of minutes."""
+
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+
+import numpy as np
+
+from advisor.flight.messages import Columns
+from advisor.mavlink.logs import open_log
+from advisor.tui import conductor
+from advisor.tui.replay import LogPlayer
+
+
+def player(log: Path, minutes: float) -> LogPlayer:
+    """The flight as fast as it can be played; every half second of it is reported."""
+    conductor.REPORT_EVERY_S = 0.0
+    return LogPlayer(log.name, lambda: long_flight(log, minutes), inf)
+
+
+def long_flight(log: Path, minutes: float) -> list[Columns]:
+    """The log, then 20 s of quiet flight out of it again and again, all clocks running on."""
+    pieces = [columns for batch in open_log(log) for columns in batch]
+    arrival = np.concatenate([p.arrival_s for p in pieces])
+    first, last = float(arrival.min()), float(arrival.max())
+    last_order = max(int(p.order[-1]) for p in pieces)
+    quiet = [p for p in (_cut(p, first + 10.0, first + 30.0) for p in pieces) if len(p)]
+    repeats = int((minutes * 60.0 - (last - first)) / 20.0)
+    return pieces + [
+        _later(piece, last - first - 10.0 + 20.0 * k, (k + 1) * (last_order + 1))
+        for k in range(repeats)
+        for piece in quiet
+    ]
+
+
+def _cut(piece: Columns, start_s: float, end_s: float) -> Columns:
+    wanted = (piece.arrival_s >= start_s) & (piece.arrival_s < end_s)
+    fields = {name: np.array(values)[wanted] for name, values in piece.fields.items()}
+    return replace(piece, order=piece.order[wanted], arrival_s=piece.arrival_s[wanted], fields=fields)
+
+
+def _later(piece: Columns, seconds: float, order: int) -> Columns:
+    fields = dict(piece.fields)
+    for name, per_second in (("time_boot_ms", 1e3), ("time_usec", 1e6)):
+        if name in fields:
+            shifted = fields[name].astype(np.int64) + int(seconds * per_second)
+            fields[name] = shifted.astype(fields[name].dtype)
+    return replace(piece, order=piece.order + order, arrival_s=piece.arrival_s + seconds, fields=fields)

@@ -1,0 +1,80 @@
+"""What the tests let run in a process of its own, where it must be found by its name."""
+
+import os
+import time
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+
+from advisor.aircraft import Aircraft
+from advisor.campaign import Campaign
+from advisor.flight.messages import Columns
+from advisor.mavlink.logs import open_log
+from advisor.problems import UnusableInputError
+from advisor.tui.replay import LogPlayer
+from tests.tui import flights
+from tests.tui.stand_ins import HandFedSource, StagedCampaign
+
+LOG = Path(__file__).parents[2] / "logs" / "bundled-demo.tlog"
+FLOWN_S = 45.0
+BUSY_S = 4.0
+
+
+def first_manoeuvres() -> LogPlayer:
+    """The bundled log's first two manoeuvres, as fast as they can be played."""
+    pieces = [piece for batch in open_log(LOG) for piece in batch]
+    end_s = min(piece.arrival_s[0] for piece in pieces) + FLOWN_S
+    return LogPlayer(LOG.name, lambda: [_until(piece, end_s) for piece in pieces], inf)
+
+
+def _until(piece: Columns, end_s: float) -> Columns:
+    end = int((piece.arrival_s < end_s).sum())
+    fields = {name: values[:end] for name, values in piece.fields.items()}
+    return replace(piece, order=piece.order[:end], arrival_s=piece.arrival_s[:end], fields=fields)
+
+
+def campaign() -> Campaign:
+    """A real one."""
+    return Campaign(Aircraft(), settle=True)
+
+
+def staged() -> StagedCampaign:
+    """Three manoeuvres flown."""
+    return StagedCampaign([flights.state(3)])
+
+
+def busy() -> StagedCampaign:
+    """Estimates for seconds when it is fed."""
+    return StagedCampaign([flights.state(3)], on_feed=_estimate)
+
+
+def _estimate() -> None:
+    end_s = time.monotonic() + BUSY_S
+    while time.monotonic() < end_s:
+        sum(k * k for k in range(1000))
+
+
+def ending() -> StagedCampaign:
+    """Takes its process with it when it is fed."""
+    return StagedCampaign([flights.state(0)], on_feed=lambda: os._exit(9))
+
+
+def talking() -> HandFedSource:
+    """A source with one message."""
+    source = HandFedSource()
+    source.deliver()
+    return source
+
+
+def unusable() -> HandFedSource:
+    """A source that can never serve."""
+    source = HandFedSource()
+    source.batches.put(UnusableInputError("rate", "AOA_SSA arrives at 4 Hz.", "Ask for 50 Hz."))
+    return source
+
+
+def faulty() -> HandFedSource:
+    """A source with a fault."""
+    source = HandFedSource()
+    source.batches.put(ZeroDivisionError("a fault"))
+    return source
