@@ -72,13 +72,13 @@ def test_in_turbulence_the_moment_derivatives_scatter_less_than_output_errors() 
         error = values[:, [M_ALPHA, M_DELTA]] - UAV[[M_ALPHA, M_DELTA]]
         return np.asarray(np.sqrt(np.mean(error**2, axis=0)))
 
-    assert np.all(scatter(filtered) < 0.8 * scatter(output))
+    assert np.all(scatter(filtered) < 0.3 * scatter(output))
 
 
-def test_in_turbulence_its_standard_deviations_are_those_of_its_errors() -> None:
+def test_in_turbulence_its_errors_lie_between_a_third_and_twice_of_its_standard_deviations() -> None:
     _, filtered, std = in_turbulence()
     ratio = np.sqrt(np.mean(((filtered - UAV) / std) ** 2, axis=0))[[M_ALPHA, M_DELTA]]
-    assert np.all(ratio > 0.4)
+    assert np.all(ratio > 1.0 / 3.0)
     assert np.all(ratio < 2.0)
 
 
