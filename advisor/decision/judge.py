@@ -82,7 +82,9 @@ def _reasons(flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None) -> t
         return (*flown.reasons, Reason(flown.estimate.code, flown.estimate.text, 0.0, 1.0))
     if flown.reasons or result.accepted:
         return flown.reasons
-    return (_contradicts(odd),) if odd else (_too_costly(flown, flown.estimate, rule, result.limit or 0.0),)
+    if rule == "information":
+        return (_contradicts(odd),) if odd else ()
+    return (_too_costly(flown, flown.estimate, rule, result.limit or 0.0),)
 
 
 def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:

@@ -145,6 +145,11 @@ def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape, share: float) -> bool:
     longest += 1.5 * float(np.median(np.diff(t)))
     old = 0.0
     for onset, new in shape.steps:
+        i = int(np.clip(np.searchsorted(t, onset), 1, len(t) - 1))
+        if t[i] - t[i - 1] > longest:
+            # Nobody saw this step: whether the manoeuvre stands such a gap is judged later.
+            old = new
+            continue
         near = np.abs(t - onset) <= shortest
         done = np.sign(new - old) * (d - old) / max(abs(new - old), 1e-12)
         left = np.flatnonzero(near & (done <= 0.2) & (t <= onset))

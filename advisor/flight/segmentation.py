@@ -25,7 +25,10 @@ _FREE_S = (3.0, 8.0)
 """Free response: as long as the input, but within these."""
 _LEAST_FREE_S = 2.5
 """A multisine whose free response is cut short counts from so much on: slow wandering seldom rests so."""
-_LONGEST_GAP_S = 1.0
+_GAP_S = 1.0
+"""A longer gap ends a free response."""
+_LONGEST_GAP_S = 3.0
+"""A longer one ends everything; over a shorter one an input is recognised, to be refused for the gap."""
 _STEP_S = 0.12
 """A movement most of which happens within this time is a step."""
 
@@ -44,6 +47,7 @@ class Segmenter:
         self._released_s = -np.inf
         self._level: float | None = None
         self._onset_s: float | None = None
+        self._mode_changed_s = -np.inf
 
     @property
     def onset_s(self) -> float | None:
@@ -62,21 +66,24 @@ class Segmenter:
             last = float(self._t[self._size - 1])
             if t <= last:
                 return None
-            if t - last > _LONGEST_GAP_S and t - last > self._longest_gap_s():
+            if t - last > _GAP_S and t - last > self._longest_gap_s():
                 span = self._end("gap", last)
-                self._forget_all()
+                if t - last > _LONGEST_GAP_S:
+                    self._forget_all()
         self._store(t, u)
         if self._pending is not None:
             return span or self._follow(self._pending, t, u)
         if t >= self._next_check_s:
             self._next_check_s = t + _CHECK_S
             self._look(t)
+            if self._pending is not None and self._pending.start_s < self._mode_changed_s:
+                return span or self._end_with_mode()
         return span
 
     def mode_changed(self, t: float) -> Span | None:
         """The flight mode changed, at ``t`` at the earliest: a free response ends there."""
-        self._level, self._onset_s = None, None
-        return self._end("mode change", max(t, self._pending.over_s) if self._pending else t)
+        self._level, self._onset_s, self._mode_changed_s = None, None, t
+        return self._end_with_mode()
 
     def finish(self) -> Span | None:
         """No more samples will come."""
@@ -129,6 +136,11 @@ class Segmenter:
         end_s = shape.last_step_s + float(np.clip(duration, *_FREE_S))
         return self._end("quiet", end_s) if t >= end_s else None
 
+    def _end_with_mode(self) -> Span | None:
+        """A response ends with the flight mode; what moved the elevator since is the autopilot's own."""
+        last_step_s = self._pending.last_step_s if self._pending else -np.inf
+        return self._end("mode change", max(self._mode_changed_s, last_step_s))
+
     def _end(self, why: str, at_s: float) -> Span | None:
         shape, self._pending = self._pending, None
         if shape is None or (why != "quiet" and at_s - shape.over_s < _least_free_s(shape)):
@@ -171,6 +183,6 @@ class Segmenter:
 def _least_free_s(shape: Shape) -> float:
     """How long the elevator must rest for an input to count when something cuts its free response."""
     if shape.is_3211:
-        return 0.0
+        return -np.inf
     least_s = max(1.0, 2.0 * shape.longest_s)
     return min(least_s, _LEAST_FREE_S) if shape.kind == "multisine" else least_s

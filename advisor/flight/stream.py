@@ -47,8 +47,8 @@ from advisor.problems import Problem
 KEEP_S = 120.0
 """How far back channels reach: longer than any manoeuvre with its lead-in."""
 _OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
-_HEARTBEAT_S = 1.1
-"""The mode may have changed this long before a heartbeat tells it, or since the one before."""
+_HEARTBEAT_S = 2.2
+"""The mode changed since the heartbeat before, at most so long ago: one of them may be lost."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,6 +80,10 @@ def test_a_manoeuvre_that_contradicts_all_the_others_is_refused_by_the_rule_info
     assert reason.value > reason.limit
     assert verdicts[1].sentence.startswith("REPEAT: contradicts all the others, ")
     assert judge_campaign(history, PLAN)[1].rules["continuous"].accepted
+    assert isinstance(history[1].estimate, Estimate)
+    costly = [*history]
+    costly[1] = Flown(replace(history[1].estimate, cost=1.0))
+    assert [r.code for r in judge_campaign(costly, PLAN)[1].reasons] == ["cost"]
     # As long as it was the newest of two nobody could know which of them was odd.
     assert judge_campaign(history[:2], replace(PLAN, rule="information"))[1].accepted
 

@@ -286,6 +286,28 @@ def test_the_end_of_the_log_and_a_gap_close_what_is_complete():
     assert ended.end_s == gapped.end_s == pytest.approx(8.98, abs=0.03)
 
 
+@pytest.mark.parametrize("silent_s", [0.6, 1.1, 1.6])
+def test_an_input_in_which_the_link_was_silent_is_still_recognised(silent_s):
+    whole = flown_at([5.0], 20.0)
+    heard = (whole.t < 4.99) | (whole.t > 4.99 + silent_s)
+    (span,) = found(Stream(whole.t[heard], whole.u[heard]))
+    assert span.record_from_s < 5.0 < span.start_s + silent_s
+    assert span.last_step_s == pytest.approx(7.8, abs=0.05)
+
+
+def test_what_the_autopilot_does_after_the_last_step_is_no_free_response():
+    stream, segmenter = flown_at([5.0], 20.0), Segmenter()
+    corrections = DEG * 0.1 * coloured(np.random.default_rng(4), stream.t, 0.3)
+    spans = []
+    for t, u, more in zip(stream.t.tolist(), stream.u.tolist(), corrections.tolist(), strict=True):
+        if abs(t - 8.2) < 0.005:
+            spans.append(segmenter.mode_changed(8.0))
+        spans.append(segmenter.push(t, u + (more if t > 8.0 else 0.0)))
+    (span,) = [span for span in spans if span is not None]
+    assert span.closed_by == "mode change"
+    assert span.end_s == pytest.approx(8.0, abs=0.03)
+
+
 def test_an_input_under_way_is_seen_while_it_is_flown():
     stream, segmenter = flown_at([5.0], 20.0), Segmenter()
     seen = {}
