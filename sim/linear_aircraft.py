@@ -35,6 +35,8 @@ class LinearTerms:
     M_alpha_dot: float = 0.0
     M_throttle: float = 0.0
     """rad/s² per unit of throttle away from trim."""
+    M_thrust: float = 0.0
+    """rad/s²: the thrust's part of the trimmed moment, which does not grow with dynamic pressure."""
     unsteady_share: float = 0.0
     unsteady_lag: float = 1.0
     Z_h: float = 0.0
@@ -107,6 +109,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
             + m.M_h * ground
         )
         + m.M_throttle * (u[1] - m.throttle_ref)
+        + m.M_thrust * (1.0 - ratio**2)
         + u[6]
     )
     dx[0] = alpha_dot

@@ -11,12 +11,12 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted
-from advisor.gap.floor import white_noise
 from advisor.gap.holdout import mean_squares
+from advisor.gap.noise import instrument_noise, rows_of, system_of, with_floor
 from advisor.gap.probes import KNOTS_S, disturbance_course
 from advisor.gap.problem import Problem
 from advisor.oem.innovations import CHANNELS
-from advisor.oem.turbulence import Rows, find_turbulence
+from advisor.oem.turbulence import find_turbulence
 
 _LEAST_GAIN = 40.0
 """Log likelihood by which moving air must beat coloured instruments."""
@@ -43,22 +43,22 @@ class Air:
     """Shape (channels,): mean square that stays when the likeliest course of the air is taken out."""
 
 
-def moving_air(problem: Problem, fitted: Fitted, alpha_is_derived: bool) -> Air | None:
+def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     """The air's motion when it is there; None when noise of the instruments explains the residual as well."""
     if "alpha" not in problem.channels or "q" not in problem.channels:
         return None
-    rows = [_rows(problem, fitted, i) for i in range(len(problem.flights))]
+    rows = [rows_of(problem, i, fitted.left[i]) for i in range(len(problem.flights))]
     loudest = sorted(range(len(rows)), key=lambda i: -float(np.mean(fitted.left[i] ** 2)))[:_MOST_MANEUVERS]
-    white = white_noise(problem.flights)
-    d = fitted.point.derivatives
+    derived = problem.flights.alpha_is_derived
     found = find_turbulence(
-        [rows[i] for i in loudest], np.array([d[0], d[1], d[3], d[4]]),
-        np.array([white.get(c, 1.0) for c in CHANNELS]), not alpha_is_derived,
-    )  # fmt: skip
+        [rows[i] for i in loudest], system_of(fitted), instrument_noise(problem), not derived
+    )
     if found.gain < _LEAST_GAIN or found.gust_angle < 0.001:
         return None
+    model = with_floor(problem, found.air)
+    instruments = np.hypot(model.white, model.coloured)[[CHANNELS.index(c) for c in problem.channels]]
     courses, lefts = disturbance_course(
-        problem, fitted, "air unseen" if alpha_is_derived else "air", found.gust_angle
+        problem, fitted, instruments, "air unseen" if derived else "air", found.gust_angle
     )
     joined = np.concatenate(courses)
     typical = float(np.median(np.abs(joined - np.median(joined)))) / 0.6745
@@ -81,15 +81,3 @@ def _mean_square(problem: Problem, lefts: list[FloatArray]) -> FloatArray:
     samples = sum(len(left) for left in lefts)
     powers = np.mean(mean_squares(problem, lefts), axis=0)
     return np.asarray(powers / max(1.0 - knots / samples, 0.3))
-
-
-def _rows(problem: Problem, fitted: Fitted, i: int) -> Rows:
-    """Residuals of one manoeuvre merged in order of time."""
-    flight = problem.flights.flights[i]
-    t = np.concatenate([flight.outputs[c].t for c in problem.channels])
-    channel = np.concatenate(
-        [np.full(len(flight.outputs[c].t), CHANNELS.index(c), dtype=np.int64) for c in problem.channels]
-    )
-    order = np.argsort(t, kind="stable")
-    left: FloatArray = fitted.left[i]
-    return Rows(t[order], channel[order], left[order], float(np.mean(flight.slow[0])))

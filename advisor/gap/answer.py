@@ -10,12 +10,12 @@ from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.causes import (
-    SPEED_IS_A_CAUSE,
     airspeed_cause,
     alpha_bias_cause,
     alpha_lag_cause,
     block_ranking,
     causes_of,
+    speed_wanders,
     with_edge_doubt,
 )
 from advisor.gap.evidence import DOUBT, UNEXPLAINED, VISIBLE, Evidence, restless
@@ -53,7 +53,7 @@ def answer(
     doubtful = np.maximum(floor, DOUBT * e.stated)
     coherent_gap = float(np.mean(e.coherence.power / doubtful**2))
     removed = max(float(np.mean((first.mean_square - last.mean_square) / floor**2)), 0.0)
-    speed = airspeed_cause(problem, stages[-1].fitted, last, floor)
+    speed = airspeed_cause(problem, e.constant_speed, last, floor)
     air_cause = _air_cause(e)
     late = alpha_lag_cause(kinematics, problem, [s.added for s in stages if s.added is not None])
     unexplained = coherent_gap / max(coherent_gap + removed, 1e-12)
@@ -67,9 +67,13 @@ def answer(
             stages, floor, unexplained if coherent_gap > VISIBLE else 0.0, problem.channels
         )
     )
-    fast = speed is not None and problem.flights.speed_moves > SPEED_IS_A_CAUSE
-    alone = not named and air_cause is None and bias is None and late is None
-    extra = [c for c in (air_cause, bias, late, speed if fast and alone else None) if c is not None]
+    extra = [c for c in (air_cause, bias, late) if c is not None]
+    before = e.file_model if e.file_model is not None else first
+    wrong_values = e.file_model is not None and float(
+        np.mean((e.file_model.mean_square - first.mean_square) / floor**2)
+    ) > VISIBLE  # fmt: skip
+    if speed is not None and not (extra or named or wrong_values) and speed_wanders(problem):
+        extra = [speed]
     if unknown:
         causes = tuple(
             replace(c, probability=c.probability * 0.5) for c in causes if not c.present or not named
@@ -80,10 +84,8 @@ def answer(
         causes = _bias_first(
             causes, float(offset) / len(floor) > removed and not problem.flights.alpha_is_derived
         )
-    before = e.file_model if e.file_model is not None else first
-    wrong_values = e.file_model is not None and float(
-        np.mean((e.file_model.mean_square - first.mean_square) / floor**2)
-    ) > VISIBLE  # fmt: skip
+    if e.constant_speed is not None and speed in extra:
+        before = e.constant_speed
     verdict: Verdict = "none"
     if unknown:
         verdict = "unknown"
@@ -106,7 +108,7 @@ def answer(
     where = _where(e, verdict, causes)
     shrink = shrink_of(e, kept, gap, before, last) if verdict in ("effect", "parameters") else None
     fitted = stages[-1].fitted
-    std = shared_std(problem, fitted, worth(problem, fitted.left))
+    std = shared_std(problem, fitted, worth(problem, fitted.innovations))
     waterfall = waterfall_of(stages, floor, extra, speed, gap.before)
     present = {c.effect for c in causes if c.present}
     diagnosis = Diagnosis(

@@ -7,15 +7,15 @@ import numpy as np
 from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates import input
+from advisor.gap.command import read_command, with_latency
 from advisor.gap.data import Flight, Flights
-from advisor.gap.fit import Fitted, evidence_of, fit
+from advisor.gap.fit import Fitted, fit
+from advisor.gap.floor import stated_floor
 from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
+from advisor.gap.noise import whitening_of
 from advisor.gap.problem import Point, Problem
-from advisor.gap.screen import Screen
 from advisor.gap.simulate import GRAVITY_M_S2
-
-_NEARLY = 0.25
-"""Share of all that a delay, a lag and the right reading explain which may stay unexplained without them."""
+from advisor.gap.whitening import Filters, Weighting
 
 
 def base_entries(aircraft: Aircraft) -> FloatArray:
@@ -89,36 +89,29 @@ def _ridge(X: FloatArray, y: FloatArray, ridge: float) -> FloatArray:
 
 
 def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]:
-    """The plain model, with the command held or linear between its stamps as the data decide.
-
-    The choice is made with a delay and a lag in the model, else a held command would pass for a
-    delay of half a sample, or a delay for a held command.
-    """
-    linear = Problem(flights, base_entries(aircraft), believed=believed_derivatives(aircraft))
-    fitted = fit(linear, first_guess(flights, aircraft).with_effect(input.LATENCY, (0.001,)))
-    delay, lag = (v for v in input.variants() if v.effect in ("transport_delay", "actuator_lag"))
-    screen = Screen(linear, fitted)
-    best = min(
-        (s for s in map(screen.try_one, (delay, lag)) if s is not None), key=lambda s: s.cost, default=None
+    """The plain model, with the noise this flight had and the command held or linear as the data decide."""
+    instruments = stated_floor(flights)
+    problem = Problem(
+        flights,
+        base_entries(aircraft),
+        believed=believed_derivatives(aircraft),
+        instruments=instruments,
+        smallest_noise=0.5 * instruments,
     )
-    if best is None:
-        return linear, fitted
-    other = lag if best.variant is delay else delay
-    held = replace(linear, held=True)
-    plainly_held = fit(held, fitted.point, fitted.noise)
-    both_linear = fit(linear, best.point.with_effect(other, (0.005,)), best.noise, 8)
-    # A held command answers half an interval later than a linear one by itself.
-    half = 0.5 * float(np.median(np.diff(flights.flights[0].t_u)))
-    sooner = max(float(best.point.values[-1][0]) - half, 0.002)
-    less = fitted.point.with_effect(best.variant, (sooner,)).with_effect(other, (0.005,))
-    both_held = fit(held, less, best.noise, 8)
-    plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
-    both = {False: evidence_of(linear, both_linear), True: evidence_of(held, both_held)}
-    best_of_all = min(*plain.values(), *both.values())
-    # Held with a delay d and linear with d plus half an interval are the same motion. The held reading is
-    # believed where it needs no delay at all; else the doubt of half an interval goes into the delay's error.
-    near = best_of_all + _NEARLY * (max(plain.values()) - best_of_all)
-    is_held = plain[True] < min(near, plain[False])
-    if is_held:
-        return held, plainly_held
-    return linear, fitted
+    fitted = fit(problem, first_guess(flights, aircraft).with_effect(input.LATENCY, (0.001,)))
+    fitted = with_latency(problem, fitted)
+    problem, fitted = read_command(*_filtered(problem, fitted, first_look=True))
+    # The noise is seen through the fit, and the fit made by the noise: the second round is the last.
+    return _filtered(problem, fitted) if isinstance(problem.whitening, Filters) else (problem, fitted)
+
+
+def _filtered(problem: Problem, fitted: Fitted, first_look: bool = False) -> tuple[Problem, Fitted]:
+    whitening = whitening_of(problem, fitted, first_look)
+    if whitening is None:
+        return replace(problem, whitening=None), fitted
+    if isinstance(whitening, Weighting):
+        weighted = replace(problem, whitening=whitening)
+        return weighted, fit(weighted, fitted.point, fitted.noise, iterations=8)
+    one = np.ones(len(problem.channels))
+    filtered = replace(problem, whitening=whitening, smallest_noise=0.5 * one)
+    return filtered, fit(filtered, fitted.point, one, iterations=8)

@@ -24,8 +24,11 @@ _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
 _BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
 _SPEED_SMALLEST = 0.03
-SPEED_IS_A_CAUSE = 0.10
-"""Relative change of speed from which on it is a cause and not the swing of any manoeuvre."""
+_SPEED_COSTS = 0.05
+"""Gap of a simulator at constant speed from which on it is worth a step of the waterfall."""
+_SPEED_WANDERS = 0.015
+"""Standard deviation of the manoeuvres' mean speeds, relative, from which on the speed is a cause: within
+a manoeuvre it always swings."""
 
 
 def causes_of(
@@ -156,8 +159,11 @@ def alpha_lag_cause(check: KinematicCheck, problem: Problem, named: Sequence[Jud
     )  # fmt: skip
 
 
-def airspeed_cause(problem: Problem, fitted: Fitted, last: HeldOut, floor: FloatArray) -> Cause | None:
-    """What ignoring the change of speed would cost: derivatives held constant, everything refitted."""
+def at_constant_speed(problem: Problem, fitted: Fitted) -> HeldOut | None:
+    """What the model leaves when derivatives do not move with the air speed, everything refitted.
+
+    None where the speed hardly moves, or is not measured.
+    """
     flights = problem.flights
     if not flights.speed_measured or flights.speed_moves < _SPEED_SMALLEST:
         return None
@@ -165,11 +171,26 @@ def airspeed_cause(problem: Problem, fitted: Fitted, last: HeldOut, floor: Float
         replace(f, trim=np.array([f.trim[0], f.trim[1], f.trim[2], 0.0])) for f in flights.flights
     )
     frozen = replace(problem, flights=replace(flights, flights=constant))
-    without = hold_out(frozen, fit(frozen, fitted.point, fitted.noise, iterations=4))
-    cost = float(np.mean((without.mean_square - last.mean_square) / floor**2))
-    if cost < 0.05:
+    return hold_out(frozen, fit(frozen, fitted.point, fitted.noise, iterations=4))
+
+
+def airspeed_cause(
+    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
+) -> Cause | None:
+    """The change of air speed, when ignoring it would cost."""
+    if (
+        constant is None
+        or float(np.mean((constant.mean_square - last.mean_square) / floor**2)) < _SPEED_COSTS
+    ):
         return None
     return Cause(
-        "airspeed_variation", "force_equation", 0.9, {"change": Value(flights.speed_moves, 0.01)}, (), "",
+        "airspeed_variation", "force_equation", 0.9,
+        {"change": Value(problem.flights.speed_moves, 0.01)}, (), "",
         float(np.mean(gap_of(last.mean_square, floor))), True,
     )  # fmt: skip
+
+
+def speed_wanders(problem: Problem) -> bool:
+    """Whether the manoeuvres were flown at different speeds."""
+    means = np.array([float(np.mean(f.slow[0])) for f in problem.flights.flights])
+    return bool(np.std(means) / np.mean(means) > _SPEED_WANDERS)

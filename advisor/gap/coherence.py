@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter
+from numba import njit
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flight
-from advisor.gap.fit import Fitted
+from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.holdout import folds_of
 from advisor.gap.layout import OUTPUTS
 from advisor.gap.problem import Problem, row_weights
@@ -50,7 +50,7 @@ def coherent_part(problem: Problem, fitted: Fitted) -> Coherence:
         X = _features(problem, flight, problem.fly(flight, p[i]), p[i])
         w = row_weights(problem, i, weights)
         A = fitted.linear[i].own * w[:, None]
-        r = fitted.left[i] * w
+        r = fitted.innovations[i] * w
         cleaned = []
         for rows in problem.rows(flight):
             # Own numbers (initial state, trim, offsets) act on one channel's features like on any residual.
@@ -81,7 +81,7 @@ def coherent_part(problem: Problem, fitted: Fitted) -> Coherence:
         spread = float(np.std(best)) / np.sqrt(n)
         power[c] = saved[c] if np.mean(best) > 2.0 * spread and saved[c] > 0.0 else 0.0
     share = power / np.maximum(before, 1e-300)
-    return Coherence(share, share * fitted.noise**2, helped / (n * channels))
+    return Coherence(share, share * rms_of(problem, fitted.left) ** 2, helped / (n * channels))
 
 
 def _features(problem: Problem, flight: Flight, grid: FloatArray, p: FloatArray) -> FloatArray:
@@ -94,7 +94,8 @@ def _features(problem: Problem, flight: Flight, grid: FloatArray, p: FloatArray)
     rate = np.gradient(r, flight.h)
     rate = rate / max(float(np.std(rate)), 1e-9)
     spacing = round(_LAG_SPACING_S / flight.h)
-    lagged = lfilter(np.full(spacing, 1.0 / spacing), [1.0], d)
+    total = np.concatenate([np.zeros(spacing), np.cumsum(d)])
+    lagged = (total[spacing:] - total[:-spacing]) / spacing
     made = [
         np.concatenate([np.full(k * spacing, lagged[0]), lagged[: len(lagged) - k * spacing]])
         for k in range(_LAGS)
@@ -102,7 +103,7 @@ def _features(problem: Problem, flight: Flight, grid: FloatArray, p: FloatArray)
     decay = np.exp(-flight.h / 0.15)
     products = (d * d, d * np.abs(d), a * a, a**3, r * np.abs(r), a * r, a * d, r * d, np.abs(d))
     for y in (*products, np.sign(r), np.sign(rate)):
-        made += [y, lfilter([1.0 - decay], [1.0, -decay], y)]
+        made += [y, _smoothed(y, decay)]
     made += [a, r, rate]
     return np.vstack(
         [
@@ -129,3 +130,14 @@ def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, F
                 counts[k, c] += np.count_nonzero(inside)
     active_power, quiet_power = sums / np.maximum(counts, 1.0)
     return active_power, quiet_power
+
+
+@njit(cache=True)
+def _smoothed(y: FloatArray, decay: float) -> FloatArray:
+    """First-order low pass from rest."""
+    out = np.empty(len(y))
+    state = 0.0
+    for i in range(len(y)):
+        state = decay * state + (1.0 - decay) * y[i]
+        out[i] = state
+    return out

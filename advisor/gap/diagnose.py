@@ -13,18 +13,20 @@ from advisor.gap.air import moving_air
 from advisor.gap.answer import answer
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.causes import at_constant_speed
 from advisor.gap.coherence import coherent_part
 from advisor.gap.data import Flights, prepare
 from advisor.gap.evidence import Evidence
-from advisor.gap.fit import Fitted, own_only
+from advisor.gap.fit import Fitted, own_only, rms_of
 from advisor.gap.floor import prefiltered, stated_floor
-from advisor.gap.holdout import HeldOut, mean_squares
+from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.layout import DERIVATIVES
 from advisor.gap.linear import linearise
 from advisor.gap.problem import Problem
 from advisor.gap.result import Diagnosis
 from advisor.gap.score import worth
-from advisor.gap.waterfall import Progress, build_up, reconsider
+from advisor.gap.waterfall import Progress, build_up
+from advisor.gap.whitening import Filters
 from advisor.problems import UnusableInputError
 
 
@@ -97,17 +99,17 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     """Build the model up, then look at what is left: the air, and whatever the motion still predicts."""
     variants = variants_for(problem.flights)
     white = stated_floor(problem.flights)
-    problem = replace(problem, smallest_noise=0.5 * white)
-    stages = reconsider(problem, build_up(problem, baseline, variants, progress), variants)
+    stages = build_up(problem, baseline, variants, progress)
     air = None
     last = stages[-1].fitted
     samples = sum(len(f.outputs["q"].t) for f in problem.flights.flights)
-    if np.min(worth(problem, last.left)) < 0.5 * samples:
+    if isinstance(problem.whitening, Filters) or np.min(worth(problem, last.innovations)) < 0.5 * samples:
         progress("looking at the air", 0.7)
-        air = moving_air(problem, last, problem.flights.alpha_is_derived)
+        air = moving_air(problem, last)
     coherence = coherent_part(problem, last)
     held = stages[-1].held_out.mean_square
-    floor = np.sqrt(np.maximum(np.minimum(last.noise**2, held) - coherence.power, (0.5 * last.noise) ** 2))
+    rms = rms_of(problem, last.left)
+    floor = np.sqrt(np.maximum(np.minimum(rms**2, held) - coherence.power, (0.5 * rms) ** 2))
     smooth = prefiltered(problem.flights)
     stated = np.array([white[k] if smooth[c] else 0.0 for k, c in enumerate(problem.channels)])
     return Evidence(
@@ -117,6 +119,7 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
         air,
         np.maximum(floor, stated),
         _file_model(problem, baseline, aircraft),
+        at_constant_speed(problem, last),
         stated,
     )
 
@@ -129,10 +132,8 @@ def _file_model(problem: Problem, baseline: Fitted, aircraft: Aircraft) -> HeldO
     lefts: list[FloatArray] = []
     for _ in range(3):
         linear = linearise(problem, point)
-        owns, lefts = own_only(problem, linear, 1.0 / baseline.noise)
+        owns, _ = own_only(problem, linear, 1.0 / baseline.noise)
+        still = np.zeros(len(point.shared))
+        lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
         point = replace(point, own=point.own + np.array([o[:4] for o in owns]))
-    powers = mean_squares(problem, lefts)
-    counts = np.array(
-        [[len(f.outputs[c].t) for c in problem.channels] for f in problem.flights.flights], float
-    )
-    return HeldOut(tuple(lefts), np.sum(powers * counts, axis=0) / np.sum(counts, axis=0), powers)
+    return held_out(problem, lefts)

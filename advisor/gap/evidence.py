@@ -36,14 +36,16 @@ class Evidence:
     floor: FloatArray
     file_model: HeldOut | None
     """The aircraft file's own parameters, unfitted."""
+    constant_speed: HeldOut | None
+    """The final model without the change of air speed."""
     stated: FloatArray
     """Shape (channels,): tolerance of channels filtered before they were recorded, else 0."""
 
 
 def restless(e: Evidence) -> bool:
     """Whether the error still grows when the stick moves, by more than what was named may leave behind."""
-    active, quiet = unrest(e.problem, e.stages[-1].fitted.left)
-    was, _ = unrest(e.problem, e.stages[0].fitted.left)
+    active, quiet = unrest(e.problem, e.stages[-1].fitted.innovations)
+    was, _ = unrest(e.problem, e.stages[0].fitted.innovations)
     quiet = np.maximum(quiet, (DOUBT * e.stated) ** 2)
     rest, total = np.maximum(active / quiet - 1.0, 0.0), np.maximum(was / quiet - 1.0, 0.0)
     share = float(np.mean(rest)) / max(float(np.mean(total)), 1e-12)

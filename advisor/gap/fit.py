@@ -20,6 +20,9 @@ from advisor.gap.linear import (
 )
 from advisor.gap.problem import Point, Problem, counts, row_weights
 
+_SETTLED = 0.02
+"""Relative change of the weights below which they and the own numbers have settled together."""
+
 
 @dataclass(frozen=True)
 class Fitted:
@@ -27,11 +30,13 @@ class Fitted:
 
     point: Point
     noise: FloatArray
-    """Shape (channels,): standard deviation of what is left."""
+    """Shape (channels,): standard deviation of the innovations."""
     cost: float
     """-2 log likelihood, profiled over the noise, priors included."""
+    innovations: tuple[FloatArray, ...]
+    """Per manoeuvre, what is left after offsets and edges, freed of what neighbours have in common."""
     left: tuple[FloatArray, ...]
-    """Per manoeuvre, stacked residuals after offsets, edges and air."""
+    """The same in the units of the channels."""
     information: FloatArray
     """Shape (k, k): of the shared numbers, own numbers eliminated."""
     linear: tuple[Linear, ...]
@@ -50,7 +55,7 @@ def factor(
 
 
 def solve_blocks(
-    problem: Problem, linear: Sequence[Linear], weights: FloatArray, damping: float
+    problem: Problem, linear: Sequence[Linear], weights: FloatArray, damping: float, derivatives: FloatArray
 ) -> tuple[FloatArray, list[FloatArray], FloatArray, list[FloatArray]]:
     """One Gauss-Newton step.
 
@@ -61,6 +66,7 @@ def solve_blocks(
     """
     k = linear[0].shared.shape[1]
     H, g = np.zeros((k, k)), np.zeros(k)
+    H[:6, :6], g[:6] = np.diag(problem.pull), problem.pull * problem.missed(derivatives)
     kept = []
     for i, block in enumerate(linear):
         w = row_weights(problem, i, weights)
@@ -78,27 +84,38 @@ def solve_blocks(
     for block, solved in zip(linear, kept, strict=True):
         own = solved[:, k] - solved[:, :k] @ step
         owns.append(own)
-        lefts.append(block.left - block.shared @ step - block.own @ own)
+        lefts.append(block.after(step, own))
     return step, owns, H, lefts
 
 
 def noise_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
     """Shape (channels,): RMS of what is left, not below the smallest noise."""
+    noise = rms_of(problem, lefts)
+    return np.maximum(noise, 1e-7 if problem.smallest_noise is None else problem.smallest_noise)
+
+
+def rms_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+    """Shape (channels,): root mean square over all manoeuvres."""
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
     for flight, left in zip(problem.flights.flights, lefts, strict=True):
         for c, rows in enumerate(problem.rows(flight)):
             power[c] += float(left[rows] @ left[rows])
             count[c] += rows.stop - rows.start
-    noise = np.sqrt(power / np.maximum(count, 1.0))
-    return np.maximum(noise, 1e-7 if problem.smallest_noise is None else problem.smallest_noise)
+    return np.asarray(np.sqrt(power / np.maximum(count, 1.0)))
 
 
 def cost_of(
-    problem: Problem, lefts: Sequence[FloatArray], owns: Sequence[FloatArray], linear: Sequence[Linear]
+    problem: Problem,
+    point: Point,
+    lefts: Sequence[FloatArray],
+    owns: Sequence[FloatArray],
+    linear: Sequence[Linear],
 ) -> float:
-    """-2 log likelihood profiled over the noise: Σ_c N_c log σ_c², plus the priors on edges and air."""
+    """-2 log likelihood profiled over the noise, Σ_c N_c log σ_c², plus the priors."""
     noise = noise_of(problem, lefts)
-    power = sum(float(np.sum(b.prior * o**2)) for b, o in zip(linear, owns, strict=True))
+    power = problem.disbelief(point.derivatives) + sum(
+        float(np.sum(b.prior * o**2)) for b, o in zip(linear, owns, strict=True)
+    )
     return float(np.sum(counts(problem) * 2.0 * np.log(noise))) + power
 
 
@@ -123,10 +140,14 @@ def fit(
         done += 1
         # Weights and own numbers settle together at a fixed linearisation: cheap, no simulation.
         for _ in range(4):
-            step, owns, information, lefts = solve_blocks(problem, linear, weights, damping)
-            weights = 1.0 / noise_of(problem, lefts)
+            step, owns, information, lefts = solve_blocks(
+                problem, linear, weights, damping, point.derivatives
+            )
+            before, weights = weights, 1.0 / noise_of(problem, lefts)
+            if np.max(np.abs(np.log(weights / before))) < _SETTLED:
+                break
         owns_here, left_here = own_only(problem, linear, weights)
-        here = cost_of(problem, left_here, owns_here, linear)
+        here = cost_of(problem, point, left_here, owns_here, linear)
         if here < best + 1e-9:
             gained = best - here
             best, kept = here, (point, linear)
@@ -138,15 +159,23 @@ def fit(
             point, linear = kept
             if damping > 1e3:
                 break
-            step, owns, information, lefts = solve_blocks(problem, linear, weights, damping)
+            step, owns, information, lefts = solve_blocks(
+                problem, linear, weights, damping, point.derivatives
+            )
         shared = np.clip(point.shared + step, lower, upper)
         own = point.own + np.array([o[: len(NUISANCES)] for o in owns])
         point = point.moved(shared, own)
         linear = linearise(problem, point)
     point, linear = kept
     owns_here, left_here = own_only(problem, linear, weights)
-    _, _, information, _ = solve_blocks(problem, linear, 1.0 / noise_of(problem, left_here), 0.0)
-    return Fitted(point, noise_of(problem, left_here), best, tuple(left_here), information, linear, done)
+    _, _, information, _ = solve_blocks(
+        problem, linear, 1.0 / noise_of(problem, left_here), 0.0, point.derivatives
+    )
+    still = np.zeros(len(point.shared))
+    measured = tuple(block.measured.after(still, own) for block, own in zip(linear, owns_here, strict=True))
+    return Fitted(
+        point, noise_of(problem, left_here), best, tuple(left_here), measured, information, linear, done
+    )
 
 
 def own_only(

@@ -66,7 +66,9 @@ def foresee(
     marks: dict[str, FloatArray] = {}
     scale: dict[str, tuple[str, float]] = {}
     inverted: dict[str, bool] = {}
-    shared = [_own_removed(problem, fitted, i, b.shared, weights) for i, b in enumerate(fitted.linear)]
+    shared = [
+        _own_removed(problem, fitted, i, b.measured.shared, weights) for i, b in enumerate(fitted.linear)
+    ]
     inverse = np.linalg.pinv(np.sum([J.T @ J for J in shared], axis=0), rcond=1e-12, hermitian=True)
     for variant in variants:
         if variant.effect in marks or variant.effect in {e.effect for e in fitted.point.effects}:
@@ -134,7 +136,7 @@ def _own_removed(
     """Weighted columns with what the manoeuvre's own numbers can mimic taken out."""
     block = fitted.linear[i]
     w = row_weights(problem, i, weights)[:, None]
-    A, X = block.own * w, columns * w
+    A, X = block.own * w, problem.innovations(i, columns) * w
     return np.asarray(X - A @ cho_solve(factor(problem, i, block.own, block.prior, weights), A.T @ X))
 
 

@@ -12,9 +12,16 @@ import numpy as np
 from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fit import Fitted, bounds_of, factor
+from advisor.gap.fit import Fitted, bounds_of, factor, rms_of
+from advisor.gap.layout import DERIVATIVES
 from advisor.gap.linear import Linear
 from advisor.gap.problem import Problem, row_weights
+
+_INDIFFERENT = 3e-4
+"""Directions the data say relatively less about stay put: they change no prediction, but a long step along
+them leaves the range in which the model is linear."""
+_ANCHOR = 1e-3
+"""Weight of "no effect" beside what all manoeuvres say of an effect's parameter."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +29,9 @@ class HeldOut:
     """Residuals of every manoeuvre as predicted by a fit of the others."""
 
     left: tuple[FloatArray, ...]
-    """Per manoeuvre, stacked channels."""
+    """Per manoeuvre, stacked channels, in their units."""
+    innovations: FloatArray
+    """Shape (channels,): mean squares after the filter; the same as ``mean_square`` without one."""
     mean_square: FloatArray
     """Shape (channels,)."""
     by_maneuver: FloatArray
@@ -43,23 +52,38 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     blocks = [_reduced(problem, i, block, weights) for i, block in enumerate(fitted.linear)]
     total_H = np.sum([b[0] for b in blocks], axis=0)
     total_g = np.sum([b[1] for b in blocks], axis=0)
+    k = len(DERIVATIVES)
+    total_H[:k, :k] += np.diag(problem.pull)
+    total_g[:k] += problem.pull * problem.missed(fitted.point.derivatives)
     lower, upper = bounds_of(fitted.point)
+    anchor = _ANCHOR * np.diag(total_H)
+    anchor[:k] = 0.0
     lefts: list[FloatArray] = [np.empty(0)] * n
+    innovations: list[FloatArray] = [np.empty(0)] * n
     for fold in chosen:
         step = np.zeros(len(total_g))
         if len(fold) < n:
-            H = total_H - np.sum([blocks[i][0] for i in fold], axis=0)
-            g = total_g - np.sum([blocks[i][1] for i in fold], axis=0)
+            # What only the manoeuvres kept out could tell of an effect stays at "no effect".
+            H = total_H - np.sum([blocks[i][0] for i in fold], axis=0) + np.diag(anchor)
+            g = total_g - np.sum([blocks[i][1] for i in fold], axis=0) - anchor * fitted.point.shared
             step = solve_scaled(H, g)
             shared = fitted.point.shared
             step = np.clip(shared + step, lower, upper) - shared
         for i in fold:
-            lefts[i] = after(problem, i, fitted.linear[i], weights, step)
+            own = own_after(problem, i, fitted.linear[i], weights, step)
+            innovations[i] = fitted.linear[i].after(step, own)
+            lefts[i] = fitted.linear[i].measured.after(step, own)
+    return held_out(problem, lefts, innovations)
+
+
+def held_out(
+    problem: Problem, lefts: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
+) -> HeldOut:
+    """Residuals with their mean squares."""
     powers = mean_squares(problem, lefts)
-    counts = np.array(
-        [[len(f.outputs[c].t) for c in problem.channels] for f in problem.flights.flights], float
-    )
-    return HeldOut(tuple(lefts), np.sum(powers * counts, axis=0) / np.sum(counts, axis=0), powers)
+    total = rms_of(problem, lefts) ** 2
+    seen = total if innovations is None else rms_of(problem, innovations) ** 2
+    return HeldOut(tuple(lefts), seen, total, powers)
 
 
 def mean_squares(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
@@ -75,16 +99,15 @@ def mean_squares(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
 def solve_scaled(H: FloatArray, g: FloatArray) -> FloatArray:
     """H⁻¹ g with H scaled to a unit diagonal; directions the data say nothing about stay put."""
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-    return np.asarray(np.linalg.lstsq(H / np.outer(scale, scale), g / scale, rcond=1e-9)[0] / scale)
+    return np.asarray(np.linalg.lstsq(H / np.outer(scale, scale), g / scale, rcond=_INDIFFERENT)[0] / scale)
 
 
-def after(problem: Problem, i: int, block: Linear, weights: FloatArray, step: FloatArray) -> FloatArray:
-    """Residual of a manoeuvre after a step of the shared numbers, its own numbers refitted."""
+def own_after(problem: Problem, i: int, block: Linear, weights: FloatArray, step: FloatArray) -> FloatArray:
+    """A manoeuvre's own numbers, refitted after a step of the shared ones."""
     w = row_weights(problem, i, weights)
     left = block.left - block.shared @ step
     A = block.own * w[:, None]
-    own = cho_solve(factor(problem, i, block.own, block.prior, weights), A.T @ (left * w))
-    return np.asarray(left - block.own @ own)
+    return np.asarray(cho_solve(factor(problem, i, block.own, block.prior, weights), A.T @ (left * w)))
 
 
 def _reduced(problem: Problem, i: int, block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -11,9 +11,9 @@ NUISANCES = ("alpha_start", "q_start", "Z_trim", "M_trim")
 at the trimmed α and δe instead of at zero."""
 EFFECT_ENTRIES = (
     # input
-    "delay_s", "lag_s", "slowness_s_rad", "half_play_rad", "play_side", "half_deadband_rad",
+    "delay_s", "lag_s", "slowness_s_rad", "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad",
     # moment equation
-    "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_throttle", "M_alpha_dot", "M_h",
+    "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_throttle", "M_thrust", "M_alpha_dot", "M_h",
     # force equation
     "Z_alpha2", "Z_alpha3", "lift_share", "lift_lag_s", "Z_h", "scale_m",
     # step inside a manoeuvre

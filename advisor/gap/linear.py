@@ -19,18 +19,30 @@ _HELD_JITTER_S = 0.0015
 """A held command changes at its stamp, give or take the stamp's resolution."""
 
 
-@dataclass
-class Linear:
-    """The model of one manoeuvre made linear about a point, before weighting."""
+@dataclass(frozen=True)
+class Columns:
+    """Residual and sensitivities of one manoeuvre."""
 
     left: FloatArray
     """Shape (rows,): measured minus simulated."""
     shared: FloatArray
     """Shape (rows, k)."""
     own: FloatArray
-    """Shape (rows, m): initial states, trim, offsets (flat priors), then edges and air."""
+    """Shape (rows, m): initial states, trim, offsets (flat priors), then edges."""
+
+    def after(self, step: FloatArray, own: FloatArray) -> FloatArray:
+        """Residual after a step of the shared and the own numbers."""
+        return np.asarray(self.left - self.shared @ step - self.own @ own)
+
+
+@dataclass(frozen=True)
+class Linear(Columns):
+    """The model of one manoeuvre made linear about a point, as innovations, before weighting."""
+
     prior: FloatArray
     """Shape (m,): inverse prior variances, 0 for flat."""
+    measured: Columns
+    """The same in the units of the channels, as it was before the filter."""
 
 
 def shared_steps(point: Point) -> FloatArray:
@@ -138,5 +150,11 @@ def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:
     blocks = []
     for i in range(len(problem.flights)):
         own, prior = own_columns(problem, i, p[i], grids[i])
-        blocks.append(Linear(lefts[i], shared[i], own, prior))
+        measured = Columns(lefts[i], shared[i], own)
+        if problem.whitening is None:
+            blocks.append(Linear(measured.left, measured.shared, measured.own, prior, measured))
+            continue
+        e = problem.innovations(i, np.column_stack([lefts[i], shared[i], own]))
+        k = shared[i].shape[1]
+        blocks.append(Linear(e[:, 0], e[:, 1 : k + 1], e[:, k + 1 :], prior, measured))
     return tuple(blocks)

@@ -62,7 +62,7 @@ def over_maneuvers(held: HeldOut, kept: Sequence[int]) -> HeldOut:
 def without_air(held: HeldOut, air: Air) -> HeldOut:
     """Held-out errors with the share of the moving air taken out, alike in every manoeuvre."""
     share = np.minimum(air.left / held.mean_square, 1.0)
-    return HeldOut(held.left, held.mean_square * share, held.by_maneuver * share)
+    return replace(held, mean_square=held.mean_square * share, by_maneuver=held.by_maneuver * share)
 
 
 def shrink_of(e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut) -> Shrink:

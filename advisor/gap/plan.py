@@ -62,8 +62,8 @@ def foresee_plan(
     point = Point(derivatives, own)
     noise = np.array([TYPICAL_NOISE[c] for c in flights.channels])
     linear = linearise(problem, point)
-    _, _, information, lefts = solve_blocks(problem, linear, 1.0 / noise, 0.0)
-    fitted = Fitted(point, noise, 0.0, tuple(lefts), information, linear, 0)
+    _, _, information, lefts = solve_blocks(problem, linear, 1.0 / noise, 0.0, derivatives)
+    fitted = Fitted(point, noise, 0.0, tuple(lefts), tuple(lefts), information, linear, 0)
     return foresee(problem, fitted, variants_for(flights), noise)
 
 

@@ -79,8 +79,9 @@ def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> P
         if unit is None:
             unit = float(np.sqrt(np.mean(np.sum(B**2, axis=1)))) + 1e-300
         B = B / unit
-        A, r = fitted.linear[i].own * w[:, None], fitted.left[i] * w
-        chol = factor(problem, i, fitted.linear[i].own, fitted.linear[i].prior, weights)
+        own = fitted.linear[i].measured.own
+        A, r = own * w[:, None], fitted.left[i] * w
+        chol = factor(problem, i, own, fitted.linear[i].prior, weights)
         AB, Ar = A.T @ B, A.T @ r
         gram = B.T @ B - AB.T @ cho_solve(chol, AB)
         value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
@@ -126,17 +127,17 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
 
 
 def disturbance_course(
-    problem: Problem, fitted: Fitted, block: str, size: float
+    problem: Problem, fitted: Fitted, noise: FloatArray, block: str, size: float
 ) -> tuple[list[FloatArray], list[FloatArray]]:
     """The likeliest course of a block's disturbance at its knots, and what it leaves, per manoeuvre."""
     p = problem.driving(fitted.point)
     courses, lefts = [], []
     for i, flight in enumerate(problem.flights.flights):
-        w = row_weights(problem, i, 1.0 / fitted.noise)
+        w = row_weights(problem, i, 1.0 / noise)
         B = size * disturbance_columns(problem, flight, p[i], block)
-        own, prior = fitted.linear[i].own, fitted.linear[i].prior
+        own, prior = fitted.linear[i].measured.own, fitted.linear[i].prior
         both = np.column_stack([own, B])
-        chol = factor(problem, i, both, np.concatenate([prior, np.ones(B.shape[1])]), 1.0 / fitted.noise)
+        chol = factor(problem, i, both, np.concatenate([prior, np.ones(B.shape[1])]), 1.0 / noise)
         found = cho_solve(chol, (both * w[:, None]).T @ (fitted.left[i] * w))
         courses.append(np.asarray(size * _colour(flight) @ found[own.shape[1] :]))
         lefts.append(np.asarray(fitted.left[i] - both @ found))

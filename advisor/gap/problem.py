@@ -6,10 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.belief import pull_of
 from advisor.gap.data import Flight, Flights
 from advisor.gap.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS, SKEWS
 from advisor.gap.simulate import read_off, simulate, surface
 from advisor.gap.variant import Variant
+from advisor.gap.whitening import Whitening
 
 _NO_DISTURBANCE = np.zeros((4, 0))
 
@@ -62,15 +64,35 @@ class Problem:
     """Shape (entries,): what the aircraft file already has in it."""
     held: bool = False
     """Command held between stamps instead of linear."""
+    instruments: FloatArray | None = None
+    """Shape (channels,): noise of the instruments alone, without what the air adds."""
     smallest_noise: FloatArray | None = None
-    """Shape (channels,): noise is never taken to be below this."""
+    """Shape (channels,): noise of the innovations is never taken to be below this."""
     believed: FloatArray | None = None
     """Shape (6,): derivatives of the aircraft file, when it has all."""
+    whitening: Whitening | None = None
+    """Filter of moving air and coloured instruments; None where white noise describes what is left."""
 
     @property
     def channels(self) -> tuple[str, ...]:
         """Outputs that are compared."""
         return self.flights.channels
+
+    @property
+    def pull(self) -> FloatArray:
+        """Shape (6,): inverse variance with which derivatives are drawn to the file's.
+
+        Far weaker than any data that say something; it decides only what the data leave open.
+        """
+        return np.zeros(len(DERIVATIVES)) if self.believed is None else pull_of(self.believed)
+
+    def missed(self, derivatives: FloatArray) -> FloatArray:
+        """Shape (6,): the file's derivatives minus these."""
+        return np.zeros(len(DERIVATIVES)) if self.believed is None else self.believed - derivatives
+
+    def disbelief(self, derivatives: FloatArray) -> float:
+        """What the pull adds to the cost."""
+        return float(self.pull @ self.missed(derivatives) ** 2)
 
     def driving(self, point: Point) -> FloatArray:
         """Shape (manoeuvres, entries): the numbers each manoeuvre is simulated with."""
@@ -116,6 +138,10 @@ class Problem:
         flight = self.flights.flights[i]
         grid = self.fly(flight, p)
         return self.measured(flight) - self.read(flight, grid, p), grid
+
+    def innovations(self, i: int, columns: FloatArray) -> FloatArray:
+        """Columns of manoeuvre ``i``, shape (rows, k), freed of what neighbouring rows have in common."""
+        return columns if self.whitening is None else self.whitening.innovations(i, columns)
 
 
 def row_weights(problem: Problem, i: int, weights: FloatArray) -> FloatArray:

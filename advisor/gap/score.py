@@ -1,15 +1,17 @@
 """Which: full fits of the few candidates worth it, each judged on manoeuvres it has not seen."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fit import Fitted, fit
+from advisor.gap.belief import log_belief
+from advisor.gap.fit import Fitted, fit, rms_of
 from advisor.gap.floor import independent_samples
 from advisor.gap.holdout import HeldOut, hold_out
-from advisor.gap.problem import Problem
+from advisor.gap.layout import DERIVATIVES
+from advisor.gap.problem import Point, Problem, counts
 from advisor.gap.screen import Screen, Screened
 from advisor.gap.variant import Variant
 
@@ -17,15 +19,15 @@ FULL_FITS = 5
 """Candidates that get a full fit after the screening."""
 LEAST_GAIN = 6.0
 """Log likelihood, on held-out manoeuvres and after the price of its numbers, that an effect must bring."""
-LEAST_GAP = 0.03
-"""Part of the gap, in units of the floor's mean square averaged over channels, it must remove there."""
+LEAST_GAP = 0.05
+"""What it must change there, mean square over the noise of the instruments, averaged over channels."""
 LEAST_SIGMA = 3.0
 _PROMISE = 0.7
-"""Share of ``LEAST_GAP`` that the screening must promise before a full fit is spent on a candidate."""
-_ARMS = {"alpha_vane_offset", "accelerometer_offset"}
-"""One and the same thing in the data: only the derivatives they leave behind differ."""
-_EQUIVALENT = 5.0
-"""Difference of gain between two descriptions of the very same thing."""
+"""Share of the least that the screening must promise before a full fit is spent on a candidate."""
+LEAST_BELIEF = 8.0
+"""Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
+_BACKWARD_VANE = -5.0
+"""Log odds of a vane behind the centre of gravity: an arm pointing backwards is the accelerometer's."""
 
 
 @dataclass(frozen=True)
@@ -36,9 +38,11 @@ class Judged:
     fitted: Fitted
     held_out: HeldOut
     gain: float
-    """Held-out log likelihood gained, coloured residuals counted at their worth, minus k/2 ln N."""
+    """Held-out log likelihood gained, coloured residuals at their worth, minus k/2 ln N, plus belief."""
     removed: float
-    """Gap removed on held-out manoeuvres, in units of what is left."""
+    """What it changes in the outputs of manoeuvres kept out, mean square beside the instruments' noise."""
+    belief: float
+    """Log probability gained because the derivatives it leaves agree better with the file's."""
     value: FloatArray
     std: FloatArray
 
@@ -50,10 +54,17 @@ class Judged:
     @property
     def worth_naming(self) -> bool:
         """Better on unseen manoeuvres, by more than noise, and not smaller than matters."""
-        if self.gain < LEAST_GAIN or self.removed < LEAST_GAP:
+        if self.gain < LEAST_GAIN or (self.removed < LEAST_GAP and self.belief < LEAST_BELIEF):
             return False
         size = float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
-        return size > LEAST_SIGMA and self.large_enough
+        return size > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
+
+    @property
+    def at_its_bounds(self) -> bool:
+        """The search ran out of its range: a shape that only resembles the effect."""
+        ends = np.array(self.variant.bounds[1:]).reshape(-1, 2)
+        near = np.abs(ends - self.value[1:, None]) < 1e-3 * np.ptp(ends, axis=1, keepdims=True)
+        return bool(np.any(near)) and not self.variant.one_sided
 
     @property
     def large_enough(self) -> bool:
@@ -78,85 +89,92 @@ def judge(
     """Full fits of the best variant of the best effects; the best judgement first."""
     chosen: dict[str, Screened] = {}
     for candidate in candidates:
-        promised = float(np.mean(before.noise**2 / candidate.noise**2 - 1.0))
-        if promised < _PROMISE * LEAST_GAP or candidate.cost >= before.cost:
+        promised = 0.5 * (before.cost - candidate.cost)
+        if promised < _PROMISE * LEAST_GAIN and candidate.belief < _PROMISE * LEAST_BELIEF:
             continue
         if candidate.variant.effect not in chosen and len(chosen) < FULL_FITS:
             chosen[candidate.variant.effect] = candidate
-    fits = [(s.variant, fit(problem, s.point, s.noise, iterations=8, tolerance=0.5)) for s in chosen.values()]
+    fits = [fit(problem, s.point, s.noise, iterations=8, tolerance=0.5) for s in chosen.values()]
     if not fits:
         return []
-    best = min(fits, key=lambda f: f[1].cost)[1]
-    independent = worth(problem, best.left)
-    judged = [_judge(problem, before, held_before, v, f, independent) for v, f in fits]
-    return plausible(sorted(judged, key=lambda j: -j.gain), problem.believed)
+    best = min(fits, key=lambda f: f.cost)
+    independent = worth(problem, best.innovations)
+    judged = [
+        addition(problem, before, held_before, f, f.point.effects[-1].effect, independent) for f in fits
+    ]
+    return sorted(judged, key=lambda j: -j.gain)
 
 
-def _judge(
+def addition(
     problem: Problem,
     before: Fitted,
     held_before: HeldOut,
-    variant: Variant,
     fitted: Fitted,
+    effect: str,
     independent: FloatArray,
 ) -> Judged:
+    """What an effect of a fitted model adds to the model without it."""
+    point = fitted.point
+    k = [v.effect for v in point.effects].index(effect)
+    variant, value = point.effects[k], point.values[k]
+    at = len(point.derivatives) + sum(len(v) for v in point.values[:k])
     held = hold_out(problem, fitted)
-    ratio = np.log(held_before.mean_square / held.mean_square)
+    # What was gained on manoeuvres kept out, but by luck not more than in the fit itself.
+    ratio = np.log(held_before.innovations / held.innovations)
+    fitted_ratio = np.log((before.noise / fitted.noise) ** 2)
+    likelihood = min(float(np.sum(independent / 2.0 * r)) for r in (ratio, fitted_ratio))
     numbers = len(variant.names) + (1 if variant.fixed else 0)
-    gain = float(np.sum(independent / 2.0 * ratio)) - 0.5 * numbers * float(np.log(np.sum(independent)))
-    floor = fitted.noise**2
-    removed = float(np.mean((held_before.mean_square - held.mean_square) / floor))
-    k = len(variant.names)
+    price = 0.5 * numbers * float(np.log(np.sum(independent)))
+    belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
+    backward = _BACKWARD_VANE if variant.effect == "alpha_vane_offset" and value[0] < 0.0 else 0.0
     return Judged(
-        variant,
-        fitted,
-        held,
-        gain,
-        removed,
-        fitted.point.values[-1],
-        shared_std(problem, fitted, independent)[-k:],
-    )
+        variant=variant, fitted=fitted, held_out=held,
+        gain=likelihood - price + belief + backward,
+        removed=_difference(problem, held_before, held),
+        belief=belief, value=value, std=shared_std(problem, fitted, independent)[at : at + len(value)],
+    )  # fmt: skip
+
+
+def _difference(problem: Problem, before: HeldOut, after: HeldOut) -> float:
+    """Mean over channels of the squared change of the prediction, beside the instruments' noise."""
+    changed = rms_of(problem, [a - b for a, b in zip(before.left, after.left, strict=True)])
+    noise = 1.0 if problem.instruments is None else problem.instruments
+    return float(np.mean((changed / noise) ** 2))
+
+
+def belief_in(problem: Problem, fitted: Fitted, independent: FloatArray) -> float:
+    """Log probability of the derivatives, given the aircraft file; 0 without one."""
+    if problem.believed is None:
+        return 0.0
+    n = len(problem.believed)
+    known = covariance(problem, fitted, independent)[:n, :n]
+    return log_belief(fitted.point.derivatives, known, problem.believed)
 
 
 def shared_std(problem: Problem, fitted: Fitted, independent: FloatArray) -> FloatArray:
-    """Shape (k,): standard deviations of the shared numbers, widened for coloured residuals."""
+    """Shape (k,): standard deviations of the shared numbers."""
+    return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, independent)), 0.0)))
+
+
+def covariance(problem: Problem, fitted: Fitted, independent: FloatArray) -> FloatArray:
+    """Shape (k, k): covariance of the shared numbers, widened for coloured residuals."""
     scale = np.sqrt(np.maximum(np.diag(fitted.information), 1e-300))
     normal = fitted.information / np.outer(scale, scale)
-    plain = np.sqrt(np.maximum(np.diag(np.linalg.pinv(normal, rcond=1e-12)), 0.0)) / scale
-    samples = np.array([sum(len(f.outputs[c].t) for f in problem.flights.flights) for c in problem.channels])
-    return np.asarray(plain * np.sqrt(float(np.mean(samples / np.maximum(independent, 1.0)))))
+    plain = np.linalg.pinv(normal, rcond=1e-12, hermitian=True) / np.outer(scale, scale)
+    widened = float(np.mean(counts(problem) / np.maximum(independent, 1.0)))
+    return np.asarray(plain * widened)
 
 
 def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]) -> list[Screened]:
     """The screening, without the effects the model has already."""
     present = {e.effect for e in fitted.point.effects}
-    return Screen(problem, fitted).try_all([v for v in variants if v.effect not in present])
+    independent = counts(problem)
+    known = covariance(problem, fitted, independent)[: len(DERIVATIVES), : len(DERIVATIVES)]
+    plain = belief_in(problem, fitted, independent)
 
+    def believed(point: Point) -> float:
+        if problem.believed is None:
+            return 0.0
+        return log_belief(point.derivatives, known, problem.believed) - plain
 
-def plausible(judged: Sequence[Judged], believed: FloatArray | None) -> list[Judged]:
-    """The ranking with equivalent explanations put into the order that what is known suggests.
-
-    Explanations that fit equally well leave different derivatives behind; the one whose derivatives agree
-    with the aircraft file's comes first. Without a file: a vane sits ahead of the centre of gravity,
-    so an arm pointing backwards is the accelerometer's.
-    """
-    if not judged:
-        return []
-    best = max(j.gain for j in judged)
-    leader = next(j.effect for j in judged if j.gain == best)
-
-    def strange(j: Judged) -> float:
-        twins = {j.effect, leader} == _ARMS and j.gain > 0.95 * best
-        if j.gain < best - _EQUIVALENT and not twins:
-            return float("inf")
-        if believed is not None:
-            size = np.maximum(0.03 * np.abs(believed), np.array([0.05, 0.01, 0.02, 0.3, 0.05, 0.3]))
-            return float(np.sum(((j.fitted.point.derivatives - believed) / size) ** 2)) + (best - j.gain)
-        return 10.0 if j.effect == "alpha_vane_offset" and j.value[0] < 0.0 else best - j.gain
-
-    ahead = [j for j in judged if np.isfinite(strange(j))]
-    ranking = sorted(ahead, key=strange)
-    # What the file settles counts as settled; what nothing settles stays a tie.
-    settled = len(ranking) > 1 and strange(ranking[1]) > strange(ranking[0]) + _EQUIVALENT
-    first = replace(ranking[0], gain=best + 2.0 * _EQUIVALENT if settled else best)
-    return [first, *ranking[1:], *(j for j in judged if j not in ahead)]
+    return Screen(problem, fitted).try_all([v for v in variants if v.effect not in present], believed)

@@ -1,5 +1,6 @@
 """Every candidate once, fast: the baseline's sensitivities are kept, only the effect's own are computed."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,7 +8,7 @@ from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, bounds_of, factor, noise_of
-from advisor.gap.linear import shared_columns
+from advisor.gap.linear import shared_steps
 from advisor.gap.problem import Point, Problem, counts, row_weights
 from advisor.gap.variant import Variant
 
@@ -21,6 +22,8 @@ class Screened:
     cost: float
     """As ``Fitted.cost``, to compare with the baseline's."""
     noise: FloatArray
+    belief: float = 0.0
+    """Log probability gained because the derivatives agree better with the aircraft file's."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,21 @@ class _Kept:
     chol: tuple[FloatArray, bool]
     AJ: FloatArray
     JJ: FloatArray
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point that was flown."""
+
+    point: Point
+    """With the manoeuvres' own numbers refitted."""
+    flown: Point
+    p: FloatArray
+    grids: list[FloatArray]
+    weighted: list[FloatArray]
+    """Per manoeuvre: weighted innovations, own numbers not refitted."""
+    cost: float
+    noise: FloatArray
 
 
 class Screen:
@@ -49,19 +67,21 @@ class Screen:
             self.kept.append(_Kept(A, J, chol, AJ, J.T @ J - AJ.T @ cho_solve(chol, AJ)))
         self.count = counts(problem)
 
-    def try_all(self, variants: list[Variant]) -> list[Screened]:
-        """Quick fits of all, cheapest description of the data first."""
-        found = [s for s in (self.try_one(v) for v in variants) if s is not None]
-        return sorted(found, key=lambda s: s.cost + penalty(s.variant, float(np.sum(self.count))))
+    def try_all(self, variants: list[Variant], believed: Callable[[Point], float]) -> list[Screened]:
+        """Quick fits of all, the likeliest description of the data first.
+
+        ``believed`` gives the log probability that a point gains from what the aircraft file says.
+        """
+        found = [
+            replace(s, belief=believed(s.point)) for s in (self.try_one(v) for v in variants) if s is not None
+        ]
+        price = float(np.sum(self.count))
+        return sorted(found, key=lambda s: s.cost - 2.0 * s.belief + penalty(s.variant, price))
 
     def try_one(self, variant: Variant, iterations: int = 4) -> Screened | None:
         """The best of a variant's starts."""
-        best: Screened | None = None
-        for start in variant.starts:
-            here = self._descend(variant, start, iterations)
-            if here is not None and (best is None or here.cost < best.cost):
-                best = here
-        return best
+        found = [self._descend(variant, start, iterations) for start in variant.starts]
+        return min((f for f in found if f is not None), key=lambda f: f.cost, default=None)
 
     def _descend(self, variant: Variant, start: tuple[float, ...], iterations: int) -> Screened | None:
         problem = self.problem
@@ -69,45 +89,57 @@ class Screen:
         point = self.fitted.point.with_effect(variant, start, sides)
         if sides is not None:
             point = self.choose_sides(point, variant)
+        here = self.at(point)
+        if here is None:
+            return None
         lower, upper = bounds_of(point)
-        k, ke = len(self.fitted.point.shared), len(variant.names)
-        best: Screened | None = None
-        for n in range(iterations):
-            p = problem.driving(point)
-            lefts, grids = zip(*[problem.parts(i, p[i]) for i in range(len(problem.flights))], strict=True)
-            if not all(np.all(np.isfinite(left)) for left in lefts):
-                return best
-            own_steps, shared_step, here = self._solve(point, p, lefts, grids, k, ke)
-            if best is None or here.cost < best.cost:
-                gained = np.inf if best is None else best.cost - here.cost
-                best = here
-                if gained < max(0.5, 1e-3 * (self.fitted.cost - here.cost)):
-                    break
-            else:
+        for _ in range(iterations):
+            step = self._step(here)
+            shared = np.clip(here.point.shared + step, lower, upper)
+            point = here.point.moved(shared, here.point.own)
+            if sides is not None:
+                point = self.choose_sides(point, variant)
+            there = self.at(point)
+            if there is None or there.cost >= here.cost:
                 break
-            if n < iterations - 1:
-                shared = np.clip(point.shared + shared_step, lower, upper)
-                point = point.moved(shared, point.own + own_steps)
-                if sides is not None:
-                    point = self.choose_sides(point, variant)
-        return best
+            gained, here = here.cost - there.cost, there
+            if gained < max(0.5, 1e-3 * (self.fitted.cost - here.cost)):
+                break
+        return Screened(here.point.effects[-1], here.point, here.cost, here.noise)
 
-    def _solve(
-        self,
-        point: Point,
-        p: FloatArray,
-        lefts: tuple[FloatArray, ...],
-        grids: tuple[FloatArray, ...],
-        k: int,
-        ke: int,
-    ) -> tuple[FloatArray, FloatArray, Screened]:
+    def at(self, point: Point) -> "Place | None":
+        """Fly there, the manoeuvres' own numbers refitted with the baseline's sensitivities."""
         problem = self.problem
-        extra = shared_columns(problem, point, p, grids, range(k, k + ke))
-        H, g = np.zeros((k + ke, k + ke)), np.zeros(k + ke)
-        solved = []
+        p = problem.driving(point)
+        grids, weighted, after, owns = [], [], [], []
+        power = problem.disbelief(point.derivatives)
         for i, kept in enumerate(self.kept):
-            w = self.weights[i][:, None]
-            X = np.column_stack([extra[i], lefts[i]]) * w
+            left, grid = problem.parts(i, p[i])
+            if not np.all(np.isfinite(left)):
+                return None
+            r = problem.innovations(i, left[:, None])[:, 0] * self.weights[i]
+            own = cho_solve(kept.chol, kept.A.T @ r)
+            after.append((r - kept.A @ own) / self.weights[i])
+            power += float(np.sum(self.fitted.linear[i].prior * own**2))
+            grids.append(grid)
+            weighted.append(r)
+            owns.append(own[:4])
+        noise = noise_of(problem, after)
+        cost = float(np.sum(self.count * 2.0 * np.log(noise))) + power
+        return Place(
+            point.moved(point.shared, point.own + np.array(owns)), point, p, grids, weighted, cost, noise
+        )
+
+    def _step(self, here: "Place") -> FloatArray:
+        """Step of all shared numbers: the baseline's keep their sensitivities, the effect's get new ones."""
+        problem, flown = self.problem, here.flown
+        k = len(self.fitted.point.shared)
+        ke = len(flown.shared) - k
+        extra = self._effect_columns(here, range(k, k + ke))
+        H, g = np.zeros((k + ke, k + ke)), np.zeros(k + ke)
+        H[:6, :6], g[:6] = np.diag(problem.pull), problem.pull * problem.missed(flown.derivatives)
+        for i, kept in enumerate(self.kept):
+            X = np.column_stack([extra[i], here.weighted[i]])
             AX = kept.A.T @ X
             GX = cho_solve(kept.chol, AX)
             XX = X.T @ X - AX.T @ GX
@@ -118,27 +150,32 @@ class Screen:
             H[k:, k:] += XX[:ke, :ke]
             g[:k] += JX[:, ke]
             g[k:] += XX[:ke, ke]
-            solved.append((X, GX))
         scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-        step = (
-            np.linalg.lstsq(H / np.outer(scale, scale) + 1e-9 * np.eye(k + ke), g / scale, rcond=1e-12)[0]
-            / scale
-        )
-        # Hold the step of a pinned parameter at its bound, so that the predicted residual is honest.
-        lower, upper = bounds_of(point)
-        step = np.clip(point.shared + step, lower, upper) - point.shared
-        after, owns = [], []
-        for i, kept in enumerate(self.kept):
-            X, GX = solved[i]
-            own = GX[:, ke] - GX[:, :ke] @ step[k:] - cho_solve(kept.chol, kept.AJ @ step[:k])
-            left = X[:, ke] - X[:, :ke] @ step[k:] - kept.J @ step[:k] - kept.A @ own
-            after.append(left / self.weights[i])
-            owns.append(own)
-        noise = noise_of(problem, after)
-        power = sum(float(np.sum(b.prior * o**2)) for b, o in zip(self.fitted.linear, owns, strict=True))
-        cost = float(np.sum(self.count * 2.0 * np.log(noise))) + power
-        moved = point.moved(point.shared + step, point.own + np.array([o[:4] for o in owns]))
-        return np.array([o[:4] for o in owns]), step, Screened(point.effects[-1], moved, cost, noise)
+        normal = H / np.outer(scale, scale) + 1e-9 * np.eye(k + ke)
+        return np.asarray(np.linalg.lstsq(normal, g / scale, rcond=1e-12)[0] / scale)
+
+    def _effect_columns(self, here: "Place", which: range) -> list[FloatArray]:
+        """Weighted sensitivities to an effect's parameters.
+
+        A change of derivatives from one manoeuvre to the next is a sum of sensitivities known already,
+        and none at all in manoeuvres it does not touch: nothing is flown for it.
+        """
+        problem, point = self.problem, here.flown
+        steps = shared_steps(point)
+        columns = [np.zeros((len(kept.J), len(which))) for kept in self.kept]
+        for j, index in enumerate(which):
+            shifted = point.shared.copy()
+            shifted[index] += steps[index]
+            q = problem.driving(point.moved(shifted, point.own))
+            for i, (flight, kept) in enumerate(zip(problem.flights.flights, self.kept, strict=True)):
+                change = (q[i] - here.p[i]) / steps[index]
+                if not np.any(change[6:]):
+                    columns[i][:, j] = kept.J[:, :6] @ change[:6]
+                    continue
+                moved = problem.read(flight, problem.fly(flight, q[i]), q[i])
+                raw = (moved - problem.read(flight, here.grids[i], here.p[i])) / steps[index]
+                columns[i][:, j] = problem.innovations(i, raw[:, None])[:, 0] * self.weights[i]
+        return columns
 
     def choose_sides(self, point: Point, variant: Variant) -> Point:
         """In every manoeuvre the side that leaves least, own numbers refitted."""
@@ -148,7 +185,8 @@ class Screen:
         for side in variant.sides[1]:
             p = self.problem.driving(replace(point, sides=np.full(len(self.kept), side)))
             for i, kept in enumerate(self.kept):
-                r = self.problem.parts(i, p[i])[0] * self.weights[i]
+                left = self.problem.parts(i, p[i])[0][:, None]
+                r = self.problem.innovations(i, left)[:, 0] * self.weights[i]
                 Ar = kept.A.T @ r
                 cost = float(r @ r - Ar @ cho_solve(kept.chol, Ar))
                 if cost < best_cost[i]:

@@ -37,6 +37,8 @@ class Variant:
     """Slow channels without which the effect cannot be tried."""
     fixed: Mapping[str, float] = field(default_factory=dict)
     """Parameters of the aircraft file that are not searched for: the time of a step."""
+    one_sided: bool = False
+    """Its bounds are physics, not the range of the search: a parameter may well lie there."""
     inverted: bool = False
     """The aircraft file has the reciprocal of the first parameter (a rate limit, searched as slowness)."""
 

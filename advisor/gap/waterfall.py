@@ -1,15 +1,17 @@
 """One effect after another, until nothing more helps on manoeuvres kept out of the fit."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.problem import Problem
-from advisor.gap.score import Judged, candidates_for, judge
+from advisor.gap.score import Judged, addition, candidates_for, judge, worth
 from advisor.gap.variant import Variant
 
 MOST_EFFECTS = 3
+_CLEARLY = 20.0
+"""Cost by which another companion must beat the one that was found first."""
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share done, 0 to 1."""
@@ -41,10 +43,10 @@ def build_up(
         if added is None:
             break
         fitted, held = added.fitted, added.held_out
-    return stages
+    return settled(problem, _other_companion(problem, stages, variants))
 
 
-def reconsider(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
+def _other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
     """With two effects in the model, is the first still the best companion of the second?
 
     A single effect fitted to the sum of two may be neither; once one of them is right the other shows.
@@ -54,21 +56,74 @@ def reconsider(problem: Problem, stages: list[Stage], variants: Sequence[Variant
     first, second = stages[0].added, stages[1].added
     if first is None or second is None:
         return stages
-    start = stages[0].fitted.point.with_effect(second.variant, second.value, second.fitted.point.sides)
-    alone = fit(problem, start, second.fitted.noise, iterations=8)
+    alone = _only(problem, second.fitted, [second.effect])
     held = hold_out(problem, alone)
     companions = judge(problem, alone, held, candidates_for(problem, alone, variants))
     best = next((j for j in companions if j.worth_naming), None)
-    if best is None or best.effect == first.effect or best.fitted.cost > second.fitted.cost - 20.0:
+    if best is None or best.effect == first.effect or best.fitted.cost > second.fitted.cost - _CLEARLY:
         return stages
-    only_second = next((j for j in stages[0].considered if j.effect == second.effect), None)
-    if only_second is None:
-        only_second = Judged(
-            second.variant, alone, held, second.gain, second.removed, alone.point.values[-1], second.std
-        )
+    independent = worth(problem, best.fitted.innovations)
+    only_second = addition(problem, stages[0].fitted, stages[0].held_out, alone, second.effect, independent)
     after = judge(problem, best.fitted, best.held_out, candidates_for(problem, best.fitted, variants))
     return [
         Stage(stages[0].fitted, stages[0].held_out, stages[0].considered, only_second),
         Stage(alone, held, tuple(companions), best),
         Stage(best.fitted, best.held_out, tuple(after), None),
     ]
+
+
+def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
+    """Effects in the order of what the full model loses without each; those it does not miss are dropped.
+
+    The first addition had to explain everything alone, and may be nothing but a poor likeness of what
+    was found after it.
+    """
+    considered = {s.added.effect: s.considered for s in stages if s.added is not None}
+    full = stages[-1].fitted
+    names = list(considered)
+    while len(names) > 1:
+        independent = worth(problem, full.innovations)
+        without = {name: _only(problem, full, [n for n in names if n != name]) for name in names}
+        missed = {
+            name: addition(problem, fewer, hold_out(problem, fewer), full, name, independent)
+            for name, fewer in without.items()
+        }
+        weakest = min(names, key=lambda name: missed[name].gain)
+        if missed[weakest].worth_naming:
+            names.sort(key=lambda name: -missed[name].gain)
+            break
+        names.remove(weakest)
+        full = without[weakest]
+    if names == [s.added.effect for s in stages if s.added is not None]:
+        return stages
+    return _rebuilt(problem, stages[0], names, full, considered, stages[-1].considered)
+
+
+def _rebuilt(
+    problem: Problem,
+    first: Stage,
+    names: Sequence[str],
+    full: Fitted,
+    considered: Mapping[str, tuple[Judged, ...]],
+    last: tuple[Judged, ...],
+) -> list[Stage]:
+    """Stages of the effects in another order."""
+    independent = worth(problem, full.innovations)
+    before, held = first.fitted, first.held_out
+    stages = []
+    for n, name in enumerate(names, 1):
+        fitted = full if n == len(names) else _only(problem, full, names[:n])
+        added = addition(problem, before, held, fitted, name, independent)
+        stages.append(Stage(before, held, considered[name], added))
+        before, held = fitted, added.held_out
+    return [*stages, Stage(before, held, last, None)]
+
+
+def _only(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
+    """The model with some of its effects; what every model has (the command's latency) stays."""
+    point = full.point
+    keep = [0, *(k for k, v in enumerate(point.effects) if v.effect in names)]
+    start = replace(
+        point, effects=tuple(point.effects[k] for k in keep), values=tuple(point.values[k] for k in keep)
+    )
+    return fit(problem, start, full.noise, iterations=8, tolerance=0.5)

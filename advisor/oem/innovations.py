@@ -71,7 +71,12 @@ class Gains:
 
 
 def gains_of(
-    t: FloatArray, channel: np.ndarray, system: FloatArray, air: AirModel, start_variance: float = DIFFUSE
+    t: FloatArray,
+    channel: np.ndarray,
+    system: FloatArray,
+    air: AirModel,
+    start_variance: float = DIFFUSE,
+    extra: FloatArray | float = 0.0,
 ) -> Gains:
     """Find the gains for rows at times ``t``, ascending, of channels ``channel``, both shape (n,).
 
@@ -81,17 +86,18 @@ def gains_of(
         Z_α, Z_q, M_α, M_q, V.
     start_variance
         Of α, q and θ at the start; 0 when the fit has initial states of its own.
+    extra
+        Shape (n,): variance of each row beyond its channel's noise, such as that of an uncertain stamp.
     """
-    noise = np.concatenate(
-        [air.white, air.coloured, [air.memory_s, air.gust, air.gust_memory_s, air.seen_by_alpha]]
-    )
+    white = np.asarray(air.white[channel] ** 2 + extra)
+    colour = np.array([*air.coloured, air.memory_s, air.gust, air.gust_memory_s])
     observed = np.zeros((4, STATES))
     z_a, z_q, _, _, speed = system
     observed[ALPHA, [0, 3, 4]] = 1.0, air.seen_by_alpha, 1.0
     observed[Q, [1, 5]] = 1.0
     observed[A_Z, [0, 1, 3, 6]] = speed * z_a, speed * z_q, speed * z_a, 1.0
     observed[THETA, [2, 7]] = 1.0
-    step, keep, gain, root = _gains(t, channel, system, noise, observed, start_variance)
+    step, keep, gain, root = _gains(t, channel, system, white, colour, observed, start_variance)
     return Gains(step, keep, gain, root, channel, observed)
 
 
@@ -100,7 +106,8 @@ def _gains(
     t: FloatArray,
     channel: np.ndarray,
     system: FloatArray,
-    noise: FloatArray,
+    white: FloatArray,
+    colour: FloatArray,
     observed: FloatArray,
     start_variance: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -108,7 +115,7 @@ def _gains(
     steps, keeps = np.empty((n, 4, 4)), np.empty(n)
     gains, roots = np.empty((n, STATES)), np.empty(n)
     z_a, z_q, m_a, m_q = system[0], system[1], system[2], system[3]
-    memory, gust, gust_memory = noise[8], noise[9], noise[10]
+    memory, gust, gust_memory = colour[4], colour[5], colour[6]
     A = np.zeros((4, 4))
     A[0, 0], A[0, 1], A[0, 3] = z_a, 1.0 + z_q, z_a
     A[1, 0], A[1, 1], A[1, 3] = m_a, m_q, m_a
@@ -117,7 +124,7 @@ def _gains(
     P = np.zeros((STATES, STATES))
     P[0, 0], P[1, 1], P[2, 2], P[3, 3] = start_variance, start_variance, start_variance, gust * gust
     for c in range(4):
-        P[4 + c, 4 + c] = noise[4 + c] ** 2
+        P[4 + c, 4 + c] = colour[c] ** 2
     moved, Ph = np.empty((4, STATES)), np.empty(STATES)
     last, keep_gust, keep = -1.0, 1.0, 1.0
     for i in range(n):
@@ -150,16 +157,18 @@ def _gains(
                     P[a, b] *= keep * keep
             fresh = gust * gust * (1.0 - keep_gust * keep_gust)
             P[3, 3] += fresh
-            # The gust that arises within the step already acts on the states.
+            # The gust that arises within the step already acts on the states, for half of it.
             for a in range(2):
                 P[a, 3] += 0.5 * step[a, 3] * fresh
                 P[3, a] += 0.5 * step[a, 3] * fresh
+                for b in range(2):
+                    P[a, b] += 0.25 * step[a, 3] * step[b, 3] * fresh
             for c in range(4):
-                P[4 + c, 4 + c] += noise[4 + c] ** 2 * (1.0 - keep * keep)
+                P[4 + c, 4 + c] += colour[c] ** 2 * (1.0 - keep * keep)
         else:
             steps[i], keeps[i] = np.eye(4), 1.0
         c = channel[i]
-        variance = noise[c] ** 2
+        variance = white[i]
         for a in range(STATES):
             Ph[a] = 0.0
             for s in range(STATES):

@@ -91,7 +91,10 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
         _fields(M_delta2="M_delta2", M_delta3="M_delta3"),
     ),
     "alpha_dot": (frozenset({"M_alpha_dot"}), _fields(M_alpha_dot="M_alpha_dot")),
-    "thrust_moment": (frozenset({"M_throttle"}), _fields(M_throttle="M_throttle")),
+    "thrust_moment": (
+        frozenset({"M_throttle", "M_thrust"}),
+        _fields(M_throttle="M_throttle", M_thrust="M_thrust"),
+    ),
     "unsteady_lift": (frozenset({"share", "lag_s"}), _fields(share="unsteady_share", lag_s="unsteady_lag")),
     "ground_effect": (
         frozenset({"Z_h", "M_h", "scale_m"}),

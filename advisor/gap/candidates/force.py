@@ -71,6 +71,7 @@ def _icing(flights: Flights) -> list[Variant]:
                 0.01,
                 apply_with=apply,
                 fixed={"at_s": at_s},
+                one_sided=True,
             )
         )
     return found

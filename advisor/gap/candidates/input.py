@@ -1,5 +1,7 @@
 """Between command and surface: delay, lag, rate limit, play, dead-band."""
 
+import numpy as np
+
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flights
 from advisor.gap.layout import INDEX
@@ -26,6 +28,13 @@ def _delay(p: FloatArray, values: Values, _: Flights) -> None:
     """The whole delay: where it is free, the few milliseconds of latency are part of it."""
     p[:, INDEX["delay_s"]] += values[0]
     p[:, INDEX["latency_s"]] = 0.0
+
+
+def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
+    """A band about one neutral deflection of the aircraft, wherever each manoeuvre was trimmed."""
+    trims = np.array([flight.u_trim for flight in flights.flights])
+    p[:, INDEX["half_deadband_rad"]] += values[0]
+    p[:, INDEX["neutral_rad"]] = np.median(trims) - trims
 
 
 def variants() -> list[Variant]:
@@ -82,6 +91,6 @@ def variants() -> list[Variant]:
             (2e-4,),
             ((0.0, 0.1),),
             _SMALL_ANGLE,
-            entries=("half_deadband_rad",),
+            apply_with=_deadband,
         ),
     ]

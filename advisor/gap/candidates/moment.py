@@ -33,12 +33,13 @@ def variants(flights: Flights) -> list[Variant]:
         Variant(
             "thrust_moment",
             BLOCK,
-            ("M_throttle",),
-            ((0.0,),),
-            (0.05,),
-            ((-100.0, 100.0),),
+            # What the throttle changes, and the thrust's own part of the trim, which does not grow with V².
+            ("M_throttle", "M_thrust"),
+            ((0.0, 0.0),),
+            (0.05, 0.05),
+            ((-100.0, 100.0), (-100.0, 100.0)),
             0.0,
-            entries=("M_throttle",),
+            entries=("M_throttle", "M_thrust"),
             needs=frozenset({"throttle"}),
         ),
         Variant(

@@ -1,0 +1,55 @@
+"""What the aircraft file's derivatives are worth as evidence.
+
+Either the simulator's derivatives are right, and an effect is missing; or they are off, by tens of per
+cent. Both are given the same chance beforehand. Where the data leave a choice (a dead-band or less
+elevator power, M_α̇ or three other derivatives), what leaves the file's derivatives alone is likelier.
+"""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+NARROW = 0.03
+"""Relative error of derivatives that are right: linearised, at a nearby speed."""
+WIDE = 0.3
+"""Relative error of derivatives that are not."""
+
+
+def scale_of(believed: FloatArray) -> FloatArray:
+    """Shape (6,): size of each derivative; Z_q beside 1, small ones beside the large ones."""
+    z_alpha, _, z_delta, m_alpha, m_q, m_delta = np.abs(believed)
+    return np.array(
+        [
+            max(z_alpha, 0.1),
+            1.0,
+            max(z_delta, 0.3 * z_alpha),
+            max(m_alpha, 0.1),
+            max(m_q, 0.3 * np.sqrt(m_alpha)),
+            max(m_delta, 0.1),
+        ]
+    )
+
+
+def pull_of(believed: FloatArray) -> FloatArray:
+    """Shape (6,): inverse variances of a file that is off, to decide only what data leave open."""
+    return np.asarray(1.0 / (WIDE * scale_of(believed)) ** 2)
+
+
+def log_belief(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray) -> float:
+    """Log probability density of fitted derivatives, given the file, up to a constant.
+
+    Parameters
+    ----------
+    derivatives, covariance
+        Shapes (6,) and (6, 6): what was fitted, and how well it is known.
+    believed
+        Shape (6,): the file's.
+    """
+    scale = scale_of(believed)
+    off = (derivatives - believed) / scale
+    known = covariance / np.outer(scale, scale)
+    densities = []
+    for width in (NARROW, WIDE):
+        spread = known + width**2 * np.eye(6)
+        densities.append(-0.5 * (off @ np.linalg.solve(spread, off) + np.linalg.slogdet(spread)[1]))
+    return float(np.logaddexp(densities[0], densities[1]) - np.log(2.0))

@@ -1,0 +1,67 @@
+"""Between its stamps: was the command held, or did it move linearly?"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.gap.candidates import input
+from advisor.gap.fit import Fitted, evidence_of, fit
+from advisor.gap.problem import Problem
+from advisor.gap.screen import Screen
+
+_NEARLY = 0.25
+"""Share of all that a delay, a lag and the right reading explain which may stay unexplained without them."""
+
+
+def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+    """The plain model, with the command held or linear between its stamps as the data decide.
+
+    The choice is made with a delay and a lag in the model, else a held command would pass for a
+    delay of half a sample, or a delay for a held command.
+    """
+    delay, lag = (v for v in input.variants() if v.effect in ("transport_delay", "actuator_lag"))
+    screen = Screen(linear, fitted)
+    best = min(
+        (s for s in map(screen.try_one, (delay, lag)) if s is not None), key=lambda s: s.cost, default=None
+    )
+    if best is None:
+        return linear, fitted
+    other = lag if best.variant is delay else delay
+    held = replace(linear, held=True)
+    plainly_held = with_latency(held, fit(held, fitted.point, fitted.noise))
+    both_linear = fit(linear, best.point.with_effect(other, (0.005,)), best.noise, 8)
+    # A held command answers half an interval later than a linear one by itself.
+    half = 0.5 * float(np.median(np.diff(linear.flights.flights[0].t_u)))
+    sooner = max(float(best.point.values[-1][0]) - half, 0.002)
+    less = fitted.point.with_effect(best.variant, (sooner,)).with_effect(other, (0.005,))
+    both_held = fit(held, less, best.noise, 8)
+    plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
+    both = {False: evidence_of(linear, both_linear), True: evidence_of(held, both_held)}
+    best_of_all = min(*plain.values(), *both.values())
+    # Held with a delay d and linear with d plus half an interval are the same motion. The held reading is
+    # believed where it needs no delay at all; else the doubt of half an interval goes into the delay's error.
+    near = best_of_all + _NEARLY * (max(plain.values()) - best_of_all)
+    is_held = plain[True] < min(near, plain[False])
+    if is_held:
+        return held, plainly_held
+    return linear, fitted
+
+
+def with_latency(problem: Problem, fitted: Fitted) -> Fitted:
+    """The fit, begun again where another latency is better: steps make the cost rough in it.
+
+    Within the few milliseconds of its bounds the latency passes stamps, and each may hold a minimum.
+    """
+    screen = Screen(problem, fitted)
+    lower, upper = input.LATENCY.bounds[0]
+    tried = []
+    for latency in np.arange(lower, upper + 1e-9, 1e-3):
+        values = (np.array([latency]), *fitted.point.values[1:])
+        place = screen.at(replace(fitted.point, values=values))
+        if place is not None:
+            tried.append(place)
+    best = min(tried, key=lambda place: place.cost)
+    if best.cost > fitted.cost - 1.0:
+        return fitted
+    again = fit(problem, best.point, fitted.noise)
+    return again if again.cost < fitted.cost else fitted

@@ -1,0 +1,176 @@
+"""The noise of a flight, from the stretches in which nothing was flown.
+
+Before the first step and late in the free response the elevator rests: whatever moves there is
+instruments and air, not an effect that the stick excites. What is learnt there is the noise that every
+explanation of the rest is judged against.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.data import Flight
+from advisor.gap.fit import Fitted
+from advisor.gap.floor import stated_floor, white_noise
+from advisor.gap.holdout import mean_squares
+from advisor.gap.probes import probe_blocks
+from advisor.gap.problem import Problem, row_weights
+from advisor.gap.stamps import stamp_variance
+from advisor.gap.whitening import Weighting, Whitening, filters_for, rows_in_time
+from advisor.oem.innovations import CHANNELS, AirModel
+from advisor.oem.turbulence import Rows, cost_of, find_turbulence
+
+QUIET_AFTER = 0.6
+"""Share of the free response after which the motion has died down."""
+_LEAST_QUIET_S = 4.0
+"""Over all manoeuvres; less tells nothing of slow air."""
+_LONE = 8.0
+"""Power of a stretch, over that of its likes, from which on a gust may have hit it."""
+_MARGIN = 1.1
+"""By which the air must explain it better than any other place."""
+_ANY_GUST = 0.2
+"""Gust angle of air of which nothing is assumed, rad: a bump is nothing like the noise of a filter."""
+_NO_LESS = 0.98
+"""Weight of a sample from which on it is as good as any."""
+_LEAST_GAIN = 15.0
+"""Log likelihood by which colour or air must beat white noise before a filter is worth it."""
+
+
+def is_quiet(flight: Flight, t: FloatArray) -> np.ndarray:
+    """Shape (n,), bool: which times lie before the first step or late in the free response."""
+    free = flight.duration_s - flight.last_step_s
+    return np.asarray((t < flight.first_step_s) | (t > flight.last_step_s + QUIET_AFTER * free))
+
+
+def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> Whitening | None:
+    """What this flight's noise asks for; None where it is white and alike in every sample.
+
+    At a first look, with derivatives that a gust has spoilt, manoeuvres under suspicion are set aside
+    all together; whether it was a gust is seen in the fit of the others.
+    """
+    extra = stamp_variance(problem, fitted)
+    air = noise_in_quiet(problem, fitted)
+    still = air or with_floor(
+        problem, AirModel(instrument_noise(problem), np.full(4, 1e-9), 0.3, 0.0, 1.0, _seen(problem))
+    )
+    gusts = gusts_in(problem, fitted, still, first_look)
+    if air is not None or gusts:
+        airs = [gusts.get(i, still) for i in range(len(problem.flights))]
+        return filters_for(problem.flights, fitted.point.derivatives, airs, extra)
+    white = stated_floor(problem.flights) ** 2
+    weights = tuple(1.0 / np.sqrt(1.0 + e / row_weights(problem, i, white)) for i, e in enumerate(extra))
+    return Weighting(weights) if min(float(np.min(w)) for w in weights) < _NO_LESS else None
+
+
+def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
+    """Coloured instruments or moving air, where nothing was flown; None where white noise describes it."""
+    if not {"alpha", "q"} <= set(problem.channels):
+        return None
+    rows = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, i, fitted.left[i])]
+    if sum(r.t[-1] - r.t[0] for r in rows) < _LEAST_QUIET_S:
+        return None
+    white = instrument_noise(problem)
+    system = system_of(fitted)
+    # A gust that happens to fall into a quiet stretch is not what the flight's noise is like.
+    loud = np.array([float(np.mean((r.left / white[r.channel]) ** 2)) for r in rows])
+    rows = [r for r, power in zip(rows, loud, strict=True) if power <= _LONE * np.median(loud)]
+    found = find_turbulence(rows, system, white, bool(_seen(problem)))
+    plain = AirModel(_spread(rows), np.full(4, 1e-9), 0.3, 0.0, 1.0)
+    gain = 0.5 * (cost_of(rows, system, plain) - cost_of(rows, system, found.air))
+    return with_floor(problem, found.air) if gain > _LEAST_GAIN else None
+
+
+def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool) -> dict[int, AirModel]:
+    """The air of those manoeuvres that a gust fell into: far worse explained than the quietest quarter.
+
+    An effect of the stick may show in some manoeuvres only, too; but then an unknown disturbance of the air
+    does not explain its residual better than one in any other place.
+    """
+    noise = np.array([float(np.hypot(still.white[c], still.coloured[c]))
+                      for c in (CHANNELS.index(name) for name in problem.channels)])  # fmt: skip
+    power = np.mean(mean_squares(problem, fitted.left) / noise**2, axis=1)
+    suspects = [int(i) for i in np.flatnonzero(power > _LONE * np.percentile(power, 25.0))]
+    gusty = [i for i in suspects if _is_of_the_air(problem, fitted, i, noise)]
+    hit = suspects if first_look and gusty else gusty
+    return {i: replace(still, gust=_ANY_GUST) for i in hit}
+
+
+def _is_of_the_air(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> bool:
+    """Whether an unknown motion of the air explains a manoeuvre's residual better than any other unknown."""
+    best, second, *_ = probe_blocks(*only(problem, fitted, i), noise)
+    return best.block.startswith("air") and (
+        second.block.startswith("air") or best.gain > _MARGIN * second.gain
+    )
+
+
+def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
+    """The same fit, seen through one of its manoeuvres."""
+    flights = replace(problem.flights, flights=(problem.flights.flights[i],))
+    return (
+        replace(problem, flights=flights, whitening=None),
+        replace(
+            fitted,
+            point=replace(fitted.point, own=fitted.point.own[i : i + 1]),
+            left=(fitted.left[i],),
+            linear=(fitted.linear[i],),
+        ),
+    )
+
+
+def _seen(problem: Problem) -> float:
+    """1 where the α channel reads the air, 0 where it is made from inertial sensors."""
+    return 0.0 if problem.flights.alpha_is_derived else 1.0
+
+
+def with_floor(problem: Problem, air: AirModel) -> AirModel:
+    """The model with white noise not below half of what may be called noise at all.
+
+    A record that was filtered before it was stored has next to no white noise; whitened by that, the
+    errors of a simplified model would count for a thousandfold.
+    """
+    white = air.white.copy()
+    for c, least in zip(problem.channels, 0.5 * stated_floor(problem.flights), strict=True):
+        white[CHANNELS.index(c)] = max(white[CHANNELS.index(c)], least)
+    return replace(air, white=white)
+
+
+def instrument_noise(problem: Problem) -> FloatArray:
+    """Shape (4,): white noise of each channel from differences of its samples; 1 for one that is missing."""
+    white = white_noise(problem.flights)
+    return np.array([white.get(c, 1.0) for c in CHANNELS])
+
+
+def system_of(fitted: Fitted) -> FloatArray:
+    """Z_α, Z_q, M_α, M_q."""
+    return np.asarray(fitted.point.derivatives[[0, 1, 3, 4]])
+
+
+def rows_of(problem: Problem, i: int, left: FloatArray) -> Rows:
+    """A residual of manoeuvre ``i``, stacked by channels, in order of time."""
+    t, channel, order = rows_in_time(problem.flights, i)
+    return Rows(t, channel, left[order], float(np.mean(problem.flights.flights[i].slow[0])))
+
+
+def _quiet_parts(problem: Problem, i: int, left: FloatArray) -> list[Rows]:
+    """The quiet stretches before and after, each a record of its own."""
+    flight = problem.flights.flights[i]
+    whole = rows_of(problem, i, left)
+    quiet = is_quiet(flight, whole.t)
+    before = whole.t < flight.first_step_s
+    return [
+        Rows(whole.t[inside], whole.channel[inside], whole.left[inside], whole.speed)
+        for inside in (quiet & before, quiet & ~before)
+        if np.count_nonzero(inside) > 10 * len(problem.channels)
+    ]
+
+
+def _spread(rows: Sequence[Rows]) -> FloatArray:
+    """Shape (4,): root mean square of each channel, 1 for one that is missing."""
+    found = np.ones(4)
+    for c in range(4):
+        picked = np.concatenate([r.left[r.channel == c] for r in rows])
+        if len(picked):
+            found[c] = max(float(np.sqrt(np.mean(picked**2))), 1e-12)
+    return found
