@@ -118,5 +118,5 @@ def _another_try(flown: Flown, estimate: Estimate, rule: Rule) -> str:
     if rule == "separate":
         return "fly it again"
     if any(fits[name].lag1 > COLOURED for fits in estimate.fits for name in ("alpha", "q")):
-        return "fly it again with smaller steps, from steady flight"
+        return "fly it again from steady flight, with no larger steps than then"
     return "fly it again; if the noise stays as large, check the instruments"
