@@ -1,6 +1,7 @@
 """``advisor gap``: why does the real aircraft not fly like our simulator."""
 
 import json
+import sys
 from pathlib import Path
 
 import click
@@ -60,14 +61,19 @@ def command(
     from advisor.gap.document import gap_document
     from advisor.report.gap import diagnose_logs, improved_name, write_improved
 
-    show = None if as_json else _progress
+    watched = sys.stderr.isatty()
     try:
-        found = diagnose_logs(logs, aircraft, holdout, target_system, show or (lambda *_: None))
+        found = diagnose_logs(
+            logs, aircraft, holdout, target_system, _progress if watched else lambda *_: None
+        )
     except UnusableInputError as error:
         if as_json:
             click.echo(json.dumps(gap_document(None, [error.problem]), indent=1))
         click.echo(str(error.problem), err=True)
         return UNUSABLE
+    finally:
+        if watched:
+            click.echo("\r\033[K", nl=False, err=True)
     improved = None
     if found.verdict in ("effect", "parameters"):
         improved = str(write_improved(found, aircraft, out or Path(improved_name(found, aircraft_file))))
@@ -78,7 +84,6 @@ def command(
 
         from advisor.report.gap_screen import GapScreen
 
-        click.echo(err=True)
         Console(highlight=False).print(GapScreen(found, improved))
     return 0
 

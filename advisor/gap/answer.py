@@ -16,9 +16,9 @@ from advisor.gap.causes import (
     block_ranking,
     causes_of,
     speed_wanders,
-    with_edge_doubt,
+    with_doubt,
 )
-from advisor.gap.evidence import DOUBT, UNEXPLAINED, VISIBLE, Evidence, restless
+from advisor.gap.evidence import VISIBLE, Evidence
 from advisor.gap.foresee import unseen_effects
 from advisor.gap.holdout import hold_out
 from advisor.gap.measure import gap_of
@@ -33,7 +33,6 @@ from advisor.gap.numbers import (
     waterfall_of,
     without_air,
 )
-from advisor.gap.probes import probe_blocks
 from advisor.gap.result import Cause, Diagnosis, Value, Verdict, Where
 from advisor.gap.score import shared_std, worth
 from advisor.gap.text import sentence_of
@@ -50,21 +49,17 @@ def answer(
     problem, stages, floor = e.problem, e.stages, e.floor
     first, last = stages[0].held_out, stages[-1].held_out
     still = np.minimum(floor, np.sqrt(e.air.left)) if e.air is not None else floor
-    doubtful = np.maximum(floor, DOUBT * e.stated)
-    coherent_gap = float(np.mean(e.coherence.power / doubtful**2))
     removed = max(float(np.mean((first.mean_square - last.mean_square) / floor**2)), 0.0)
     speed = airspeed_cause(problem, e.constant_speed, last, floor)
     air_cause = _air_cause(e)
     late = alpha_lag_cause(kinematics, problem, [s.added for s in stages if s.added is not None])
-    unexplained = coherent_gap / max(coherent_gap + removed, 1e-12)
     named = [s.added for s in stages if s.added is not None]
     bias = alpha_bias_cause(kinematics, named, problem)
-    unknown = coherent_gap > VISIBLE and (unexplained > UNEXPLAINED or not named)
-    unknown = (unknown or restless(e)) and late is None
+    unknown = e.leftover is not None and late is None
     causes = tuple(
-        with_edge_doubt(cause, problem)
+        with_doubt(cause, problem)
         for cause in causes_of(
-            stages, floor, unexplained if coherent_gap > VISIBLE else 0.0, problem.channels
+            stages, floor, e.leftover.share if e.leftover is not None else 0.0, problem.channels
         )
     )
     extra = [c for c in (air_cause, bias, late) if c is not None]
@@ -131,8 +126,8 @@ def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ..
         other = [replace(c, probability=0.05 * c.probability) for c in other]
         return (*(replace(c, probability=taken) for c in extra), *other)[:5]
     if extra:
-        present = [replace(c, probability=0.9 * c.probability) for c in present]
-        extra = [replace(c, probability=0.08 / len(extra)) for c in extra]
+        present = [replace(c, probability=0.96 * c.probability) for c in present]
+        extra = [replace(c, probability=0.03 / len(extra)) for c in extra]
         other = [replace(c, probability=0.2 * c.probability) for c in other]
     return (*present, *extra, *other)[:5]
 
@@ -162,14 +157,8 @@ def _air_cause(e: Evidence) -> Cause | None:
 
 
 def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
-    if verdict == "unknown":
-        instruments = np.sqrt(np.maximum(e.floor**2, 1e-18))
-        probes = probe_blocks(e.problem, e.stages[-1].fitted, instruments)
-        best = max(probes[0].gain, 1e-9)
-        scores: dict[str, float] = {}
-        for p in probes:
-            scores.setdefault(p.block, round(max(p.gain, 0.0) / best, 4))
-        return Where(probes[0].block, probes[0].explained, tuple(scores.items()))
+    if verdict == "unknown" and e.leftover is not None:
+        return Where(e.leftover.block, e.leftover.share, e.leftover.ranking)
     ranking = block_ranking(e.stages[0], causes)
     total = max(float(np.mean(gap_of(e.stages[0].held_out.mean_square, e.floor))), 1e-12)
     left = float(np.mean(gap_of(e.stages[-1].held_out.mean_square, e.floor)))

@@ -15,7 +15,7 @@ from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.gap.noise import whitening_of
 from advisor.gap.problem import Point, Problem
 from advisor.gap.simulate import GRAVITY_M_S2
-from advisor.gap.whitening import Filters, Weighting
+from advisor.gap.whitening import Weighting
 
 
 def base_entries(aircraft: Aircraft) -> FloatArray:
@@ -102,7 +102,7 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     fitted = with_latency(problem, fitted)
     problem, fitted = read_command(*_filtered(problem, fitted, first_look=True))
     # The noise is seen through the fit, and the fit made by the noise: the second round is the last.
-    return _filtered(problem, fitted) if isinstance(problem.whitening, Filters) else (problem, fitted)
+    return _filtered(problem, fitted) if problem.knows_the_noise else (problem, fitted)
 
 
 def _filtered(problem: Problem, fitted: Fitted, first_look: bool = False) -> tuple[Problem, Fitted]:

@@ -20,6 +20,10 @@ from advisor.gap.waterfall import Stage
 TEMPERATURE = 3.0
 """Log likelihoods of a model that is itself approximate count for less: divided by this before they
 become probabilities. Set on development data so that stated and observed frequencies agree."""
+_SHAPE_DOUBT = 0.03
+"""Relative error of a size for describing its effect to low order only."""
+_TIME_DOUBT_S = 0.0006
+"""Error of a delay, lag or skew for the simulation's grid and the stamps' resolution."""
 _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
 _BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
@@ -86,7 +90,22 @@ def parameters_of(judged: Judged) -> dict[str, Value]:
     return found
 
 
-def with_edge_doubt(cause: Cause, problem: Problem) -> Cause:
+def with_doubt(cause: Cause, problem: Problem) -> Cause:
+    """Sizes with the errors that no fit shows: effects are described to low order, on a grid of time."""
+    doubted = {
+        name: Value(v.value, float(np.hypot(v.std, _doubt(name, v.value))))
+        for name, v in cause.parameters.items()
+        if v.std > 0.0
+    }
+    return _with_edge_doubt(replace(cause, parameters={**cause.parameters, **doubted}), problem)
+
+
+def _doubt(name: str, value: float) -> float:
+    """Standard deviation of a size beyond its fit's: a share of it, and for times part of a step."""
+    return float(np.hypot(_SHAPE_DOUBT * value, _TIME_DOUBT_S if name.endswith("_s") else 0.0))
+
+
+def _with_edge_doubt(cause: Cause, problem: Problem) -> Cause:
     """A delay or lag with the error that comes of steps lying anywhere between two stamps of the command."""
     intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
     if problem.held or not intervals or cause.effect not in _TIMING:

@@ -14,19 +14,19 @@ from advisor.gap.answer import answer
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.causes import at_constant_speed
-from advisor.gap.coherence import coherent_part
 from advisor.gap.data import Flights, prepare
 from advisor.gap.evidence import Evidence
-from advisor.gap.fit import Fitted, own_only, rms_of
+from advisor.gap.fit import Fitted, own_only
 from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.layout import DERIVATIVES
+from advisor.gap.leftover import left_over
 from advisor.gap.linear import linearise
+from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
 from advisor.gap.result import Diagnosis
 from advisor.gap.score import worth
 from advisor.gap.waterfall import Progress, build_up
-from advisor.gap.whitening import Filters
 from advisor.problems import UnusableInputError
 
 
@@ -103,19 +103,20 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     air = None
     last = stages[-1].fitted
     samples = sum(len(f.outputs["q"].t) for f in problem.flights.flights)
-    if isinstance(problem.whitening, Filters) or np.min(worth(problem, last.innovations)) < 0.5 * samples:
+    if problem.knows_the_noise or np.min(worth(problem, last.innovations)) < 0.5 * samples:
         progress("looking at the air", 0.7)
         air = moving_air(problem, last)
-    coherence = coherent_part(problem, last)
-    held = stages[-1].held_out.mean_square
-    rms = rms_of(problem, last.left)
-    floor = np.sqrt(np.maximum(np.minimum(rms**2, held) - coherence.power, (0.5 * rms) ** 2))
+    progress("looking for what has no name", 0.8)
     smooth = prefiltered(problem.flights)
     stated = np.array([white[k] if smooth[c] else 0.0 for k, c in enumerate(problem.channels)])
+    leftover = left_over(problem, stages[0].fitted, last, stated)
+    if air is not None and leftover is not None and leftover.block == "air":
+        leftover = None
+    floor = np.minimum(quiet_rms(problem, last), np.sqrt(stages[-1].held_out.mean_square))
     return Evidence(
         problem,
         stages,
-        coherence,
+        leftover,
         air,
         np.maximum(floor, stated),
         _file_model(problem, baseline, aircraft),

@@ -45,6 +45,12 @@ class Linear(Columns):
     """The same in the units of the channels, as it was before the filter."""
 
 
+def as_measured(block: Linear) -> Linear:
+    """The same without a filter: in the units of the channels."""
+    raw = block.measured
+    return Linear(raw.left, raw.shared, raw.own, block.prior, raw)
+
+
 def shared_steps(point: Point) -> FloatArray:
     """Finite-difference steps of the shared numbers."""
     scale = np.maximum(np.abs(point.derivatives), np.array([0.5, 0.05, 0.1, 1.0, 0.5, 1.0]))

@@ -12,9 +12,10 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flight
-from advisor.gap.fit import Fitted
+from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import stated_floor, white_noise
 from advisor.gap.holdout import mean_squares
+from advisor.gap.linear import as_measured
 from advisor.gap.probes import probe_blocks
 from advisor.gap.problem import Problem, row_weights
 from advisor.gap.stamps import stamp_variance
@@ -24,6 +25,7 @@ from advisor.oem.turbulence import Rows, cost_of, find_turbulence
 
 QUIET_AFTER = 0.6
 """Share of the free response after which the motion has died down."""
+_LEAST_SAMPLES = 50
 _LEAST_QUIET_S = 4.0
 """Over all manoeuvres; less tells nothing of slow air."""
 _LONE = 8.0
@@ -113,8 +115,9 @@ def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
         replace(
             fitted,
             point=replace(fitted.point, own=fitted.point.own[i : i + 1]),
+            innovations=(fitted.left[i],),
             left=(fitted.left[i],),
-            linear=(fitted.linear[i],),
+            linear=(as_measured(fitted.linear[i]),),
         ),
     )
 
@@ -134,6 +137,19 @@ def with_floor(problem: Problem, air: AirModel) -> AirModel:
     for c, least in zip(problem.channels, 0.5 * stated_floor(problem.flights), strict=True):
         white[CHANNELS.index(c)] = max(white[CHANNELS.index(c)], least)
     return replace(air, white=white)
+
+
+def quiet_rms(problem: Problem, fitted: Fitted) -> FloatArray:
+    """Shape (channels,): root mean square of the residual where nothing was flown; the floor, as measured."""
+    power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
+    for flight, left in zip(problem.flights.flights, fitted.left, strict=True):
+        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
+            inside = is_quiet(flight, flight.outputs[name].t)
+            power[c] += float(np.sum(left[rows][inside] ** 2))
+            count[c] += np.count_nonzero(inside)
+    whole = rms_of(problem, fitted.left)
+    # A few samples say nothing; the residual itself, coherent or not, is then the best there is.
+    return np.where(count > _LEAST_SAMPLES, np.sqrt(power / np.maximum(count, 1.0)), whole)
 
 
 def instrument_noise(problem: Problem) -> FloatArray:

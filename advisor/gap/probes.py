@@ -22,7 +22,7 @@ from advisor.gap.simulate import DISTURB_AIR, DISTURB_FORCE, DISTURB_INPUT, DIST
 
 KNOTS_S = 0.1
 MEMORY_S = 0.6
-_SENSORS = {
+SENSOR_CHANNELS = {
     "alpha_sensor": "alpha",
     "pitch_rate_sensor": "q",
     "accelerometer": "a_z",
@@ -56,11 +56,19 @@ class Probe:
 def probe_blocks(
     problem: Problem, fitted: Fitted, noise: FloatArray, blocks: Sequence[str] | None = None
 ) -> list[Probe]:
-    """Every block, likeliest first. ``noise``, shape (channels,), is what the instruments alone leave."""
-    wanted = [*_DYNAMIC, *_SENSORS, "air unseen"] if blocks is None else list(blocks)
+    """Every block, likeliest first.
+
+    With a filter in the problem, what is asked for is a disturbance beyond the noise it knows.
+
+    Parameters
+    ----------
+    noise
+        Shape (channels,): of the innovations, or, without a filter, what the instruments alone leave.
+    """
+    wanted = [*_DYNAMIC, *SENSOR_CHANNELS, "air unseen"] if blocks is None else list(blocks)
     found = []
     for block in wanted:
-        if block in _SENSORS and _SENSORS[block] not in problem.channels:
+        if block in SENSOR_CHANNELS and SENSOR_CHANNELS[block] not in problem.channels:
             continue
         if block.startswith("air") and "alpha" not in problem.channels:
             continue
@@ -75,12 +83,12 @@ def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> P
     total_before = 0.0
     for i, flight in enumerate(problem.flights.flights):
         w = row_weights(problem, i, weights)
-        B = disturbance_columns(problem, flight, p[i], block) * w[:, None]
+        B = problem.innovations(i, disturbance_columns(problem, flight, p[i], block)) * w[:, None]
         if unit is None:
             unit = float(np.sqrt(np.mean(np.sum(B**2, axis=1)))) + 1e-300
         B = B / unit
-        own = fitted.linear[i].measured.own
-        A, r = own * w[:, None], fitted.left[i] * w
+        own = fitted.linear[i].own
+        A, r = own * w[:, None], fitted.innovations[i] * w
         chol = factor(problem, i, own, fitted.linear[i].prior, weights)
         AB, Ar = A.T @ B, A.T @ r
         gram = B.T @ B - AB.T @ cho_solve(chol, AB)
@@ -109,8 +117,8 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
     shape = np.concatenate([np.arange(1, hat + 1), np.arange(hat - 1, 0, -1)]) / hat
     n = flight.n + 1
     response = np.zeros((4, n))
-    if block in _SENSORS:
-        response[OUTPUTS.index(_SENSORS[block]), : len(shape)] = shape
+    if block in SENSOR_CHANNELS:
+        response[OUTPUTS.index(SENSOR_CHANNELS[block]), : len(shape)] = shape
     else:
         where = _DYNAMIC["air" if block.startswith("air") else block]
         grid = problem.fly(flight, p)

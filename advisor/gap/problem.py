@@ -11,7 +11,7 @@ from advisor.gap.data import Flight, Flights
 from advisor.gap.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS, SKEWS
 from advisor.gap.simulate import read_off, simulate, surface
 from advisor.gap.variant import Variant
-from advisor.gap.whitening import Whitening
+from advisor.gap.whitening import Filters, Whitening
 
 _NO_DISTURBANCE = np.zeros((4, 0))
 
@@ -72,6 +72,11 @@ class Problem:
     """Shape (6,): derivatives of the aircraft file, when it has all."""
     whitening: Whitening | None = None
     """Filter of moving air and coloured instruments; None where white noise describes what is left."""
+
+    @property
+    def knows_the_noise(self) -> bool:
+        """Whether innovations come in units of their own standard deviation."""
+        return isinstance(self.whitening, Filters)
 
     @property
     def channels(self) -> tuple[str, ...]:

@@ -58,8 +58,9 @@ class Judged:
 
     @property
     def right(self) -> bool:
-        """The first cause is the true one."""
-        return self.verdict == "effect" and self.named[:1] == self.truth[:1]
+        """The first cause is the true one; in the hard conditions' air without an effect, that air."""
+        truth = self.truth or self.background
+        return self.verdict == "effect" and bool(truth) and self.named[:1] == truth[:1]
 
     @property
     def right_or_tie(self) -> bool:

@@ -1,0 +1,121 @@
+"""Is anything left that noise does not explain? The question behind "none" and "unknown".
+
+What stays after the last named effect, freed of the flight's own noise, should be white, and no
+louder while the stick moves than in quiet. Otherwise something is there without a name; where, is said by the
+block whose unknown disturbance takes up most of it. A sensor whose errors are mostly small
+and now and then huge is no noise either.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fit import Fitted, rms_of
+from advisor.gap.noise import is_quiet
+from advisor.gap.probes import SENSOR_CHANNELS, Probe, probe_blocks
+from advisor.gap.problem import Problem
+
+_LEAST_GAIN = 100.0
+"""Log likelihood a disturbance must bring ..."""
+_LEAST_SHARE = 0.2
+"""... and share of what is left that it must take up: less is the roughness of any model."""
+_RESTLESS = 2.0
+"""Power while the stick moves over that in quiet, from which on it is no noise."""
+_LEAST_OF_GAP = 0.1
+"""Either beside what the named effects took up: less is an effect's shape, known to low order only."""
+_DOUBT = 2.5
+"""Where the floor is stated, not measured, an unknown cause must exceed it this many times."""
+_HEAVY_TAILS = 2.5
+"""Standard deviation over the one a normal distribution with the same median error has."""
+_ORDINARY_TAILS = 1.6
+
+
+@dataclass(frozen=True)
+class Leftover:
+    """Something without a name, and where it is."""
+
+    block: str
+    share: float
+    """Of the power that is left, taken up by an unknown disturbance there."""
+    ranking: tuple[tuple[str, float], ...]
+    """Block and score, 1 for the likeliest."""
+
+
+def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) -> Leftover | None:
+    """What the last model leaves, if it is more than noise.
+
+    Parameters
+    ----------
+    first, last
+        The plain model and the one with every named effect.
+    stated
+        Shape (channels,): tolerance of channels that were filtered before they were recorded, else 0.
+    """
+    noise = _noise(problem)
+    probes = probe_blocks(problem, last, noise)
+    spiky = _spiky_sensor(problem, last)
+    if spiky is not None:
+        return Leftover(spiky, 1.0, _ranking(probes, spiky))
+    best = probes[0]
+    powers = (rms_of(problem, last.innovations) / noise) ** 2
+    active, quiet = unrest(problem, last.innovations)
+    loud = rms_of(problem, last.left) > _DOUBT * stated
+    louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
+    disturbed = best.gain >= _LEAST_GAIN and best.explained >= _LEAST_SHARE and bool(np.any(loud))
+    if not disturbed and np.max(louder) < _RESTLESS:
+        return None
+    unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
+    taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
+    if unexplained < _LEAST_OF_GAP * taken:
+        return None
+    return Leftover(best.block, best.explained, _ranking(probes, best.block))
+
+
+def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Mean squares while the elevator works, and while all is quiet; both shape (channels,)."""
+    sums, counts = np.zeros((2, len(problem.channels))), np.zeros((2, len(problem.channels)))
+    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+        free = flight.duration_s - flight.last_step_s
+        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
+            t = flight.outputs[name].t
+            active = (t >= flight.first_step_s) & (t <= flight.last_step_s + 0.3 * free)
+            for k, inside in enumerate((active, is_quiet(flight, t))):
+                sums[k, c] += float(np.sum(left[rows][inside] ** 2))
+                counts[k, c] += np.count_nonzero(inside)
+    active_power, quiet_power = sums / np.maximum(counts, 1.0)
+    # Without a quiet stretch there is nothing to compare with.
+    return active_power, np.where(counts[1] > 0, quiet_power, active_power)
+
+
+def _noise(problem: Problem) -> FloatArray:
+    """Shape (channels,): what innovations are measured against."""
+    if problem.knows_the_noise or problem.instruments is None:
+        return np.ones(len(problem.channels))
+    return problem.instruments
+
+
+def _ranking(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ...]:
+    best = max(probes[0].gain, 1e-9)
+    scores = {first: 1.0}
+    for p in probes:
+        scores.setdefault(p.block, round(min(max(p.gain, 0.0) / best, 1.0), 4))
+    return tuple(scores.items())
+
+
+def _spiky_sensor(problem: Problem, last: Fitted) -> str | None:
+    """The one sensor with errors far from normal; an autopilot's own estimate is not judged."""
+    tails = {}
+    for c, name in enumerate(problem.channels):
+        parts = zip(problem.flights.flights, last.left, strict=True)
+        errors = np.concatenate([left[problem.rows(flight)[c]] for flight, left in parts])
+        middle = float(np.median(np.abs(errors - np.median(errors)))) / 0.6745
+        tails[name] = float(np.std(errors)) / max(middle, 1e-15)
+    worst = max(tails, key=lambda name: tails[name])
+    others = [t for name, t in tails.items() if name != worst]
+    if tails[worst] < _HEAVY_TAILS or max(others, default=0.0) > _ORDINARY_TAILS:
+        return None
+    if worst == "alpha" and problem.flights.alpha_is_derived:
+        return None
+    return next(block for block, channel in SENSOR_CHANNELS.items() if channel == worst)
