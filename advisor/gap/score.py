@@ -8,7 +8,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.belief import log_belief
 from advisor.gap.fit import Fitted, fit, rms_of
-from advisor.gap.floor import independent_samples
+from advisor.gap.floor import independent_samples, prefiltered
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.layout import DERIVATIVES
 from advisor.gap.problem import Point, Problem, counts
@@ -22,6 +22,8 @@ LEAST_GAIN = 6.0
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
 LEAST_SIGMA = 3.0
+_DOUBT = 2.5
+"""Where the noise of the instruments is stated, not measured, the change must exceed it this many times."""
 _PROMISE = 0.7
 """Share of the least that the screening must promise before a full fit is spent on a candidate."""
 LEAST_BELIEF = 8.0
@@ -41,6 +43,8 @@ class Judged:
     """Held-out log likelihood gained, coloured residuals at their worth, minus k/2 ln N, plus belief."""
     removed: float
     """What it changes in the outputs of manoeuvres kept out, mean square beside the instruments' noise."""
+    least: float
+    """What ``removed`` must exceed."""
     belief: float
     """Log probability gained because the derivatives it leaves agree better with the file's."""
     value: FloatArray
@@ -54,7 +58,7 @@ class Judged:
     @property
     def worth_naming(self) -> bool:
         """Better on unseen manoeuvres, by more than noise, and not smaller than matters."""
-        if self.gain < LEAST_GAIN or (self.removed < LEAST_GAP and self.belief < LEAST_BELIEF):
+        if self.gain < LEAST_GAIN or (self.removed < self.least and self.belief < LEAST_BELIEF):
             return False
         size = float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
         return size > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
@@ -131,6 +135,7 @@ def addition(
         variant=variant, fitted=fitted, held_out=held,
         gain=likelihood - price + belief + backward,
         removed=_difference(problem, held_before, held),
+        least=LEAST_GAP * (_DOUBT**2 if any(prefiltered(problem.flights).values()) else 1.0),
         belief=belief, value=value, std=shared_std(problem, fitted, independent)[at : at + len(value)],
     )  # fmt: skip
 

@@ -23,6 +23,9 @@ BLOCK_OF = {
     "alpha_skew": "timing", "pitch_rate_skew": "timing", "accelerometer_skew": "timing",
     "attitude_skew": "timing",
 }  # fmt: skip
+_LEAST_S = 0.004
+_FILTERED_S = 0.02
+"""Least delay of a sensor worth a name: of a sensor itself, and of a channel an autopilot has filtered."""
 _CHANNEL_OF = {
     "alpha_lag": "alpha", "alpha_scale": "alpha", "alpha_vane_offset": "alpha", "alpha_skew": "alpha",
     "accelerometer_offset": "a_z", "accelerometer_skew": "a_z", "attitude_skew": "theta",
@@ -31,7 +34,9 @@ _CHANNEL_OF = {
 
 def variants_for(flights: Flights) -> list[Variant]:
     """Everything that can be tried: the channels it acts on are there, and its input moved."""
-    within = [*input.variants(), *sensors.variants(), *timing.variants()]
+    # An autopilot's own estimates have passed its filters: what those delay is nobody's fault.
+    least_s = _FILTERED_S if flights.alpha_is_derived else _LEAST_S
+    within = [*input.variants(), *sensors.variants(least_s), *timing.variants(least_s)]
     between = [*moment.variants(flights), *force.variants(flights)]
     return [v for v in (*within, *between) if _possible(v, flights)]
 
@@ -40,8 +45,7 @@ def _possible(v: Variant, flights: Flights) -> bool:
     if not v.needs <= flights.has or _CHANNEL_OF.get(v.effect, flights.channels[0]) not in flights.channels:
         return False
     if v.effect == "thrust_moment":
-        moves = any(float(f.slow[3].max() - f.slow[3].min()) > 0.02 for f in flights.flights)
-        return moves or (flights.speed_measured and flights.speed_moves > 0.02)
+        return "M_throttle" in v.names or (flights.speed_measured and flights.speed_moves > 0.02)
     if v.effect == "ground_effect":
         return any(float(f.slow[4].max() - f.slow[4].min()) > 0.2 for f in flights.flights)
     return True

@@ -7,8 +7,11 @@ from advisor.gap.variant import Variant
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
 
 
-def variants() -> list[Variant]:
-    """Effects of the three sensors; a constant offset of α is judged apart, from the climb rate."""
+def variants(least_s: float) -> list[Variant]:
+    """Effects of the three sensors, none later than ``least_s`` being worth a name.
+
+    A constant offset of α is judged apart, from the climb rate.
+    """
     return [
         Variant(
             "alpha_lag",
@@ -17,7 +20,7 @@ def variants() -> list[Variant]:
             ((0.02,), (0.1,)),
             (1e-3,),
             ((-0.02, 1.0),),
-            0.004,
+            least_s,
             entries=("alpha_lag_s",),
         ),
         Variant(

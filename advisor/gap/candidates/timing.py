@@ -10,7 +10,7 @@ _STREAMS = (
 )
 
 
-def variants() -> list[Variant]:
+def variants(least_s: float) -> list[Variant]:
     """One skew a stream; positive is late."""
     return [
         Variant(
@@ -20,7 +20,7 @@ def variants() -> list[Variant]:
             ((0.02,), (-0.02,), (0.1,), (-0.1,)),
             (1e-3,),
             ((-0.4, 0.4),),
-            0.004,
+            least_s,
             entries=(f"{channel}_skew_s",),
         )
         for effect, channel in _STREAMS
