@@ -13,7 +13,7 @@ EVERYWHERE: list[BindingType] = [
     _key("e", "face('engineer')", "Engineer", id="engineer", show=True),
     _key("question_mark", "explain", "Help", id="help", show=True),
     _key("q", "leave", "Quit", id="quit", show=True),
-    _key("ctrl+p", "command_palette", "Commands", id="commands", show=True),
+    _key("ctrl+p", "command_palette", "More", id="commands", show=True),
 ]
 
 REPLAY: list[BindingType] = [

@@ -62,6 +62,24 @@ async def test_wider_terminals_show_more_panes_at_once(size: tuple[int, int], co
         assert len(panes(here)) == count
 
 
+async def test_a_pane_of_the_left_column_leaves_the_one_beside_it_in_place():
+    async with stage(flights.state(3), size=(120, 40), settings=Settings(screen="engineer")) as here:
+        for key in "6", "2", "3", "1":
+            await here.press(key)
+            assert [type(pane).__name__ for pane in panes(here)] == [
+                "Maneuvers",
+                "Verdict",
+                "Parameters",
+                "Criterion",
+            ]
+
+
+async def test_all_tabs_have_room_on_eighty_columns():
+    async with stage(size=(80, 24), settings=Settings(screen="engineer")) as here:
+        await here.press("3")
+        assert here.page().split("\n")[1].endswith("[3 Parameters] 4 Fit 5 Live 6 Criterion 7 Channels 8 Log")
+
+
 @pytest.mark.parametrize("size", SIZES, ids=str)
 async def test_the_pilot_reads_the_word_in_block_letters_at_any_size(size: tuple[int, int]):
     async with stage(flights.state(7), size=size) as here:

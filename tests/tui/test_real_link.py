@@ -25,7 +25,7 @@ async def test_a_flight_over_a_real_link_is_followed_to_the_stop():
         here = Stage(app, pilot, campaigns, source)
         await here.until(lambda: len(app.view.state.maneuvers) >= 1, patience_s=60.0)
         assert str(app.view.state.vehicle) == "ardupilot 1/1"
-        assert app.view.health.condition in ("good", "poor")
+        await here.until(lambda: app.view.health.condition in ("good", "poor"))
         assert app.screen.query_one("Maneuvers DataTable").row_count >= 1
         await here.press("p")
         await here.until(lambda: app.view.state.flight_test.decision == "stop", patience_s=60.0)

@@ -14,6 +14,7 @@ class Channels(Pane):
     """Alpha's provenance, the channels with rate and gaps, link statistics."""
 
     TITLE = "7 Channels and link"
+    can_focus = False
     HELP = """\
 # Channels and link
 
@@ -24,7 +25,7 @@ gap. Below: the link.
 
     def compose(self) -> ComposeResult:
         """Text that scrolls."""
-        with VerticalScroll(can_focus=False):
+        with VerticalScroll():
             yield Lines(id="problems")
             yield Lines("Nothing has arrived yet.", id="arriving")
 

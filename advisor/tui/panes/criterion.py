@@ -3,13 +3,13 @@
 import numpy as np
 from textual.app import ComposeResult
 
+from advisor.beside import beside
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Level, Series
 from advisor.tui.plot.widget import Plot
 from advisor.tui.view import View
-from advisor.tui.words import percent
 
 RULE_INKS: dict[str, Ink] = {"continuous": "measured", "separate": "residual", "information": "input"}
 
@@ -52,10 +52,12 @@ def _rule_lines(verdict: FlightTestVerdict) -> list[str]:
     lines = []
     for rule, progress in verdict.by_rule.items():
         known = [value for value in progress.history_percent if value is not None]
-        now = percent(known[-1]) if known else "too few"
+        limit = progress.limit_percent
+        now, most = beside(known[-1], limit) if known else ("", f"{limit:.0f}")
+        so_far = f"{now} %" if known else "too few"
         says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
-        mark, limit = "►" if rule == verdict.rule else " ", percent(progress.limit_percent)
-        lines.append(f"{mark} {rule:<12} {now:>8}  (limit {limit})  {says}")
+        mark = "►" if rule == verdict.rule else " "
+        lines.append(f"{mark} {rule:<12} {so_far:>8}  (limit {most:>3} %)  {says}")
     return lines + [f"! {warning}" for warning in verdict.warnings]
 
 

@@ -14,6 +14,7 @@ class EventLog(Pane):
     """The newest notices, the last one at the bottom."""
 
     TITLE = "8 Log"
+    can_focus = False
     HELP = """\
 # Log
 
@@ -23,7 +24,7 @@ mark at this moment.
 
     def compose(self) -> ComposeResult:
         """Text that scrolls and stays at its end."""
-        with VerticalScroll(can_focus=False):
+        with VerticalScroll():
             yield Lines("Nothing has happened yet.")
 
     def on_mount(self) -> None:

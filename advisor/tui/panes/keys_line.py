@@ -38,9 +38,9 @@ class KeysLine(Static):
     def _write(self) -> None:
         line = Text(no_wrap=True)
         for key, display, does in self._keys:
-            if line.cell_len + len(display) + len(does) + 3 > self.size.width:
+            if line.cell_len + len(display) + len(does) + 2 > self.size.width:
                 break
             press = {"@click": f"app.simulate_key('{key}')"}
             line.append(f" {display}", Style(bold=True, meta=press))
-            line.append(f" {does} ", Style(meta=press))
+            line.append(f" {does}", Style(meta=press))
         self.update(line, layout=False)

@@ -14,7 +14,7 @@ from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS, channel
 
 TRACES: dict[str, Ink] = {"alpha": "measured", "q": "measured", "elevator": "input"}
-_ROWS_FOR_ONE = 7
+_ROWS_FOR_ONE = 5
 
 
 class Live(Pane):
@@ -24,8 +24,8 @@ class Live(Pane):
     HELP = """\
 # Live
 
-The manoeuvre in the air: measured (dots) and the model fitted so far (line), refreshed ten times a
-second, and the moment derivatives with their 95 % intervals as they settle. When further free response
+The manoeuvre in the air: measured (dots) and the model fitted so far (line), as it comes in,
+and the moment derivatives with their 95 % intervals as they settle. When further free response
 adds nothing, it says so: recover. Between manoeuvres nothing moves here; the last trace stays.
 """
 
@@ -36,7 +36,8 @@ adds nothing, it says so: recover. Between manoeuvres nothing moves here; the la
             id="settling",
         )
         for name in TRACES:
-            yield Plot(Chart(channel(name).label, "t [s]", why_empty="no manoeuvre yet."), id=f"live-{name}")
+            empty = Chart(channel(name).label, "t [s]", why_empty="nothing is being flown.")
+            yield Plot(empty, id=f"live-{name}")
 
     def show(self, view: View) -> None:
         """Draw what is in the air; without anything, keep the last trace."""

@@ -18,11 +18,11 @@ _COLUMNS = (
     ("start", 5),
     ("input", 15),
     ("verdict", 10),
-    ("reason", 15),
     ("con", 3),
     ("sep", 3),
     ("inf", 3),
     ("cost J", 8),
+    ("reason", 30),
 )
 _RULES = ("continuous", "separate", "information")
 
@@ -31,6 +31,7 @@ class Maneuvers(Pane):
     """The table of manoeuvres; the row under the cursor is what the other panes show."""
 
     TITLE = "1 Manoeuvres"
+    can_focus = False
     HELP = """\
 # Manoeuvres
 
@@ -100,7 +101,7 @@ def _cells(judged: JudgedManeuver) -> tuple[str, ...]:
         clock(maneuver.span.start_s),
         maneuver.span.kind,
         f"{symbol} {word}",
-        reason,
         *("-" if rule is None else "✓" if rule.accepted else "✗" for rule in rules),
         cost,
+        reason,
     )

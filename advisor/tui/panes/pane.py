@@ -14,6 +14,7 @@ class Pane(Part, Vertical):
     HELP = ""
     """What the pane shows and how to use it, for the help key."""
     can_focus = True
+    """Unless something in it takes the keys: a table, a text that scrolls."""
 
     def on_mount(self) -> None:
         """Write the title into the frame."""

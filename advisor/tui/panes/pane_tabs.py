@@ -13,6 +13,5 @@ class PaneTabs(Static):
 
     def choose(self, number: int) -> None:
         """Mark one pane."""
-        names = [f"[{t}]" if k == number else f" {t} " for k, t in enumerate(self._titles, 1)]
-        short = [name.replace(" and link", "") for name in names]
-        self.update(Text("".join(short)))
+        short = [title.replace(" and link", "") for title in self._titles]
+        self.update(Text(" ".join(f"[{t}]" if k == number else t for k, t in enumerate(short, 1))))

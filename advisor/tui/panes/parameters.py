@@ -13,13 +13,14 @@ from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS, decimals_for, signed
 
 # Name and width: what grows must not push the others about.
-_COLUMNS = (("parameter", 10), ("model ± 95 %", 17), ("selected ± 95 %", 17), ("prior", 8), ("off by", 7))
+_COLUMNS = (("parameter", 10), ("model ± 95 %", 17), ("prior", 8), ("off by", 7), ("selected ± 95 %", 17))
 
 
 class Parameters(Pane):
     """Table of the joint estimate, and the history of the parameter under the cursor."""
 
     TITLE = "3 Parameters"
+    can_focus = False
     HELP = """\
 # Parameters
 
@@ -79,9 +80,9 @@ def _cells(name: str, model: object, selected: object, prior: float | None) -> t
     return (
         f"{quantity.symbol} {quantity.unit}".removesuffix(" -"),
         _value(name, model),
-        _value(name, selected),
         _prior(name, model, prior),
         _off_by(name, model, prior),
+        _value(name, selected),
     )
 
 

@@ -23,7 +23,8 @@ class ReplayBar(Part, Lines):
         speed = "max" if isinf(tempo.speed) else f"{tempo.speed:g} ×"
         share = playback.position_s / playback.duration_s if playback.duration_s else 0.0
         place = "━" * round(share * _WIDTH) + "─" * (_WIDTH - round(share * _WIDTH))
-        state = "❚❚ paused" if tempo.paused else "► replay"
+        over = 0.0 < playback.duration_s <= playback.position_s
+        state = "■ at the end" if over else "❚❚ paused" if tempo.paused else "► replay"
         times = f"{clock(playback.position_s)} of {clock(playback.duration_s)}"
         jump = "  ►► jumping" if playback.hurrying else ""
         self.write(f"{state}  {speed}  {place}  {times}{jump}")

@@ -10,13 +10,14 @@ from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.view import View
-from advisor.tui.words import channel, without_word
+from advisor.tui.words import channel, signed, without_word
 
 
 class Verdict(Pane):
     """Sentence, reasons with number beside limit, quality of the fit, cautions."""
 
     TITLE = "2 Verdict"
+    can_focus = False
     HELP = """\
 # Verdict
 
@@ -27,7 +28,7 @@ white). A line with **!** does not reject the manoeuvre but belongs on its verdi
 
     def compose(self) -> ComposeResult:
         """Text that scrolls when there is much to say."""
-        with VerticalScroll(can_focus=False):
+        with VerticalScroll():
             yield Lines("No manoeuvre has ended yet.")
 
     def show(self, view: View) -> None:
@@ -48,8 +49,10 @@ def _lines(judged: JudgedManeuver) -> list[str]:
     if isinstance(estimate, Estimate):
         for name, fit in estimate.fits[0].items():
             q = channel(name)
-            rms = f"{fit.rms * q.factor:.3g} {q.unit}"
-            lines.append(f"  {q.symbol}: R² {fit.r2:.3f}, TIC {fit.tic:.3f}, rms {rms}, lag-1 {fit.lag1:.2f}")
+            rms = f"{fit.rms * q.factor:.2g} {q.unit}"
+            lines.append(
+                f"  {q.symbol}: R² {fit.r2:.3f}, TIC {fit.tic:.3f}, rms {rms}, lag-1 {signed(fit.lag1, 2)}"
+            )
     else:
         lines.append(f"no estimate: {estimate.text}")
     notes = estimate.notes if isinstance(estimate, Estimate) else ()

@@ -5,6 +5,7 @@ from dataclasses import replace
 from textual.app import ComposeResult
 from textual.containers import Container
 from textual.events import Resize
+from textual.widget import Widget
 
 from advisor.tui import keys
 from advisor.tui.hand import HandDecision, Verb
@@ -27,8 +28,11 @@ from advisor.tui.view import View
 
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (Maneuvers, Verdict, Parameters, Fit, Live, Criterion, Channels, EventLog)
-# In the order in which the grid of the widest layout is filled.
-_PLACES = (Maneuvers, Fit, Live, Verdict, Criterion, Parameters, Channels, EventLog)
+_COLUMNS: dict[str, tuple[type[Pane], ...]] = {
+    "left": (Maneuvers, Verdict, Parameters),
+    "middle": (Fit,),
+    "right": (Live, Criterion, Channels, EventLog),
+}
 _WIDE, _MEDIUM = (160, 42), (110, 30)
 
 
@@ -50,12 +54,12 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         self._chosen = 4
 
     def compose(self) -> ComposeResult:
-        """The panes in one grid; the style sheet places them by size."""
+        """The panes in three columns; the style sheet shows what there is room for."""
         yield StatusLine()
         yield PaneTabs([pane.TITLE for pane in PANES])
         with Container(id="panes"):
-            for pane in _PLACES:
-                yield pane()
+            for column, panes in _COLUMNS.items():
+                yield Container(*(pane() for pane in panes), id=column, classes="column")
         yield ReplayBar()
         yield Ask()
         yield KeysLine()
@@ -95,12 +99,18 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         """Show a pane and give it the focus."""
         chosen = self.query_one(PANES[number - 1].__name__)
         if number > 1:
-            for node in self.query("*"):
-                node.set_class(node is chosen, "-chosen")
+            self._mark(chosen, "-chosen")
+        if type(chosen) not in _COLUMNS["left"]:
+            self._mark(chosen, "-beside")
         self.query_one(PaneTabs).choose(number)
-        inner = chosen.query("DataTable")
+        inner = chosen.query("DataTable, VerticalScroll")
         (inner.first() if inner else chosen).focus()
         self._refresh_panes()
+
+    def _mark(self, chosen: Widget, name: str) -> None:
+        """Give a pane and its column, and no other, a class of the style sheet."""
+        for node in self.query("Pane, .column"):
+            node.set_class(node in (chosen, chosen.parent), name)
 
     def action_next_output(self) -> None:
         """Bring the next output of the fit to the top."""
@@ -124,4 +134,12 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         self._ask("note", judged.maneuver.number, f"Note on manoeuvre {judged.maneuver.number}:")
 
     def _ask(self, verb: Verb, number: int, question: str) -> None:
-        self.ask(question, lambda text: self.post_message(self.Decided(HandDecision(verb, text, number))))
+        self.ask(question, lambda text: self._decided(HandDecision(verb, text, number)))
+
+    def _decided(self, decision: HandDecision) -> None:
+        """Hand it on, and say so: the table follows when everything has been computed anew."""
+        self.post_message(self.Decided(decision))
+        if decision.verb != "note":
+            self.notify(
+                f"{decision.verb} manoeuvre {decision.number}: every decision is made again", timeout=3
+            )
