@@ -1,5 +1,6 @@
 """The stop criterion against its limit, and how far there is to go."""
 
+from advisor.beside import beside
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.lines import Lines
@@ -31,11 +32,12 @@ class Gauge(Part, Lines):
 
 def _criterion(view: View) -> str:
     verdict = view.state.flight_test
-    value, limit = verdict.criterion_percent, percent(verdict.limit_percent)
+    value, limit = verdict.criterion_percent, verdict.limit_percent
     if value is None:
-        return f"none yet: it needs {view.aircraft.campaign.window} good manoeuvres (limit {limit})"
-    side = "below" if value < verdict.limit_percent else "above"
-    return f"{percent(value):>6}  {bar(value, verdict.limit_percent, 24)}  {side} the limit {limit}"
+        return f"none yet: it needs {view.aircraft.campaign.window} good manoeuvres (limit {percent(limit)})"
+    side = "below" if value < limit else "above"
+    now, most = beside(value, limit)
+    return f"{now:>4} %  {bar(value, limit, 24)}  {side} the limit {most} %"
 
 
 def _flown(view: View) -> str:
