@@ -62,6 +62,14 @@ class Remaining:
     median: int | None
     p90: int | None
 
+    @property
+    def spoken(self) -> str:
+        """As a pilot hears it: ``about 2 more, 9 times in 10 at most 4``."""
+        if self.median is None:
+            return "no end in sight"
+        at_most = f", 9 times in 10 at most {self.p90}" if self.p90 is not None else ""
+        return f"about {self.median} more{at_most}"
+
 
 @dataclass(frozen=True, slots=True)
 class NextInput:

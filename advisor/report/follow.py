@@ -6,7 +6,7 @@ from advisor.campaign import Campaign, CampaignEvent, ManeuverJudged
 from advisor.campaign_state import CampaignState
 from advisor.flight.events import Notice, VehicleFound
 from advisor.flight.messages import Columns
-from advisor.report.text import maneuver_line, stop_line
+from advisor.report.text import maneuver_line, next_line, stop_line
 
 
 def follow(
@@ -38,3 +38,4 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
         case ManeuverJudged(judged, verdict):
             say(maneuver_line(judged))
             say(f"    {stop_line(verdict)}")
+            say(f"    {next_line(verdict)}")

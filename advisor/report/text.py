@@ -68,6 +68,14 @@ def stop_line(verdict: FlightTestVerdict) -> str:
     return f"{mark} {verdict.sentence}"
 
 
+def next_line(verdict: FlightTestVerdict) -> str:
+    """What to fly next and how many more are expected."""
+    if verdict.next is None:
+        return "no advice yet"
+    more = "" if verdict.decision == "stop" else f"; {verdict.next.remaining.spoken}"
+    return f"{verdict.next.advice}{more}"
+
+
 class AnalysisText:
     """The whole analysis; rich prints it at the width of the terminal, plain where colour is unwanted."""
 
@@ -149,5 +157,4 @@ class AnalysisText:
             yield Text(f"rule {name:<12} stop: {stopped:<20} criterion %: {history}")
         yield from (Text(f"warning: {warning}", style="yellow") for warning in verdict.warnings)
         yield Text(stop_line(verdict), style="bold")
-        if verdict.next is not None:
-            yield Text(verdict.next.advice)
+        yield Text(next_line(verdict))

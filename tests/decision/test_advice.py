@@ -11,7 +11,7 @@ from advisor.decision.foresight import Instruments, expect
 from advisor.decision.history import Flown
 from advisor.decision.inputs import StepInput
 from advisor.decision.stopping import flight_test
-from advisor.decision.verdict import Reason
+from advisor.decision.verdict import Reason, Remaining
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.record import Channel
 from advisor.oem.surface import Servo
@@ -138,6 +138,12 @@ def test_ninety_per_cent_need_at_least_as_many_as_the_median() -> None:
 def test_no_end_in_sight_is_said_as_none() -> None:
     aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule="continuous"))
     assert next_input([flown(30.0)] * 3, aircraft, stopped=False).remaining.median is None
+
+
+def test_what_remains_is_said_as_a_pilot_hears_it() -> None:
+    assert Remaining(2, 4).spoken == "about 2 more, 9 times in 10 at most 4"
+    assert Remaining(30, None).spoken == "about 30 more"
+    assert Remaining(None, None).spoken == "no end in sight"
 
 
 def test_every_flight_test_verdict_comes_with_advice() -> None:

@@ -167,6 +167,7 @@ def test_the_natural_period_is_that_of_the_aircraft_flown():
 
 
 @pytest.mark.study
+@pytest.mark.timeout(1800)
 def test_good_manoeuvres_are_rejected_in_at_most_two_percent_of_cases():
     judged = [
         reasons

@@ -52,8 +52,4 @@ def _flown(view: View) -> str:
 def _remaining(verdict: FlightTestVerdict) -> str:
     if verdict.decision == "stop" or verdict.next is None:
         return ""
-    remaining = verdict.next.remaining
-    if remaining.median is None:
-        return "; no end in sight"
-    at_most = f", 9 times in 10 at most {remaining.p90}" if remaining.p90 is not None else ""
-    return f"; about {remaining.median} more{at_most}"
+    return f"; {verdict.next.remaining.spoken}"
