@@ -31,10 +31,13 @@ def _delay(p: FloatArray, values: Values, _: Flights) -> None:
 
 
 def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
-    """A band about one neutral deflection of the aircraft, wherever each manoeuvre was trimmed."""
+    """A band about one neutral deflection of the aircraft, wherever each manoeuvre was trimmed.
+
+    It need not lie about the trim: whoever trims, pilot or autopilot, ends up on one edge of the band.
+    """
     trims = np.array([flight.u_trim for flight in flights.flights])
     p[:, INDEX["half_deadband_rad"]] += values[0]
-    p[:, INDEX["neutral_rad"]] = np.median(trims) - trims
+    p[:, INDEX["neutral_rad"]] = np.median(trims) + values[1] - trims
 
 
 def variants() -> list[Variant]:
@@ -86,10 +89,10 @@ def variants() -> list[Variant]:
         Variant(
             "actuator_deadband",
             BLOCK,
-            ("half_width_rad",),
-            ((0.004,), (0.015,)),
-            (2e-4,),
-            ((0.0, 0.1),),
+            ("half_width_rad", "neutral_rad"),
+            ((0.004, 0.0), (0.015, 0.0), (0.01, 0.006), (0.01, -0.006)),
+            (2e-4, 2e-4),
+            ((0.0, 0.1), (-0.1, 0.1)),
             _SMALL_ANGLE,
             apply_with=_deadband,
         ),
