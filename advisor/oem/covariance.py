@@ -65,11 +65,12 @@ def influence(
     extra : (N, k) derivatives of the outputs by parameters estimated besides, such as a servo's lag;
         the result then has their columns after the eight.
     """
-    extra = np.empty((len(g), 0)) if extra is None else extra
-
     weight = 1.0 / noise[assembly.channel] ** 2
     common, own = assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
-    shared_g = np.column_stack([g[:, common], extra])
+    shared_g = g[:, common] if extra is None else np.column_stack([g[:, common], extra])
+    places = [
+        (j, int(np.searchsorted(own, N_SHARED + i))) for j, (shared, i) in enumerate(REPORTED) if not shared
+    ]
     parts = []
     projected = np.empty_like(shared_g)
     open_share = np.zeros(N_PARAMETERS)
@@ -79,26 +80,26 @@ def influence(
         weighted = (mine * weight[rows, None]).T
         inverse, left_open = _inverse(weighted @ mine)
         open_share[own] = np.maximum(open_share[own], left_open)
-        gain = inverse @ weighted
-        mix = gain @ shared_g[rows]
+        mix = inverse @ (weighted @ shared_g[rows])
         projected[rows] = shared_g[rows] - mine @ mix
-        parts.append((rows, gain, mix))
-    information = projected.T @ (projected * weight[:, None])
+        parts.append((rows, inverse, weighted, mix))
+    weighted_shared = projected * weight[:, None]
+    information = projected.T @ weighted_shared
     if not np.all(np.isfinite(information)):
         return None
     inverse, left_open = _inverse(information)
     open_share[common] = left_open[: len(common)]
-    shared = projected * weight[:, None] @ inverse
-    result = np.zeros((len(g), len(PARAMETERS) + extra.shape[1]))
-    result[:, len(PARAMETERS) :] = shared[:, len(common) :]
+    columns = np.zeros((len(inverse), len(PARAMETERS) + len(inverse) - len(common)))
+    columns[:, len(PARAMETERS) :] = inverse[:, len(common) :]
     for j, (is_shared, index) in enumerate(REPORTED):
         if is_shared:
-            result[:, j] = shared[:, index]
-            continue
-        at = int(np.flatnonzero(own == N_SHARED + index)[0])
-        for rows, gain, mix in parts:
-            result[rows, j] += gain[at] / len(parts)
-            result[:, j] -= shared @ mix[at] / len(parts)
+            columns[:, j] = inverse[:, index]
+    for j, at in places:
+        columns[:, j] = -inverse @ np.mean([mix[at] for *_, mix in parts], axis=0)
+    result: FloatArray = weighted_shared @ columns
+    for rows, own_inverse, weighted, _ in parts:
+        for j, at in places:
+            result[rows, j] += own_inverse[at] @ weighted / len(parts)
     eight = result[:, : len(PARAMETERS)]
     covariance = (eight / weight[:, None]).T @ eight
     scale = np.sqrt(np.diag(covariance))

@@ -15,8 +15,8 @@ from advisor.oem.solution import Solution, solve
 COLOUR_EVERY = 100
 """Refreshes between two fits of the noise's colour."""
 
-CLOSE_ENOUGH = 3e-5
-"""Promised change of log J per sample at which a refresh is done: thousandths of a standard deviation."""
+CLOSE_ENOUGH = 1e-4
+"""Promised change of log J per sample at which a refresh is done: hundredths of a standard deviation."""
 
 
 class Follower:

@@ -18,9 +18,9 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
+from advisor.model.response import OUTPUTS
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.solution import Solution
-from advisor.oem.start import surface
 
 HIGH_CORRELATION = 0.9
 LARGEST_ERROR = 0.5
@@ -98,22 +98,19 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
 
 def own_motion(solution: Solution) -> float:
     """Share of the elevator's motion, root mean square, that one feedback of α and q leaves unexplained."""
+    assembly, fitted = solution.assembly, solution.fitted
+    measured = assembly.grid.row[OUTPUTS.index("q")] >= 0
+    elevator = np.empty(len(fitted))
+    elevator[assembly.grid.row[OUTPUTS.index("q")][measured]] = assembly.grid.elevator[measured]
     motion, feedback = [], []
-    for record, rows in zip(solution.problem.records, solution.assembly.rows, strict=True):
+    for rows in assembly.rows:
         alpha, q = rows["alpha"], rows["q"]
-        t = solution.assembly.t
-        columns = np.column_stack(
-            [
-                surface(record, solution.problem.servo).at(t[q]),
-                np.interp(t[q], t[alpha], solution.fitted[alpha]),
-                solution.fitted[q],
-            ]
-        )
-        columns -= columns.mean(axis=0)
-        motion.append(columns[:, 0])
-        feedback.append(columns[:, 1:])
-    moved, states = np.concatenate(motion), np.concatenate(feedback)
-    left = moved - states @ np.linalg.lstsq(states, moved, rcond=None)[0]
+        at_q = np.interp(assembly.t[q], assembly.t[alpha], fitted[alpha])
+        states = np.column_stack([at_q, fitted[q]])
+        motion.append(elevator[q] - elevator[q].mean())
+        feedback.append(states - states.mean(axis=0))
+    moved, followed = np.concatenate(motion), np.concatenate(feedback)
+    left = moved - followed @ np.linalg.lstsq(followed, moved, rcond=None)[0]
     size = float(np.linalg.norm(moved))
     return float(np.linalg.norm(left)) / size if size > 0.0 else 1.0
 

@@ -66,7 +66,7 @@ def _regressors(
 ) -> tuple[FloatArray, FloatArray]:
     """Integrals of α, q, δe from the record's first stamp to ``t``: (n, 3); and of 1 and s: (n, 2)."""
     alpha, q = _usable(record.outputs["alpha"]), _usable(record.outputs["q"])
-    moved = surface(record, problem.servo)
+    surface = _surface(record, problem.servo)
     begin = min(signal.t[0] for signal in record.outputs.values())
     if record.airspeed is None or problem.reference_airspeed_m_s is None:
         ratio = Signal(t, np.ones(len(t)))
@@ -75,13 +75,12 @@ def _regressors(
     powers = (2, 1, 2, 2) if moment else (1, 0, 1, 1)
     columns = [
         _integral(Signal(x.t, x.y * ratio.at(x.t) ** power), begin, t)
-        for x, power in zip((alpha, q, moved, Signal(t, np.ones(len(t)))), powers, strict=True)
+        for x, power in zip((alpha, q, surface, Signal(t, np.ones(len(t)))), powers, strict=True)
     ]
     return np.column_stack(columns[:3]), np.column_stack([np.ones(len(t)), columns[3]])
 
 
-def surface(record: Record, servo: Servo) -> Signal:
-    """What the command of a record becomes behind the servo, its own stamps and more between them."""
+def _surface(record: Record, servo: Servo) -> Signal:
     grid, pace = servo.grid(record.elevator.t)
     if servo.lag_s <= 0.0 or len(grid) < 2:
         return Signal(grid, record.elevator.y)
