@@ -12,7 +12,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted
 from advisor.gap.holdout import mean_squares
-from advisor.gap.noise import instrument_noise, rows_of, system_of, with_floor
+from advisor.gap.noise import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
 from advisor.gap.probes import KNOTS_S, disturbance_course
 from advisor.gap.problem import Problem
 from advisor.oem.innovations import CHANNELS
@@ -57,19 +57,21 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
         return None
     model = with_floor(problem, found.air)
     instruments = np.hypot(model.white, model.coloured)[[CHANNELS.index(c) for c in problem.channels]]
-    courses, lefts = disturbance_course(
-        problem, fitted, instruments, "air unseen" if derived else "air", found.gust_angle
-    )
+    block = "air unseen" if derived else "air"
+    courses, lefts = disturbance_course(problem, fitted, instruments, block, found.gust_angle)
     joined = np.concatenate(courses)
     typical = float(np.median(np.abs(joined - np.median(joined)))) / 0.6745
+    # Gaussian air of this many samples reaches four times its spread, a lone gust far more.
+    gust = float(np.max(np.abs(joined))) > 6.0 * typical
+    if gust:
+        courses, lefts = disturbance_course(problem, fitted, instruments, block, ANY_GUST)
     peaks = [float(np.max(np.abs(a))) for a in courses]
     number = int(np.argmax(peaks))
     at = int(np.argmax(np.abs(courses[number])))
     flight = problem.flights.flights[number]
     return Air(
         angle_std=found.gust_angle, gain=found.gain,
-        # Gaussian air of this many samples reaches four times its spread, a lone gust far more.
-        gust=peaks[number] > 6.0 * typical, gust_number=flight.number,
+        gust=gust, gust_number=flight.number,
         gust_angle=float(courses[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
         left=_mean_square(problem, lefts),
     )  # fmt: skip

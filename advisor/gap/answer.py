@@ -122,9 +122,11 @@ def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ..
     """Causes judged apart from the fits (air, constant offset, speed) beside those judged by it."""
     present, other = [c for c in causes if c.present], [c for c in causes if not c.present]
     if extra and not present:
-        taken = 0.95 / len(extra)
+        # The first is the larger one; where there is only one, it has no rival.
+        shares = [0.95] if len(extra) == 1 else [0.9, *[0.05 / (len(extra) - 1)] * (len(extra) - 1)]
         other = [replace(c, probability=0.05 * c.probability) for c in other]
-        return (*(replace(c, probability=taken) for c in extra), *other)[:5]
+        named = (replace(c, probability=p) for c, p in zip(extra, shares, strict=True))
+        return (*named, *other)[:5]
     if extra:
         present = [replace(c, probability=0.96 * c.probability) for c in present]
         extra = [replace(c, probability=0.03 / len(extra)) for c in extra]

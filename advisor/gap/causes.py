@@ -66,7 +66,9 @@ def probabilities(considered: Sequence[Judged], unexplained: float) -> dict[str,
     """Effect to probability; what is missing to 1 is for no effect and for one without a name."""
     if not considered:
         return {}
-    scores = np.array([*[j.gain for j in considered], LEAST_GAIN]) / TEMPERATURE
+    # What is not worth a name is no rival, whatever it gains.
+    gains = [j.gain if j.worth_naming else min(j.gain, 0.0) for j in considered]
+    scores = np.array([*gains, LEAST_GAIN]) / TEMPERATURE
     weights = np.exp(scores - np.max(scores))
     weights = (1.0 - 0.9 * unexplained) * weights / np.sum(weights)
     return {j.effect: float(w) for j, w in zip(considered, weights, strict=False)}

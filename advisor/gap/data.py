@@ -1,7 +1,7 @@
 """Manoeuvres made ready: command at its stamps, slow inputs on the grid, outputs untouched."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -47,6 +47,10 @@ class Flight:
     outputs: Mapping[str, Measured]
     edges: FloatArray
     """Shape (m, 3). Jumps of the command: middle of the interval between stamps, jump × length, length."""
+    stamps: FloatArray = field(default_factory=lambda: np.empty(0))
+    """Shape (rows,): times of all outputs that are compared, one channel after another."""
+    output: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    """Shape (rows,), int64: index into ``OUTPUTS`` of each row."""
 
     @property
     def duration_s(self) -> float:
@@ -92,6 +96,7 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
     flights = tuple(_ready(m, aircraft, reference, measured, scaled) for m in usable)
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
+    flights = tuple(_with_rows(f, channels) for f in flights)
     has = frozenset(
         name
         for name in ("airspeed", "a_x", "bank", "throttle", "height", "climb_rate")
@@ -146,6 +151,13 @@ def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, sc
         m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, u, u_trim, slow, trim,
         outputs, _edges(t_u, u),
     )  # fmt: skip
+
+
+def _with_rows(flight: Flight, channels: Sequence[str]) -> Flight:
+    """The same with the stamps of its channels laid end to end."""
+    times = [flight.outputs[c].t for c in channels]
+    output = np.repeat([OUTPUTS.index(c) for c in channels], [len(t) for t in times])
+    return replace(flight, stamps=np.concatenate(times), output=output.astype(np.int64))
 
 
 def _outputs(m: Maneuver, start: float, end: float) -> dict[str, Measured]:

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.layout import NUISANCES
@@ -18,6 +17,7 @@ from advisor.gap.linear import (
     Linear,
     linearise,
 )
+from advisor.gap.normal import factored, solved
 from advisor.gap.problem import Point, Problem, counts, row_weights
 
 _SETTLED = 0.02
@@ -43,15 +43,13 @@ class Fitted:
     iterations: int
 
 
-def factor(
-    problem: Problem, i: int, own: FloatArray, prior: FloatArray, weights: FloatArray
-) -> tuple[FloatArray, bool]:
+def factor(problem: Problem, i: int, own: FloatArray, prior: FloatArray, weights: FloatArray) -> FloatArray:
     """Cholesky factor of AᵀWA + Λ⁻¹ for one manoeuvre's own columns."""
     weighted = own * row_weights(problem, i, weights)[:, None]
     normal = weighted.T @ weighted + np.diag(prior)
     normal[np.diag_indices_from(normal)] *= 1.0 + 1e-10
     normal[np.diag_indices_from(normal)] += 1e-12 * np.trace(normal) / len(normal)
-    return cho_factor(normal, lower=True)
+    return factored(normal)
 
 
 def solve_blocks(
@@ -73,16 +71,16 @@ def solve_blocks(
         A, J, r = block.own * w[:, None], block.shared * w[:, None], block.left * w
         chol = factor(problem, i, block.own, block.prior, weights)
         AJ, Ar = A.T @ J, A.T @ r
-        solved = cho_solve(chol, np.column_stack([AJ, Ar]))
-        H += J.T @ J - AJ.T @ solved[:, :k]
-        g += J.T @ r - AJ.T @ solved[:, k]
-        kept.append(solved)
+        eliminated = solved(chol, np.column_stack([AJ, Ar]))
+        H += J.T @ J - AJ.T @ eliminated[:, :k]
+        g += J.T @ r - AJ.T @ eliminated[:, k]
+        kept.append(eliminated)
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     normal = H / np.outer(scale, scale)
     step = np.linalg.lstsq(normal + damping * np.eye(k), g / scale, rcond=1e-12)[0] / scale
     owns, lefts = [], []
-    for block, solved in zip(linear, kept, strict=True):
-        own = solved[:, k] - solved[:, :k] @ step
+    for block, eliminated in zip(linear, kept, strict=True):
+        own = eliminated[:, k] - eliminated[:, :k] @ step
         owns.append(own)
         lefts.append(block.after(step, own))
     return step, owns, H, lefts
@@ -186,7 +184,7 @@ def own_only(
     for i, block in enumerate(linear):
         w = row_weights(problem, i, weights)
         chol = factor(problem, i, block.own, block.prior, weights)
-        own = cho_solve(chol, (block.own * w[:, None]).T @ (block.left * w))
+        own = solved(chol, (block.own * w[:, None]).T @ (block.left * w))
         owns.append(own)
         lefts.append(block.left - block.own @ own)
     return owns, lefts

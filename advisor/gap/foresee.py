@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, factor
 from advisor.gap.linear import shared_columns
+from advisor.gap.normal import solved
 from advisor.gap.problem import Problem, row_weights
 from advisor.gap.result import Unseen
 from advisor.gap.ties import breaking
@@ -137,7 +137,7 @@ def _own_removed(
     block = fitted.linear[i]
     w = row_weights(problem, i, weights)[:, None]
     A, X = block.own * w, problem.innovations(i, columns) * w
-    return np.asarray(X - A @ cho_solve(factor(problem, i, block.own, block.prior, weights), A.T @ X))
+    return np.asarray(X - A @ solved(factor(problem, i, block.own, block.prior, weights), A.T @ X))
 
 
 def _projected(

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, bounds_of, factor, rms_of
 from advisor.gap.layout import DERIVATIVES
 from advisor.gap.linear import Linear
+from advisor.gap.normal import solved
 from advisor.gap.problem import Problem, row_weights
 
 _INDIFFERENT = 3e-4
@@ -107,7 +107,7 @@ def own_after(problem: Problem, i: int, block: Linear, weights: FloatArray, step
     w = row_weights(problem, i, weights)
     left = block.left - block.shared @ step
     A = block.own * w[:, None]
-    return np.asarray(cho_solve(factor(problem, i, block.own, block.prior, weights), A.T @ (left * w)))
+    return np.asarray(solved(factor(problem, i, block.own, block.prior, weights), A.T @ (left * w)))
 
 
 def _reduced(problem: Problem, i: int, block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -115,6 +115,6 @@ def _reduced(problem: Problem, i: int, block: Linear, weights: FloatArray) -> tu
     w = row_weights(problem, i, weights)[:, None]
     A, X = block.own * w, np.column_stack([block.shared, block.left]) * w
     AX = A.T @ X
-    inner = X.T @ X - AX.T @ cho_solve(factor(problem, i, block.own, block.prior, weights), AX)
+    inner = X.T @ X - AX.T @ solved(factor(problem, i, block.own, block.prior, weights), AX)
     k = block.shared.shape[1]
     return inner[:k, :k], inner[:k, k]

@@ -32,7 +32,7 @@ _LONE = 8.0
 """Power of a stretch, over that of its likes, from which on a gust may have hit it."""
 _MARGIN = 1.1
 """By which the air must explain it better than any other place."""
-_ANY_GUST = 0.2
+ANY_GUST = 0.2
 """Gust angle of air of which nothing is assumed, rad: a bump is nothing like the noise of a filter."""
 _NO_LESS = 0.98
 """Weight of a sample from which on it is as good as any."""
@@ -96,7 +96,7 @@ def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool
     suspects = [int(i) for i in np.flatnonzero(power > _LONE * np.percentile(power, 25.0))]
     gusty = [i for i in suspects if _is_of_the_air(problem, fitted, i, noise)]
     hit = suspects if first_look and gusty else gusty
-    return {i: replace(still, gust=_ANY_GUST) for i in hit}
+    return {i: replace(still, gust=ANY_GUST) for i in hit}
 
 
 def _is_of_the_air(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> bool:

@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flight
 from advisor.gap.fit import Fitted, factor
 from advisor.gap.layout import INDEX, OUTPUTS
 from advisor.gap.linear import later, pulse_response
+from advisor.gap.normal import solved
 from advisor.gap.problem import Problem, row_weights
 from advisor.gap.simulate import DISTURB_AIR, DISTURB_FORCE, DISTURB_INPUT, DISTURB_MOMENT
 
@@ -91,10 +91,10 @@ def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> P
         A, r = own * w[:, None], fitted.innovations[i] * w
         chol = factor(problem, i, own, fitted.linear[i].prior, weights)
         AB, Ar = A.T @ B, A.T @ r
-        gram = B.T @ B - AB.T @ cho_solve(chol, AB)
+        gram = B.T @ B - AB.T @ solved(chol, AB)
         value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
         spectra.append(np.maximum(value, 0.0))
-        powers.append((vector.T @ (B.T @ r - AB.T @ cho_solve(chol, Ar))) ** 2)
+        powers.append((vector.T @ (B.T @ r - AB.T @ solved(chol, Ar))) ** 2)
         total_before += float(r @ r)
     value, power = np.concatenate(spectra), np.concatenate(powers)
     gains, taken = [], []
@@ -146,7 +146,7 @@ def disturbance_course(
         own, prior = fitted.linear[i].measured.own, fitted.linear[i].prior
         both = np.column_stack([own, B])
         chol = factor(problem, i, both, np.concatenate([prior, np.ones(B.shape[1])]), 1.0 / noise)
-        found = cho_solve(chol, (both * w[:, None]).T @ (fitted.left[i] * w))
+        found = solved(chol, (both * w[:, None]).T @ (fitted.left[i] * w))
         courses.append(np.asarray(size * _colour(flight) @ found[own.shape[1] :]))
         lefts.append(np.asarray(fitted.left[i] - both @ found))
     return courses, lefts

@@ -8,12 +8,13 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.belief import pull_of
 from advisor.gap.data import Flight, Flights
-from advisor.gap.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS, SKEWS
-from advisor.gap.simulate import read_off, simulate, surface
+from advisor.gap.layout import DERIVATIVES, INDEX, NUISANCES, SKEWS
+from advisor.gap.simulate import read_rows, simulate, surface
 from advisor.gap.variant import Variant
 from advisor.gap.whitening import Filters, Whitening
 
 _NO_DISTURBANCE = np.zeros((4, 0))
+_SKEW_ENTRIES = np.array([INDEX[name] for name in SKEWS])
 
 
 @dataclass(frozen=True)
@@ -117,14 +118,7 @@ class Problem:
 
     def read(self, flight: Flight, grid: FloatArray, p: FloatArray) -> FloatArray:
         """All channels at their own stamps, one after another."""
-        return np.concatenate(
-            [
-                read_off(
-                    grid[OUTPUTS.index(c)], flight.h, flight.outputs[c].t, p[INDEX[SKEWS[OUTPUTS.index(c)]]]
-                )
-                for c in self.channels
-            ]
-        )
+        return np.asarray(read_rows(grid, flight.h, flight.stamps, flight.output, p[_SKEW_ENTRIES]))
 
     def rows(self, flight: Flight) -> list[slice]:
         """Where each channel sits in the stacked vector of one manoeuvre."""

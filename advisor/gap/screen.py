@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cho_solve
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, bounds_of, factor, noise_of
 from advisor.gap.linear import shared_steps
+from advisor.gap.normal import solved
 from advisor.gap.problem import Point, Problem, counts, row_weights
 from advisor.gap.variant import Variant
 
@@ -32,7 +32,7 @@ class _Kept:
 
     A: FloatArray
     J: FloatArray
-    chol: tuple[FloatArray, bool]
+    chol: FloatArray
     AJ: FloatArray
     JJ: FloatArray
 
@@ -64,7 +64,7 @@ class Screen:
             A, J = block.own * self.weights[i][:, None], block.shared * self.weights[i][:, None]
             chol = factor(problem, i, block.own, block.prior, weights)
             AJ = A.T @ J
-            self.kept.append(_Kept(A, J, chol, AJ, J.T @ J - AJ.T @ cho_solve(chol, AJ)))
+            self.kept.append(_Kept(A, J, chol, AJ, J.T @ J - AJ.T @ solved(chol, AJ)))
         self.count = counts(problem)
 
     def try_all(self, variants: list[Variant], believed: Callable[[Point], float]) -> list[Screened]:
@@ -93,13 +93,17 @@ class Screen:
         if here is None:
             return None
         lower, upper = bounds_of(point)
-        for _ in range(iterations):
+        for n in range(iterations):
             step = self._step(here)
-            shared = np.clip(here.point.shared + step, lower, upper)
-            point = here.point.moved(shared, here.point.own)
-            if sides is not None:
-                point = self.choose_sides(point, variant)
-            there = self.at(point)
+            # A first step along numbers that nearly mimic each other may be too long for a linear model.
+            for length in (1.0, 0.5, 0.25) if n == 0 else (1.0,):
+                shared = np.clip(here.point.shared + length * step, lower, upper)
+                point = here.point.moved(shared, here.point.own)
+                if sides is not None:
+                    point = self.choose_sides(point, variant)
+                there = self.at(point)
+                if there is not None and there.cost < here.cost:
+                    break
             if there is None or there.cost >= here.cost:
                 break
             gained, here = here.cost - there.cost, there
@@ -118,7 +122,7 @@ class Screen:
             if not np.all(np.isfinite(left)):
                 return None
             r = problem.innovations(i, left[:, None])[:, 0] * self.weights[i]
-            own = cho_solve(kept.chol, kept.A.T @ r)
+            own = solved(kept.chol, kept.A.T @ r)
             after.append((r - kept.A @ own) / self.weights[i])
             power += float(np.sum(self.fitted.linear[i].prior * own**2))
             grids.append(grid)
@@ -141,7 +145,7 @@ class Screen:
         for i, kept in enumerate(self.kept):
             X = np.column_stack([extra[i], here.weighted[i]])
             AX = kept.A.T @ X
-            GX = cho_solve(kept.chol, AX)
+            GX = solved(kept.chol, AX)
             XX = X.T @ X - AX.T @ GX
             JX = kept.J.T @ X - kept.AJ.T @ GX
             H[:k, :k] += kept.JJ
@@ -188,7 +192,7 @@ class Screen:
                 left = self.problem.parts(i, p[i])[0][:, None]
                 r = self.problem.innovations(i, left)[:, 0] * self.weights[i]
                 Ar = kept.A.T @ r
-                cost = float(r @ r - Ar @ cho_solve(kept.chol, Ar))
+                cost = float(r @ r - Ar @ solved(kept.chol, Ar))
                 if cost < best_cost[i]:
                     best_cost[i], best_side[i] = cost, side
         return replace(point, sides=best_side)

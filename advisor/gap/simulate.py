@@ -230,3 +230,19 @@ def read_off(series: FloatArray, h: float, stamps: FloatArray, skew: float) -> F
         f = min(max(x - k, 0.0), 1.0)
         y[i] = series[k] + f * (series[k + 1] - series[k])
     return y
+
+
+@njit(cache=True)
+def read_rows(
+    grid: FloatArray, h: float, stamps: FloatArray, output: np.ndarray, skews: FloatArray
+) -> FloatArray:
+    """All channels of a manoeuvre at once: ``output`` says which row of ``grid`` each stamp reads."""
+    y = np.empty(len(stamps))
+    last = grid.shape[1] - 1
+    for i in range(len(stamps)):
+        c = output[i]
+        x = (stamps[i] - skews[c]) / h
+        k = min(max(int(x), 0), last - 1)
+        f = min(max(x - k, 0.0), 1.0)
+        y[i] = grid[c, k] + f * (grid[c, k + 1] - grid[c, k])
+    return y
