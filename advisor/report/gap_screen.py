@@ -1,24 +1,21 @@
-"""The diagnosis on a terminal: verdict, block picture, waterfall, ranking, residuals before and after."""
+"""The diagnosis on a terminal: verdict, block picture, waterfall, ranking, error before and after."""
 
 from collections.abc import Sequence
 
 import numpy as np
-from rich.console import Console, ConsoleOptions, Group, RenderResult
+from rich.console import Console, ConsoleOptions, RenderResult
 from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from advisor.flight.messages import FloatArray
-from advisor.gap.result import Cause, Diagnosis
-from advisor.gap.text import what
+from advisor.gap.result import Diagnosis
+from advisor.gap.text import place
+from advisor.report.gap_causes import ranking, unseen
+from advisor.report.gap_fidelity import errors, worst_maneuver, yardsticks
+from advisor.report.gap_sizes import short, spelled
 
-_UNITS = {
-    "alpha": ("deg", 57.29578),
-    "q": ("deg/s", 57.29578),
-    "a_z": ("m/s²", 1.0),
-    "theta": ("deg", 57.29578),
-}
-_NAMES = {"alpha": "α", "q": "q", "a_z": "a_z", "theta": "θ"}
+WIDEST = 120
+"""Columns beyond which lines only become harder to read."""
 _VERDICTS = {
     "none": "NO GAP",
     "parameters": "WRONG NUMBERS",
@@ -34,11 +31,11 @@ _PICTURE = (
     (("air", "air"), ("force_equation", "lift"), ("alpha_sensor", "angle of attack")),
     (("timing", "time stamps"), ("accelerometer", "accelerometer"), ("attitude_sensor", "attitude")),
 )
-_TICKS = "▁▂▃▄▅▆▇█"
+_BAR = 40
 
 
 class GapScreen:
-    """Everything an engineer wants of a diagnosis, readable without colour."""
+    """Everything an engineer wants of a diagnosis, readable without colour and at 80 columns."""
 
     def __init__(self, diagnosis: Diagnosis, improved: str | None = None) -> None:
         self.diagnosis, self.improved = diagnosis, improved
@@ -46,126 +43,92 @@ class GapScreen:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the parts from the verdict to the notes."""
         d = self.diagnosis
-        yield Panel(Text(d.sentence), title=_VERDICTS[d.verdict], title_align="left")
+        width = min(options.max_width, WIDEST)
+        yield Panel(Text(d.sentence), title=_VERDICTS[d.verdict], title_align="left", width=width)
         yield _numbers(d)
-        yield Panel(_picture(d), title="where", title_align="left")
+        yield Panel(_picture(d), title=_where(d), title_align="left", width=width)
         if d.waterfall:
-            yield Panel(_waterfall(d), title="gap after adding, one after another", title_align="left")
+            title = "gap as effects are added, one after another"
+            yield Panel(_waterfall(d), title=title, title_align="left", width=width)
         if d.causes:
-            yield _ranking(d.causes)
-        yield Panel(_residuals(d, options.max_width - 30), title="error before and after", title_align="left")
-        yield _fidelity(d)
-        for note in (
-            d.kinematics.sentence,
-            d.gap.floor_note and f"Noise floor {d.gap.floor_note}.",
-            *d.notes,
-        ):
-            yield Text(f"· {note}")
+            yield ""
+            yield from ranking(d.causes)
+        title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap"
+        yield ""
+        yield Panel(errors(d, width), title=title, title_align="left", width=width)
+        yield ""
+        yield yardsticks(d)
+        yield ""
+        floor = d.gap.floor_note and f"Noise floor {d.gap.floor_note}."
+        for note in (d.kinematics.sentence, floor, *d.notes, self._written()):
+            if note:
+                yield _note(note)
         if d.cannot_see:
-            seen = "; ".join(
-                f"{u.effect.replace('_', ' ')} ({u.because}: {u.would_need})" for u in d.cannot_see
-            )
-            yield Text(f"· This flight could not show: {seen}.")
-        if self.improved is not None:
-            yield Text(
-                f"· The improved simulator is {self.improved}; python -m sim flies it with --aircraft."
-            )
+            yield ""
+            yield Text("This flight could not show (→ what would):", style="bold")
+            yield unseen(d.cannot_see)
+
+    def _written(self) -> str:
+        if self.improved is None:
+            return ""
+        return f"The improved simulator is {self.improved}; python -m sim flies it with --aircraft."
+
+
+def _note(text: str) -> Table:
+    """A note whose further lines stand under its first."""
+    table = Table.grid(padding=(0, 1))
+    table.add_row("·", Text(text))
+    return table
 
 
 def _numbers(d: Diagnosis) -> Text:
-    parts = [f"gap {d.gap.before:.3g} → {d.gap.after:.3g} times the noise floor's power"]
+    lines = [f"gap {short(d.gap.before)} → {short(d.gap.after)} times the noise floor's power"]
     if d.shrink is not None:
         low, high = d.shrink.ci95_percent
-        held = ", ".join(map(str, d.shrink.holdout))
-        parts.append(
-            f"{d.shrink.percent:.1f} % less [{low:.0f}, {high:.0f}] on manoeuvres {held}, kept out of the fit"
+        lines.append(
+            f"{d.shrink.percent:.1f} % less (95 %: {low:.0f} to {high:.0f}) on manoeuvres "
+            f"kept out of the fit: {_counted(d.shrink.holdout)}"
         )
-    return Text("; ".join(parts))
+    return Text("\n".join(lines))
+
+
+def _counted(numbers: Sequence[int]) -> str:
+    """``1 to 9`` where none is missing between."""
+    if len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1:
+        return f"{numbers[0]} to {numbers[-1]}"
+    return ", ".join(map(str, numbers))
+
+
+def _where(d: Diagnosis) -> str:
+    if d.verdict not in ("effect", "unknown"):
+        return "where"
+    return f"where: {place(d.where.block)}, {100 * d.where.share:.0f} % of the gap"
 
 
 def _picture(d: Diagnosis) -> Table:
-    """The simulator as blocks; the guilty one between arrows."""
+    """The simulator as blocks, the guilty one between arrows; per cent: how well the best of each does."""
     table = Table.grid(expand=True, padding=(0, 1))
     guilty = d.where.block if d.verdict in ("effect", "unknown") else ""
     scores = dict(d.where.ranking)
     for row in _PICTURE:
         cells = []
         for block, label in row:
-            score = scores.get(block)
-            share = f" {100 * score:.0f} %" if score is not None else ""
-            cells.append(
-                Text(f"▶ {label.upper()}{share} ◀", style="bold reverse") if block == guilty
-                else Text(f"[{label}]{share}", style="dim" if score is None else "")
-            )  # fmt: skip
+            score = scores.get(block, 0.0)
+            if block == guilty:
+                cells.append(Text(f"▶ {label.upper()} ◀", style="bold reverse"))
+            elif score >= 0.005:
+                cells.append(Text(f"[{label}] {100 * score:.0f} %"))
+            else:
+                cells.append(Text(f"[{label}]", style="dim"))
         table.add_row(*cells)
     return table
 
 
 def _waterfall(d: Diagnosis) -> Text:
-    text = Text()
-    largest = max([d.gap.before, *(after for _, after in d.waterfall)], default=1.0) or 1.0
-    for name, value in (("as it is", d.gap.before), *d.waterfall):
-        bar = "█" * max(round(40 * float(np.log1p(value) / np.log1p(largest))), 0)
-        text.append(f"{name.replace('_', ' '):26s}{value:10.3g} {bar}\n")
-    text.rstrip()
-    return text
-
-
-def _ranking(causes: Sequence[Cause]) -> Table:
-    table = Table(title="causes", title_justify="left", expand=True)
-    for column in ("cause", "probability", "size", "gap after", "not told from"):
-        table.add_column(column, justify="right" if column in ("probability", "gap after") else "left")
-    for c in causes:
-        sizes = ", ".join(f"{k} {v.value:.4g} ± {v.std:.1g}" for k, v in c.parameters.items())
-        ties = ", ".join(t.replace("_", " ") for t in c.cannot_be_told_from)
-        if ties and c.tell_apart_by:
-            ties += f" — {c.tell_apart_by}"
-        mark = "● " if c.present else "  "
-        table.add_row(f"{mark}{what(c)}", f"{100 * c.probability:.0f} %", sizes, f"{c.gap_after:.3g}", ties)
-    return table
-
-
-def _residuals(d: Diagnosis, width: int) -> Group:
-    """RMS error along the worst manoeuvre, before and after, on one scale per channel."""
-    if not d.traces:
-        return Group(Text("no traces"))
-    worst = max(d.gap.by_maneuver, key=lambda row: row[1])[0]
+    largest = max(d.gap.before, *(after for _, after in d.waterfall), 1e-12)
     lines = []
-    for trace in (t for t in d.traces if t.number == worst):
-        unit, factor = _UNITS[trace.channel]
-        before, after = factor * (trace.measured - trace.before), factor * (trace.measured - trace.after)
-        top = max(float(np.max(np.abs(before))), float(np.max(np.abs(after))), 1e-12)
-        lines.append(
-            Text(f"{_NAMES[trace.channel]:>4s} before {_bars(before, top, width)}  peak {top:.2g} {unit}")
-        )
-        lines.append(Text(f"     after  {_bars(after, top, width)}  manoeuvre {worst}"))
-    return Group(*lines)
-
-
-def _bars(error: FloatArray, top: float, width: int) -> str:
-    parts = np.array_split(np.abs(error), max(min(width, len(error)), 1))
-    return "".join(_TICKS[min(int(8 * float(np.max(p)) / top), 7)] for p in parts)
-
-
-def _fidelity(d: Diagnosis) -> Table:
-    table = Table(title="fidelity on manoeuvres kept out, before → after", title_justify="left", expand=True)
-    for column in (
-        "channel",
-        "gap",
-        "Theil (< 0.25)",
-        "bias/variance/covariance",
-        "R²",
-        "inside ±1.5°, ±2°/s, ±0.1 g",
-    ):
-        table.add_column(column)
-    for channel, (before, after) in d.yardsticks.items():
-        inside = "" if after.within_tolerance is None or before.within_tolerance is None else (
-            f"{100 * before.within_tolerance:.0f} → {100 * after.within_tolerance:.0f} %"
-        )  # fmt: skip
-        table.add_row(
-            _NAMES[channel], f"{d.gap.by_channel[channel]:.3g} → {d.gap.by_channel_after[channel]:.3g}",
-            f"{before.theil:.3f} → {after.theil:.3f}",
-            f"{after.bias:.2f}/{after.variance:.2f}/{after.covariance:.2f}",
-            f"{before.r2:.4f} → {after.r2:.4f}", inside,
-        )  # fmt: skip
-    return table
+    for name, value in (("as it is", d.gap.before), *d.waterfall):
+        bar = "█" * round(_BAR * float(np.log1p(max(value, 0.0)) / np.log1p(largest)))
+        step = name if name == "as it is" else f"+ {spelled(name)}"
+        lines.append(f"{step:27s}{short(value):>8s} {bar}")
+    return Text("\n".join(lines), no_wrap=True, overflow="crop")

@@ -1,0 +1,67 @@
+"""Which effect: the ranking with sizes, what each is tied with, and what the flight could not show."""
+
+from collections.abc import Iterator, Sequence
+
+from rich import box
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from advisor.gap.result import Cause, Unseen
+from advisor.report.gap_sizes import short, sizes_of, spelled
+
+_LIKELY = 0.01
+"""Alternatives below this probability share one line."""
+PRESENT = "●"
+
+
+def ranking(causes: Sequence[Cause]) -> Iterator[RenderableType]:
+    """The causes as a table, the unlikely in a line, then every tie as a sentence."""
+    likely = [c for c in causes if c.present or c.probability >= _LIKELY]
+    if likely:
+        yield _table(likely)
+    unlikely = [spelled(c.effect) for c in causes if c not in likely]
+    if unlikely:
+        yield Text(f"Below 1 %: {', '.join(unlikely)}.", style="dim")
+    for c in likely:
+        if c.cannot_be_told_from:
+            yield Text(tie_sentence(c))
+
+
+def tie_sentence(c: Cause) -> str:
+    """What else would look the same, and what would tell the two apart."""
+    others = [spelled(name) for name in c.cannot_be_told_from]
+    listed = others[0] if len(others) == 1 else f"{', '.join(others[:-1])} or {others[-1]}"
+    way = f" To tell them apart, {c.tell_apart_by}." if c.tell_apart_by else ""
+    return f"{_capital(spelled(c.effect))} cannot be told from {listed} here.{way}"
+
+
+def unseen(effects: Sequence[Unseen]) -> Table:
+    """What the flight could not show, an effect a line, and what it would take."""
+    table = Table.grid(padding=(0, 2))
+    table.add_column(no_wrap=True)
+    table.add_column()
+    for u in effects:
+        table.add_row(Text(f"  {spelled(u.effect)}"), Text(f"{u.because} → {u.would_need}"))
+    return table
+
+
+def _table(causes: Sequence[Cause]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    table.add_column("cause", no_wrap=True)
+    table.add_column("prob.", justify="right", no_wrap=True)
+    table.add_column("size")
+    table.add_column("gap after", justify="right", no_wrap=True)
+    for c in causes:
+        mark = PRESENT if c.present else " "
+        table.add_row(
+            Text(f"{mark} {spelled(c.effect)}", style="bold" if c.present else ""),
+            f"{100.0 * c.probability:.0f} %", Text("\n".join(sizes_of(c))), short(c.gap_after),
+        )  # fmt: skip
+    table.caption = f"{PRESENT} part of the improved simulator" if any(c.present for c in causes) else None
+    table.caption_justify = "left"
+    return table
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,74 @@
+"""How far: the error along the worst manoeuvre, and accepted yardsticks, before and after."""
+
+import math
+
+import numpy as np
+from rich import box
+from rich.table import Table
+from rich.text import Text
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.result import Diagnosis, Trace
+from advisor.report.gap_sizes import short
+
+_DEG = math.degrees(1.0)
+_UNITS = {"alpha": ("deg", _DEG), "q": ("deg/s", _DEG), "a_z": ("m/s²", 1.0), "theta": ("deg", _DEG)}
+_LETTERS = {"alpha": "α", "q": "q", "a_z": "a_z", "theta": "θ"}
+_TICKS = "▁▂▃▄▅▆▇█"
+_BESIDE_BARS = 34
+"""Columns taken by the letters before and the numbers behind the bars."""
+
+
+def errors(d: Diagnosis, width: int) -> Text:
+    """Largest error along the manoeuvre with the largest gap, one scale a channel."""
+    worst = worst_maneuver(d)
+    lines = [line for t in d.traces if t.number == worst for line in _pair(t, max(width - _BESIDE_BARS, 10))]
+    return Text("\n".join(lines) or "no traces", no_wrap=True, overflow="crop")
+
+
+def worst_maneuver(d: Diagnosis) -> int:
+    """Number of the manoeuvre with the largest gap."""
+    return max(d.gap.by_maneuver, key=lambda row: row[1])[0]
+
+
+def yardsticks(d: Diagnosis) -> Table:
+    """Gap, Theil's coefficient with its split, R² and the share inside the qualification's band."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    table.title, table.title_justify = "fidelity on manoeuvres kept out, before → after", "left"
+    for heading in ("", "gap", "Theil", "of error", "R²", "in band"):
+        table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
+    for channel, (before, after) in d.yardsticks.items():
+        inside = "" if after.within_tolerance is None or before.within_tolerance is None else (
+            f"{100 * before.within_tolerance:.0f} → {100 * after.within_tolerance:.0f} %"
+        )  # fmt: skip
+        split = "/".join(f"{100 * share:.0f}" for share in (after.bias, after.variance, after.covariance))
+        table.add_row(
+            _LETTERS[channel],
+            f"{short(d.gap.by_channel[channel])} → {short(d.gap.by_channel_after[channel])}",
+            f"{before.theil:.3f} → {after.theil:.3f}", split, f"{before.r2:.4f} → {after.r2:.4f}", inside,
+        )  # fmt: skip
+    table.caption = (
+        "Theil: below 0.25 is called acceptable. Of error, after: per cent bias/variance/covariance. "
+        "Band: q ±2 deg/s, θ ±1.5 deg, a_z ±0.10 g."
+    )
+    table.caption_justify = "left"
+    return table
+
+
+def _pair(trace: Trace, width: int) -> tuple[str, str]:
+    unit, factor = _UNITS[trace.channel]
+    before, after = (factor * np.abs(trace.measured - y) for y in (trace.before, trace.after))
+    top = max(float(np.max(before)), float(np.max(after)), 1e-12)
+    return (
+        f"{_LETTERS[trace.channel]:>4s} before {_bars(before, top, width)}  {_peak(before)} {unit}",
+        f"     after  {_bars(after, top, width)}  {_peak(after)} {unit}",
+    )
+
+
+def _peak(error: FloatArray) -> str:
+    return f"peak {float(np.max(error)):.2g}"
+
+
+def _bars(error: FloatArray, top: float, width: int) -> str:
+    parts = np.array_split(error, max(min(width, len(error)), 1))
+    return "".join(_TICKS[min(int(8 * float(np.max(p)) / top), 7)] for p in parts)

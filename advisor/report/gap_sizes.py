@@ -1,0 +1,87 @@
+"""Sizes of effects in the units people use: milliseconds, degrees, per cent, metres."""
+
+import math
+
+from advisor.gap.result import Cause, Value
+
+_DEG = math.degrees(1.0)
+_ENDINGS = {
+    "_rad_s": (_DEG, "deg/s"),
+    "_per_s": (6000.0, "%/min"),
+    "_m_s": (1.0, "m/s"),
+    "_rad": (_DEG, "deg"),
+    "_hz": (1.0, "Hz"),
+    "_s": (1e3, "ms"),
+    "_m": (1.0, "m"),
+}
+"""Ending of a parameter's name: factor from SI, unit. The longest that fits counts."""
+_SHARES = frozenset({"scale", "step", "change", "share", "damping"})
+_ICE = frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e"})
+"""Changes of derivatives, as a share of them."""
+_OF_DERIVATIVES = {
+    "Z_alpha2": "s⁻¹rad⁻¹", "Z_alpha3": "s⁻¹rad⁻²", "Z_h": "s⁻¹",
+    "M_alpha2": "s⁻²rad⁻¹", "M_alpha3": "s⁻²rad⁻²", "M_delta2": "s⁻²rad⁻¹", "M_delta3": "s⁻²rad⁻²",
+    "M_alpha_dot": "s⁻¹", "M_thrust": "s⁻²", "M_throttle": "s⁻²", "M_h": "s⁻²",
+    "gain": "s⁻¹", "displacement_gain": "s⁻¹",
+}  # fmt: skip
+_SIGNED = frozenset({"scale", "step", "change", "skew_s", "bias_rad", "bias_rad_s", *_ICE})
+"""Parameters whose direction matters to the reader."""
+
+
+def spelled(effect: str) -> str:
+    """An effect's name as people write it."""
+    return effect.replace("_", " ")
+
+
+def short(x: float) -> str:
+    """Three digits, never in powers of ten where people count in thousands."""
+    return f"{x:,.0f}" if 1e3 <= abs(x) < 1e7 else f"{x:.3g}"
+
+
+def in_units(parameter: str) -> tuple[float, str]:
+    """Factor from SI and the unit a parameter is shown in."""
+    if parameter in _SHARES or parameter in _ICE:
+        return 100.0, "%"
+    if parameter in _OF_DERIVATIVES:
+        return 1.0, _OF_DERIVATIVES[parameter]
+    if parameter == "at_s":
+        return 1.0, "s"
+    for ending, shown in _ENDINGS.items():
+        if parameter.endswith(ending):
+            return shown
+    return 1.0, ""
+
+
+def with_error(parameter: str, value: Value) -> str:
+    """``30 ± 6 ms``: no more digits than the error leaves a meaning to."""
+    factor, unit = in_units(parameter)
+    number, error = factor * value.value, abs(factor * value.std)
+    sign = "+" if parameter in _SIGNED else ""
+    if not math.isfinite(error) or error == 0.0:
+        return f"{number:{sign}.3g} {unit}".rstrip()
+    # One digit of the error; two where it begins with a one.
+    first = math.floor(math.log10(error))
+    decimals = -first + (1 if error < 2.0 * 10.0**first else 0)
+    return f"{_rounded(number, decimals, sign)} ± {_rounded(error, decimals)} {unit}".rstrip()
+
+
+def sizes_of(cause: Cause) -> list[str]:
+    """Every parameter of a cause, one a line; its name only where there are several."""
+    shown = {name: with_error(name, value) for name, value in cause.parameters.items()}
+    if len(shown) == 1:
+        return list(shown.values())
+    return [f"{_named(name)} {text}" for name, text in shown.items()]
+
+
+def _rounded(x: float, decimals: int, sign: str = "") -> str:
+    return f"{round(x, decimals):{sign}.{max(decimals, 0)}f}"
+
+
+def _named(parameter: str) -> str:
+    """A parameter's name without its unit."""
+    if parameter in _ICE or parameter in _OF_DERIVATIVES:
+        return parameter
+    for ending in _ENDINGS:
+        if parameter.endswith(ending):
+            return parameter.removesuffix(ending).replace("_", " ")
+    return parameter

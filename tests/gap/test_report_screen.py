@@ -1,0 +1,136 @@
+"""The diagnosis on a terminal: everything fits, sizes have units, nothing rests on colour."""
+
+import io
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from advisor.flight.kinematics import KinematicCheck
+from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Trace, Unseen, Value, Where, Yardsticks
+from advisor.report.gap_causes import tie_sentence
+from advisor.report.gap_screen import GapScreen
+from advisor.report.gap_sizes import in_units, short, sizes_of, with_error
+
+CHANNELS = ("alpha", "q", "a_z", "theta")
+DELAY = Cause(
+    "transport_delay", "input", 0.93, {"delay_s": Value(0.03035, 0.006)}, ("actuator_lag",),
+    "log the measured surface position", 0.21, True,
+)  # fmt: skip
+CURVED = Cause(
+    "nonlinear_pitching_moment", "moment_equation", 0.04,
+    {"M_alpha2": Value(171.3, 5.2), "M_alpha3": Value(-3891.0, 131.0)}, (), "", 3.2,
+)  # fmt: skip
+UNLIKELY = Cause(
+    "elevator_nonlinearity", "moment_equation", 0.002, {"M_delta2": Value(1.0, 1.0)}, (), "", 9.0
+)
+
+
+def diagnosis(**changes: object) -> Diagnosis:
+    """A diagnosis with as large numbers and as long names as there are."""
+    t = np.linspace(0.0, 9.0, 300)
+    fit = (Yardsticks(0.123, 0.01, 0.02, 0.97, 0.8123, 0.55), Yardsticks(0.012, 0.0, 0.0, 1.0, 0.9999, 1.0))
+    content: dict[str, object] = {
+        "verdict": "effect", "sentence": "The simulator answers 30 ms too early.",
+        "gap": Gap(
+            12345.6, 0.21, dict.fromkeys(CHANNELS, 0.01), "measured", dict.fromkeys(CHANNELS, 123456.7),
+            dict.fromkeys(CHANNELS, 0.0123), ((1, 2.0, 0.1), (2, 5.0, 0.2)), {}, (),
+        ),
+        "where": Where("input", 0.97, (("input", 1.0), ("pitch_rate_sensor", 0.4))),
+        "causes": (DELAY, CURVED, UNLIKELY), "shrink": Shrink((1, 2, 3), 12345.6, 0.21, 99.9, (99.0, 100.0)),
+        "waterfall": (("nonlinear_pitching_moment", 3.2), ("transport_delay", 0.21)),
+        "cannot_see": (
+            Unseen("ground_effect", "the height above ground did not change", "fly low and high"),
+            Unseen("alpha_bias", "no climb rate", "VFR_HUD at 10 Hz"),
+        ),
+        "kinematics": KinematicCheck("consistent", "alpha follows the motion."), "model": {},
+        "reference_airspeed_m_s": 25.0, "effects": {}, "yardsticks": dict.fromkeys(CHANNELS, fit),
+        "traces": tuple(Trace(2, c, t, np.sin(t), np.sin(t - 0.1), np.sin(t)) for c in CHANNELS),
+    }  # fmt: skip
+    return Diagnosis(**{**content, **changes})  # type: ignore[arg-type]
+
+
+def printed(found: Diagnosis, columns: int) -> list[str]:
+    """The screen as plain text, line by line."""
+    out = io.StringIO()
+    Console(file=out, width=columns, color_system=None, highlight=False).print(
+        GapScreen(found, "better.yaml")
+    )
+    return out.getvalue().splitlines()
+
+
+@pytest.mark.parametrize("columns", [80, 140])
+def test_nothing_is_cut_off_and_no_line_is_longer_than_the_terminal(columns):
+    lines = printed(diagnosis(), columns)
+    assert max(map(len, lines)) <= columns
+    assert not any("…" in line for line in lines)
+    assert any("123,457 → 0.0123" in line for line in lines)
+    assert any("0.8123 → 0.9999" in line for line in lines)
+
+
+def test_a_cause_takes_a_line_with_its_size_in_units_people_use():
+    (line,) = [line for line in printed(diagnosis(), 80) if "transport delay" in line and "93 %" in line]
+    assert line.startswith("●")
+    assert "30 ± 6 ms" in line
+    assert line.endswith("0.21")
+
+
+def test_what_a_cause_is_tied_with_is_a_sentence():
+    assert tie_sentence(DELAY) == (
+        "Transport delay cannot be told from actuator lag here. "
+        "To tell them apart, log the measured surface position."
+    )
+
+
+def test_causes_below_one_per_cent_share_a_line():
+    assert "Below 1 %: elevator nonlinearity." in printed(diagnosis(), 80)
+
+
+def test_the_guilty_block_is_marked_without_colour():
+    (row,) = [line for line in printed(diagnosis(), 80) if "COMMAND" in line]
+    assert "▶ COMMAND → SURFACE ◀" in row
+    assert "[pitch rate] 40 %" in row
+
+
+def test_no_block_is_guilty_when_there_is_no_gap():
+    lines = printed(diagnosis(verdict="none", causes=(), waterfall=(), shrink=None), 80)
+    assert not any("▶" in line for line in lines)
+
+
+def test_what_the_flight_could_not_show_takes_a_line_an_effect():
+    lines = printed(diagnosis(), 120)
+    assert "  alpha bias     no climb rate → VFR_HUD at 10 Hz" in [line.rstrip() for line in lines]
+    assert any(line.startswith("  ground effect") for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value", "std", "text"),
+    [
+        ("delay_s", 0.03035, 0.006, "30 ± 6 ms"),
+        ("lag_s", 0.10374, 0.0113, "104 ± 11 ms"),
+        ("half_width_rad", 0.00873, 0.00035, "0.50 ± 0.02 deg"),
+        ("bias_rad_s", -0.01553, 0.0023, "-0.89 ± 0.13 deg/s"),
+        ("scale", 0.117, 0.004, "+11.7 ± 0.4 %"),
+        ("arm_m", 0.31, 0.02, "0.31 ± 0.02 m"),
+        ("M_alpha3", -3891.0, 131.0, "-3890 ± 130 s⁻²rad⁻²"),
+        ("at_s", 327.0, 0.0, "327 s"),
+    ],
+)
+def test_sizes_have_units_and_no_more_digits_than_their_error_allows(parameter, value, std, text):
+    assert with_error(parameter, Value(value, std)) == text
+
+
+def test_several_sizes_of_one_cause_are_named():
+    assert [line.split()[0] for line in sizes_of(CURVED)] == ["M_alpha2", "M_alpha3"]
+
+
+@pytest.mark.parametrize(
+    "parameter", ["change", "share", "rate_per_s", "sigma_w_m_s", "frequency_hz", "gain"]
+)
+def test_every_parameter_of_a_cause_has_a_unit(parameter):
+    assert in_units(parameter)[1]
+
+
+def test_thousands_are_written_out():
+    assert short(12345.6) == "12,346"
+    assert short(0.01234) == "0.0123"
