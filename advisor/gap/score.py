@@ -28,8 +28,9 @@ _PROMISE = 0.7
 """Share of the least that the screening must promise before a full fit is spent on a candidate."""
 LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
-_BACKWARD_VANE = -5.0
-"""Log odds of a vane behind the centre of gravity: an arm pointing backwards is the accelerometer's."""
+_BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
+"""Log odds of an arm that points backwards. The two are one and the same in the data; but a vane
+behind the centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ def addition(
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
-    backward = _BACKWARD_VANE if variant.effect == "alpha_vane_offset" and value[0] < 0.0 else 0.0
+    backward = _BACKWARD.get(variant.effect, 0.0) if value[0] < 0.0 else 0.0
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
         gain=likelihood - price + belief + backward,

@@ -45,7 +45,7 @@ def _possible(v: Variant, flights: Flights) -> bool:
     if not v.needs <= flights.has or _CHANNEL_OF.get(v.effect, flights.channels[0]) not in flights.channels:
         return False
     if v.effect == "thrust_moment":
-        return "M_throttle" in v.names or (flights.speed_measured and flights.speed_moves > 0.02)
+        return any(float(f.slow[3].max() - f.slow[3].min()) > 0.02 for f in flights.flights)
     if v.effect == "ground_effect":
         return any(float(f.slow[4].max() - f.slow[4].min()) > 0.2 for f in flights.flights)
     return True

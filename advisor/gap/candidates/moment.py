@@ -1,21 +1,14 @@
 """The moment equation: curved moments, thrust line, rate of α, a wandering centre of gravity."""
 
-import numpy as np
-
 from advisor.gap.candidates.between import ramps_and_steps, scale
 from advisor.gap.data import Flights
 from advisor.gap.variant import Variant
 
 BLOCK = "moment_equation"
-_THROTTLE_MOVED = 0.02
-"""Of its range."""
 
 
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block; those between manoeuvres depend on how many were flown."""
-    # The thrust's own part of the trim, which does not grow with V², and what the throttle adds to it.
-    moved = any(float(np.ptp(f.slow[3])) > _THROTTLE_MOVED for f in flights.flights)
-    thrust = ("M_thrust", "M_throttle") if "throttle" in flights.has and moved else ("M_thrust",)
     return [
         Variant(
             "elevator_nonlinearity",
@@ -40,12 +33,14 @@ def variants(flights: Flights) -> list[Variant]:
         Variant(
             "thrust_moment",
             BLOCK,
-            thrust,
-            ((0.0,) * len(thrust),),
-            (0.05,) * len(thrust),
-            ((-100.0, 100.0),) * len(thrust),
+            # What the throttle changes, and the thrust's own part of the trim, which does not grow with V².
+            ("M_throttle", "M_thrust"),
+            ((0.0, 0.0),),
+            (0.05, 0.05),
+            ((-100.0, 100.0), (-100.0, 100.0)),
             0.0,
-            entries=thrust,
+            entries=("M_throttle", "M_thrust"),
+            needs=frozenset({"throttle"}),
         ),
         Variant(
             "alpha_dot",
