@@ -78,7 +78,7 @@ def dialogue(themes: Iterator[str]) -> Iterator[Key]:
     yield Key("speed", b"-", says("32 ×"))
     yield Key("speed", b"+", says("  max  "))
     yield Key("pause", b" ", says("❚❚ paused"))
-    yield Key("pause", b" ", says("► replay"))
+    yield Key("pause", b" ", says_no_more("❚❚ paused"))
 
 
 def says_focus(title: str) -> Shown:

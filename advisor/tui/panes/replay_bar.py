@@ -24,7 +24,7 @@ class ReplayBar(Part, Lines):
         share = playback.position_s / playback.duration_s if playback.duration_s else 0.0
         place = "━" * round(share * _WIDTH) + "─" * (_WIDTH - round(share * _WIDTH))
         over = 0.0 < playback.duration_s <= playback.position_s
-        state = "■ at the end" if over else "❚❚ paused" if tempo.paused else "► replay"
+        state = "❚❚ paused" if tempo.paused else "■ at the end" if over else "► replay"
         times = f"{clock(playback.position_s)} of {clock(playback.duration_s)}"
         jump = "  ►► jumping" if playback.hurrying else ""
         self.write(f"{state}  {speed}  {place}  {times}{jump}")

@@ -5,7 +5,6 @@ from dataclasses import replace
 from textual.app import ComposeResult
 from textual.containers import Container
 from textual.events import Resize
-from textual.widget import Widget
 
 from advisor.tui import keys
 from advisor.tui.hand import HandDecision, Verb
@@ -34,6 +33,7 @@ _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "right": (Live, Criterion, Channels, EventLog),
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)
+_LOW = 7
 
 
 class EngineerScreen(Face):
@@ -51,7 +51,8 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
     def __init__(self) -> None:
         super().__init__()
         self._view: View | None = None
-        self._chosen = 4
+        self._chosen: type[Pane] = Fit
+        self._beside: type[Pane] = Fit
 
     def compose(self) -> ComposeResult:
         """The panes in three columns; the style sheet shows what there is room for."""
@@ -66,7 +67,7 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
 
     def on_mount(self) -> None:
         """Begin with the fit beside the manoeuvres."""
-        self.action_choose(self._chosen)
+        self.action_choose(PANES.index(Fit) + 1)
         self.query_one("Maneuvers DataTable").focus()
 
     def on_resize(self, event: Resize) -> None:
@@ -77,6 +78,7 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         self.set_class(fits[1] and not fits[0], "-medium")
         self.set_class(not any(fits), "-narrow")
         self.set_class(height < _MEDIUM[1], "-low")
+        self._arrange()
         self.call_after_refresh(self._refresh_panes)
 
     def show(self, view: View) -> None:
@@ -97,20 +99,28 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
 
     def action_choose(self, number: int) -> None:
         """Show a pane and give it the focus."""
-        chosen = self.query_one(PANES[number - 1].__name__)
+        kind = PANES[number - 1]
         if number > 1:
-            self._mark(chosen, "-chosen")
-        if type(chosen) not in _COLUMNS["left"]:
-            self._mark(chosen, "-beside")
+            self._chosen = kind
+        if kind not in _COLUMNS["left"]:
+            self._beside = kind
+        self._arrange()
+        chosen = self.query_one(kind.__name__)
         self.query_one(PaneTabs).choose(number)
         inner = chosen.query("DataTable, VerticalScroll")
         (inner.first() if inner else chosen).focus()
         self._refresh_panes()
 
-    def _mark(self, chosen: Widget, name: str) -> None:
-        """Give a pane and its column, and no other, a class of the style sheet."""
-        for node in self.query("Pane, .column"):
-            node.set_class(node in (chosen, chosen.parent), name)
+    def _arrange(self) -> None:
+        """Show what there is room for. Classes would do it too, but style everything inside anew."""
+        narrow = self.has_class("-narrow")
+        shown = {Maneuvers, self._chosen} if narrow else {*_COLUMNS["left"], self._beside}
+        for pane in self.query("Pane"):
+            pane.display = self.has_class("-wide") or type(pane) in shown
+        for column in self.query(".column"):
+            column.display = any(pane.display for pane in column.children)
+        alone = narrow and self._chosen not in _COLUMNS["left"]
+        self.query_one("#left").styles.height = _LOW if alone else "1fr"
 
     def action_next_output(self) -> None:
         """Bring the next output of the fit to the top."""
