@@ -19,17 +19,15 @@ def player(log: Path, minutes: float) -> LogPlayer:
 
 
 def long_flight(log: Path, minutes: float) -> list[Columns]:
-    """The log, then 20 s of quiet flight out of it again and again, all clocks running on."""
+    """The log, then 16 s of quiet flight before its last manoeuvre again and again, all clocks running on."""
     pieces = [columns for batch in open_log(log) for columns in batch]
     arrival = np.concatenate([p.arrival_s for p in pieces])
     first, last = float(arrival.min()), float(arrival.max())
     last_order = max(int(p.order[-1]) for p in pieces)
-    quiet = [p for p in (_cut(p, first + 10.0, first + 30.0) for p in pieces) if len(p)]
-    repeats = int((minutes * 60.0 - (last - first)) / 20.0)
+    quiet = [p for p in (_cut(p, last - 29.0, last - 13.0) for p in pieces) if len(p)]
+    repeats = int((minutes * 60.0 - (last - first)) / 16.0)
     return pieces + [
-        _later(piece, last - first - 10.0 + 20.0 * k, (k + 1) * (last_order + 1))
-        for k in range(repeats)
-        for piece in quiet
+        _later(piece, 29.0 + 16.0 * k, (k + 1) * (last_order + 1)) for k in range(repeats) for piece in quiet
     ]
 
 
