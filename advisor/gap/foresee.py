@@ -1,47 +1,39 @@
 """What a plan can detect, before it is flown; and what a flight could not have shown.
 
-An effect's sensitivity, projected off what the model's own numbers can mimic, divided by the noise: its
-length is one over the smallest size that can be told from nothing, its angle to another effect's how
-easily the two are confused.
+The smallest size of an effect is where its mark (``advisor.gap.marks``) has the power that the diagnosis
+asks for before it names one: enough likelihood, and enough of a change to matter.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fit import Fitted, factor
-from advisor.gap.linear import shared_columns
-from advisor.gap.normal import solved
-from advisor.gap.problem import Problem, row_weights
+from advisor.gap.fit import Fitted
+from advisor.gap.layout import INDEX
+from advisor.gap.marks import Marks
+from advisor.gap.needs import NEEDS, OTHERWISE, hidden_from
+from advisor.gap.problem import Problem
 from advisor.gap.result import Unseen
+from advisor.gap.score import LEAST_GAIN, LEAST_GAP
 from advisor.gap.ties import breaking
 from advisor.gap.variant import Variant
 
-DETECTED_AT = 5.0
-"""Standard deviations at which a size counts as detectable."""
 CONFUSED_AT = 0.95
-_NO_A_Z = ("no vertical acceleration in this log", "RAW_IMU at 50 Hz")
-_NO_THETA = ("no attitude in this log", "ATTITUDE at 50 Hz")
-_FEW = ("too few manoeuvres to see a change", "repeat the same manoeuvre early and late")
-_NEEDS = {
-    "thrust_moment": (
-        "the throttle did not move, or is not logged",
-        "move the throttle once; VFR_HUD at 10 Hz",
-    ),
-    "ground_effect": ("the height above ground did not change", "fly low and high; a range finder"),
-    "alpha_bias": ("no climb rate in this log", "VFR_HUD at 10 Hz"),
-    "accelerometer_offset": _NO_A_Z,
-    "accelerometer_skew": _NO_A_Z,
-    "alpha_scale": _NO_A_Z,
-    "attitude_skew": _NO_THETA,
-    "pitch_rate_bias": _NO_THETA,
-    "airspeed_variation": ("the air speed is not logged, or hardly moved", "VFR_HUD at 10 Hz; two speeds"),
-    "cg_shift": _FEW,
-    "mass_change": _FEW,
-    "icing": _FEW,
+"""Cosine of two marks from which on one effect passes for the other."""
+_WORTH_TELLING = 0.8
+_MOST_CONFUSIONS = 3
+_DETECTED_AT = 5.0
+"""Standard deviations a size must have to be found in nearly every flight, not only in half of them."""
+_GROWTH = 3.0
+_CLOSE = 0.02
+_CURVES = {
+    "M_alpha2": ("M_alpha", "alpha"),
+    "Z_alpha2": ("Z_alpha", "alpha"),
+    "M_delta2": ("M_delta_e", "elevator"),
 }
+"""Curved terms: the linear term they bend, and over what."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,50 +48,53 @@ class Foreseen:
     """Other effects and the cosine between their marks in the data."""
     add: str = ""
     """Channel or manoeuvre that would tell it apart, or show it at all."""
+    share: float | None = None
+    """Of a curved term: its smallest size as a share of the linear term at the plan's amplitude."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """One effect's mark at unit size."""
+
+    effect: str
+    parameter: str
+    vector: FloatArray
+    least: float
+    """Size below which the effect is not worth a name."""
+    most: float = float("inf")
+    """Size beyond which nobody looks for it."""
+    numbers: int = 1
+    """Parameters, each at the price of ½ ln N."""
+    inverted: bool = False
 
 
 def foresee(
-    problem: Problem, fitted: Fitted, variants: Sequence[Variant], noise: FloatArray
+    problem: Problem,
+    fitted: Fitted,
+    variants: Sequence[Variant],
+    noise: FloatArray,
+    others: Sequence[Mark] = (),
+    rounds: int = 4,
 ) -> list[Foreseen]:
-    """Smallest detectable size and confusions of every effect, at the fitted (or believed) model."""
-    weights = 1.0 / noise
-    marks: dict[str, FloatArray] = {}
-    scale: dict[str, tuple[str, float]] = {}
-    inverted: dict[str, bool] = {}
-    shared = [
-        _own_removed(problem, fitted, i, b.measured.shared, weights) for i, b in enumerate(fitted.linear)
+    """Smallest detectable size and confusions of every effect, at the fitted (or believed) model.
+
+    Parameters
+    ----------
+    noise
+        Shape (channels,): standard deviation of each channel; where a filter knows the noise, its own counts.
+    others
+        Marks of effects that are no variant of the model.
+    rounds
+        How often a size is refined where the response is not in proportion to it.
+    """
+    marks = Marks(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
+    present = {e.effect for e in fitted.point.effects}
+    found = [
+        _mark_of(problem, fitted, marks, v, rounds) for v in _one_each(variants) if v.effect not in present
     ]
-    inverse = np.linalg.pinv(np.sum([J.T @ J for J in shared], axis=0), rcond=1e-12, hermitian=True)
-    for variant in variants:
-        if variant.effect in marks or variant.effect in {e.effect for e in fitted.point.effects}:
-            continue
-        start = tuple(variant.starts[0])
-        point = fitted.point.with_effect(
-            variant, start, np.zeros(len(problem.flights)) if variant.sides is not None else None
-        )
-        p = problem.driving(point)
-        grids = [problem.fly(f, p[i]) for i, f in enumerate(problem.flights.flights)]
-        k = len(fitted.point.shared)
-        column = shared_columns(problem, point, p, grids, range(k, k + 1))
-        mark = _projected(problem, fitted, [c[:, 0] for c in column], weights, shared, inverse)
-        marks[variant.effect] = mark
-        inverted[variant.effect] = variant.inverted
-        scale[variant.effect] = (variant.names[0], float(np.linalg.norm(mark)))
-    found = []
-    for effect, (parameter, length) in scale.items():
-        confused = [
-            (other, float(abs(marks[effect] @ marks[other]) / (length * scale[other][1] + 1e-300)))
-            for other in marks
-            if other != effect and scale[other][1] > 0.0
-        ]
-        confused = sorted((c for c in confused if c[1] > 0.8), key=lambda c: -c[1])
-        twins = [breaking(effect, other) for other, cosine in confused if cosine > CONFUSED_AT]
-        add = "; ".join(dict.fromkeys(way for way in twins if way))
-        smallest = DETECTED_AT / length if length > 1e-9 else float("inf")
-        if inverted[effect]:
-            smallest = 1.0 / smallest
-        found.append(Foreseen(effect, parameter, smallest, tuple(confused[:3]), add))
-    return found
+    found += others
+    shares = _shares(problem, fitted)
+    return [_foreseen(mark, found, marks, shares, problem.channels) for mark in found]
 
 
 def unseen_effects(
@@ -107,48 +102,121 @@ def unseen_effects(
 ) -> tuple[Unseen, ...]:
     """Effects this flight could not have shown, and why."""
     tried = {v.effect for v in variants} | {"alpha_bias", "airspeed_variation", "turbulence", "gust"}
-    out = []
     if "climb_rate" not in problem.flights.has:
         tried.discard("alpha_bias")
     if not problem.flights.speed_measured or problem.flights.speed_moves < 0.03:
         tried.discard("airspeed_variation")
-    for effect, (because, need) in _NEEDS.items():
-        if effect not in tried and effect not in present:
-            out.append(Unseen(effect, because, need))
-    for seen in foresee(problem, fitted, variants, noise):
+    out = [
+        Unseen(effect, need.because, need.add)
+        for effect, need in NEEDS.items()
+        if effect not in tried and effect not in present
+    ]
+    for seen in foresee(problem, fitted, variants, noise, rounds=1):
         twins = [name for name, cosine in seen.confused_with if cosine > CONFUSED_AT]
         if not np.isfinite(seen.smallest):
-            because, need = _NEEDS.get(
-                seen.effect, ("these channels do not show it", "ATTITUDE, RAW_IMU and VFR_HUD at 50 Hz")
-            )
-            out.append(Unseen(seen.effect, because, need))
+            out.append(Unseen(seen.effect, *hidden_from(problem.channels)))
         elif twins and seen.effect not in present:
-            out.append(
-                Unseen(seen.effect, f"looks like {', '.join(t.replace('_', ' ') for t in twins)} when small",
-                       "another time unit, another amplitude, or the measured surface position")
-            )  # fmt: skip
+            alike = " or ".join(name.replace("_", " ") for name in twins)
+            out.append(Unseen(seen.effect, f"when small it looks like {alike}", seen.add))
     return tuple(out)
 
 
-def _own_removed(
-    problem: Problem, fitted: Fitted, i: int, columns: FloatArray, weights: FloatArray
-) -> FloatArray:
-    """Weighted columns with what the manoeuvre's own numbers can mimic taken out."""
-    block = fitted.linear[i]
-    w = row_weights(problem, i, weights)[:, None]
-    A, X = block.own * w, problem.innovations(i, columns) * w
-    return np.asarray(X - A @ solved(factor(problem, i, block.own, block.prior, weights), A.T @ X))
+def _one_each(variants: Sequence[Variant]) -> list[Variant]:
+    """One variant an effect: the first, or of steps at several places the middle one."""
+    groups: dict[str, list[Variant]] = {}
+    for v in variants:
+        groups.setdefault(v.effect, []).append(v)
+    steps = {effect: [v for v in group if v.fixed] for effect, group in groups.items()}
+    return [
+        steps[effect][len(steps[effect]) // 2] if steps[effect] else group[0]
+        for effect, group in groups.items()
+    ]
 
 
-def _projected(
-    problem: Problem,
-    fitted: Fitted,
-    columns: Sequence[FloatArray],
-    weights: FloatArray,
-    shared: Sequence[FloatArray],
-    inverse: FloatArray,
-) -> FloatArray:
-    """An effect's mark, with what the model's own numbers can mimic taken out."""
-    parts = [_own_removed(problem, fitted, i, c[:, None], weights)[:, 0] for i, c in enumerate(columns)]
-    step = inverse @ np.sum([J.T @ x for J, x in zip(shared, parts, strict=True)], axis=0)
-    return np.concatenate([x - J @ step for J, x in zip(shared, parts, strict=True)])
+def _mark_of(problem: Problem, fitted: Fitted, marks: Marks, variant: Variant, rounds: int) -> Mark:
+    """The model's response to an effect, per unit of its first parameter.
+
+    An effect whose search starts at nothing is linear there, and its derivative serves. The others bend: a
+    limit that no command reaches leaves no mark at all. Their response is taken at the size that just shows.
+    """
+    low, high = variant.bounds[0]
+    sign, reach = (1.0, high) if high >= -low or variant.starts[0][0] > 0.0 else (-1.0, -low)
+    numbers = len(variant.names)
+    needed = _needed(marks, numbers)
+    size = abs(variant.starts[0][0]) or variant.steps[0]
+    vector = marks.of(_response(problem, fitted, variant, sign * size))
+    for _ in range(rounds - 1 if variant.starts[0][0] else 0):
+        just = max(marks.smallest(vector, needed), variant.smallest)
+        wanted = min(just if np.isfinite(just) else _GROWTH * size, reach)
+        if abs(wanted - size) < _CLOSE * size:
+            break
+        size = wanted
+        vector = marks.of(_response(problem, fitted, variant, sign * size))
+    return Mark(variant.effect, variant.names[0], vector, variant.smallest, reach, numbers, variant.inverted)
+
+
+def _response(problem: Problem, fitted: Fitted, variant: Variant, size: float) -> list[FloatArray]:
+    """Change of every manoeuvre's channels, shape (rows,), per unit of the effect's size."""
+    sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
+    rest = variant.starts[0][1:]
+    seen = []
+    for value in (size, 0.0):
+        p = problem.driving(fitted.point.with_effect(variant, (value, *rest), sides))
+        seen.append(
+            [problem.read(f, problem.fly(f, p[i]), p[i]) for i, f in enumerate(problem.flights.flights)]
+        )
+    return [(there - here) / size for there, here in zip(*seen, strict=True)]
+
+
+def _needed(marks: Marks, numbers: int) -> float:
+    """Power a mark must have: found in nearly every flight, worth its numbers, enough of a change."""
+    price = numbers * float(np.log(marks.rows))
+    return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, LEAST_GAP * marks.rows)
+
+
+def _foreseen(
+    mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mapping[str, float], channels: Sequence[str]
+) -> Foreseen:
+    smallest = max(marks.smallest(mark.vector, _needed(marks, mark.numbers)), mark.least)
+    if smallest > mark.most:
+        smallest = float("inf")
+    confused = sorted(
+        ((other.effect, _cosine(mark.vector, other.vector)) for other in all_marks if other is not mark),
+        key=lambda pair: -pair[1],
+    )
+    confused = [pair for pair in confused if pair[1] > _WORTH_TELLING][:_MOST_CONFUSIONS]
+    twins = [other for other, cosine in confused if cosine > CONFUSED_AT]
+    ways = [way for way in (breaking(mark.effect, other) for other in twins) if way]
+    add = "; ".join(dict.fromkeys(ways)) or (OTHERWISE if twins else "")
+    if not np.isfinite(smallest):
+        _, add = hidden_from(channels)
+    share = smallest * shares[mark.parameter] if mark.parameter in shares else None
+    return Foreseen(
+        mark.effect,
+        mark.parameter,
+        1.0 / smallest if mark.inverted else smallest,
+        tuple(confused),
+        add,
+        share,
+    )
+
+
+def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:
+    """Curved terms to their share of the linear one, per unit, at the largest motion there is."""
+    p = problem.driving(fitted.point)
+    flights = problem.flights.flights
+    reached = {
+        "elevator": max(float(np.max(np.abs(f.u - f.u_trim))) for f in flights),
+        "alpha": max(
+            float(np.max(np.abs(problem.fly(f, p[i])[0] - f.trim[0]))) for i, f in enumerate(flights)
+        ),
+    }
+    return {
+        term: reached[over] / max(abs(float(p[0, INDEX[linear]])), 1e-9)
+        for term, (linear, over) in _CURVES.items()
+    }
+
+
+def _cosine(a: FloatArray, b: FloatArray) -> float:
+    lengths = float(np.linalg.norm(a) * np.linalg.norm(b))
+    return abs(float(a @ b)) / lengths if lengths > 0.0 else 0.0

@@ -1,8 +1,8 @@
 """The mark an effect leaves in the data: its response, less what the model's own numbers can mimic.
 
-The length of a mark in standard deviations of the noise says how small an effect can be and still
-show; the angle between two marks how easily one is taken for the other. Numbers with a prior (the edges of the
-command) are eliminated with it, as rows of their own, so that lengths and angles are those of the
+The length of a mark in standard deviations of the noise says how small an effect can be and still show;
+the angle between two marks how easily one is taken for the other. Numbers with a prior (the edges of
+the command) are eliminated with it, as rows of their own, so that lengths and angles are those of the
 marginal likelihood. Latency may absorb an effect, too, but not beyond its bounds.
 """
 

@@ -1,5 +1,6 @@
 """What it takes to see an effect: channels, and a flight in which its cause varies."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -20,22 +21,29 @@ _FEW = ("fewer than three manoeuvres", "repeat the same manoeuvre early and late
 NEEDS = {
     "thrust_moment": Need("M_thrust", "speed and throttle did not move", "two air speeds; VFR_HUD at 10 Hz"),
     "ground_effect": Need("Z_h", "height above ground not varied", "fly low and high with a range finder"),
-    "alpha_bias": Need("bias_rad", "no climb rate", "VFR_HUD at 10 Hz"),
+    "alpha_bias": Need("bias_rad", "no climb rate", "VFR_HUD and ATTITUDE at 10 Hz"),
     "alpha_lag": Need("lag_s", *_NO_ALPHA),
     "alpha_vane_offset": Need("arm_m", *_NO_ALPHA),
     "alpha_skew": Need("skew_s", *_NO_ALPHA),
-    "alpha_scale": Need("scale", *_NO_A_Z),
+    "alpha_scale": Need("scale", *_NO_ALPHA),
     "turbulence": Need("sigma_w_m_s", *_NO_ALPHA),
     "gust": Need("amplitude_m_s", *_NO_ALPHA),
     "accelerometer_offset": Need("arm_m", *_NO_A_Z),
     "accelerometer_skew": Need("skew_s", *_NO_A_Z),
     "attitude_skew": Need("skew_s", *_NO_THETA),
-    "pitch_rate_bias": Need("bias_rad_s", *_NO_THETA),
     "airspeed_variation": Need("change", "air speed not logged or constant", "two speeds; VFR_HUD at 10 Hz"),
     "cg_shift": Need("step", *_FEW),
     "mass_change": Need("step", *_FEW),
     "icing": Need("Z_alpha", *_FEW),
 }
-INVISIBLE = ("these channels do not show it", "ATTITUDE, RAW_IMU and VFR_HUD at 50 Hz")
 OTHERWISE = "fly another time unit and another amplitude"
 """When nothing particular is known that would tell two effects apart."""
+_CHANNELS = {"alpha": "AOA_SSA at 50 Hz", "a_z": "RAW_IMU at 50 Hz", "theta": "ATTITUDE at 50 Hz"}
+
+
+def hidden_from(channels: Sequence[str]) -> tuple[str, str]:
+    """Why an effect that was looked for leaves no mark of its own, and what to add."""
+    missing = [message for channel, message in _CHANNELS.items() if channel not in channels]
+    if missing:
+        return "these channels do not show it", " and ".join(missing)
+    return "these manoeuvres do not show it", f"fly larger steps; {OTHERWISE}"

@@ -9,12 +9,15 @@ from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 from advisor.gap.baseline import base_entries, believed_derivatives
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.data import prepare
+from advisor.gap.candidates import input
+from advisor.gap.candidates.catalogue import BLOCK_OF, variants_for
+from advisor.gap.data import LEAST_SAMPLES, Flights, prepare
 from advisor.gap.fit import Fitted, solve_blocks
 from advisor.gap.foresee import Foreseen, foresee
+from advisor.gap.foresee_apart import foresee_air, foresee_offset, impossible, speed_mark
 from advisor.gap.layout import OUTPUTS
 from advisor.gap.linear import linearise
+from advisor.gap.marks import Marks
 from advisor.gap.problem import Point, Problem
 from advisor.gap.simulate import GRAVITY_M_S2
 from advisor.problems import ConfigurationError
@@ -28,6 +31,8 @@ STEPS = {
 """Steps of each input: units of time and share of the amplitude."""
 TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "theta": np.radians(0.1)}
 """Standard deviations taken for instruments nobody has measured yet."""
+SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
+"""Channels that a plan may do without."""
 _APART_S = 30.0
 
 
@@ -36,18 +41,20 @@ def foresee_plan(
 ) -> list[Foreseen]:
     """For every effect the smallest size this plan could detect, and what it would be confused with.
 
+    Returns
+    -------
+    One entry for each effect of the catalogue, in its order.
+
     Raises
     ------
     ConfigurationError
-        The aircraft file has no complete ``model``, or the plan names an unknown input.
+        The aircraft file has no complete ``model``, or the plan cannot be flown or sampled as it says.
     """
     derivatives = believed_derivatives(aircraft)
     if derivatives is None:
         missing = ", ".join(name for name in PARAMETERS if name not in aircraft.model)
         raise ConfigurationError(f"foresee needs the aircraft file's model: {missing} missing.")
-    unknown = [name for name in plan if name not in STEPS]
-    if unknown:
-        raise ConfigurationError(f"plan: {unknown[0]!r} is none of {', '.join(STEPS)}.")
+    _refuse(plan, rate_hz, amplitude_deg, without)
     frequency = float(np.sqrt(max(-derivatives[3] + derivatives[0] * derivatives[4], 1.0)))
     unit = min(max(2.0 / frequency, 0.2), 1.5)
     speed = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 25.0
@@ -56,15 +63,58 @@ def foresee_plan(
         for n, name in enumerate(plan)
     ]
     flights = prepare(maneuvers, aircraft)
+    if not len(flights):
+        longest = max(float(m.channels["q"].t[-1] - m.channels["q"].t[0]) for m in maneuvers)
+        raise ConfigurationError(
+            f"plan: at {rate_hz:g} Hz a manoeuvre brings fewer than {LEAST_SAMPLES} samples; "
+            f"plan a rate of {np.ceil(LEAST_SAMPLES / longest) + 1:g} Hz or more."
+        )
+    noise = np.array([TYPICAL_NOISE[c] for c in flights.channels])
+    return foresee_flights(aircraft, derivatives, flights, noise, unit)
+
+
+def foresee_flights(
+    aircraft: Aircraft, derivatives: FloatArray, flights: Flights, noise: FloatArray, unit_s: float
+) -> list[Foreseen]:
+    """The same for manoeuvres made ready, of which only stamps, commands and slow channels count.
+
+    Parameters
+    ----------
+    derivatives
+        Shape (6,): at which the model is made linear.
+    noise
+        Shape (channels,): standard deviation of each channel's noise.
+    unit_s
+        Time unit of the input; a gust is taken to last two of them.
+    """
     problem = Problem(flights, base_entries(aircraft), believed=derivatives)
     own = np.zeros((len(flights), 4))
-    own[:, 2] = -GRAVITY_M_S2 / speed
-    point = Point(derivatives, own)
-    noise = np.array([TYPICAL_NOISE[c] for c in flights.channels])
+    own[:, 2] = -GRAVITY_M_S2 / flights.reference_m_s
+    point = Point(derivatives, own).with_effect(input.LATENCY, (0.0,))
     linear = linearise(problem, point)
     _, _, information, lefts = solve_blocks(problem, linear, 1.0 / noise, 0.0, derivatives)
     fitted = Fitted(point, noise, 0.0, tuple(lefts), tuple(lefts), information, linear, 0)
-    return foresee(problem, fitted, variants_for(flights), noise)
+    marks = Marks(problem, fitted, noise)
+    apart = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []
+    found = [
+        *foresee(problem, fitted, variants_for(flights), noise, apart),
+        *foresee_air(problem, fitted, marks, unit_s),
+        foresee_offset(problem, noise),
+    ]
+    by_effect = {f.effect: f for f in found}
+    return [by_effect.get(effect) or impossible(effect) for effect in BLOCK_OF]
+
+
+def _refuse(plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: Sequence[str]) -> None:
+    unknown = [name for name in plan if name not in STEPS]
+    if unknown or not plan:
+        what = f"{unknown[0]!r} is none of" if unknown else "name at least one of"
+        raise ConfigurationError(f"plan: {what} {', '.join(STEPS)}.")
+    if not (rate_hz > 0.0 and amplitude_deg > 0.0):
+        raise ConfigurationError("plan: the rate and the amplitude must be above zero.")
+    foreign = [name for name in without if name not in SPARED]
+    if foreign:
+        raise ConfigurationError(f"without: {foreign[0]!r} is none of {', '.join(SPARED)}.")
 
 
 def _maneuver(
@@ -88,6 +138,7 @@ def _maneuver(
 
     for channel in OUTPUTS:
         add(channel, 1e-6 * rng.standard_normal(len(t)))
+    # The throttle is closed once after every input: what thrust does to the moment shows then.
     add("airspeed", np.full(len(t), speed * (1.0 + 0.02 * (-1) ** n)))
     add("climb_rate", np.zeros(len(t)))
     add("throttle", np.where(t > t[0] + length, 0.1, 0.0))

@@ -11,6 +11,7 @@ _SURFACE = "log the measured surface position"
 _AMPLITUDES = "fly two amplitudes: a rate limit answers larger steps later"
 _SPEEDS = "fly at two air speeds: the arm's part goes with 1/V, the other does not"
 _WEIGHT = "log fuel and weight; ice moves lift and control by different shares"
+_REPEAT = "repeat the same manoeuvre at the same air speed, early and late"
 _BREAKS = {
     frozenset({"alpha_vane_offset", "accelerometer_offset"}): _ARMS,
     frozenset({"transport_delay", "actuator_lag"}): _SURFACE,
@@ -26,6 +27,11 @@ _BREAKS = {
     ): "fly slow and fast steps of equal size",
     frozenset({"mass_change", "icing"}): _WEIGHT,
     frozenset({"mass_change", "cg_shift"}): _WEIGHT,
+    frozenset({"cg_shift", "icing"}): _WEIGHT,
+    frozenset({"airspeed_variation", "mass_change"}): _REPEAT,
+    frozenset({"airspeed_variation", "icing"}): _REPEAT,
+    frozenset({"airspeed_variation", "cg_shift"}): _REPEAT,
+    frozenset({"turbulence", "gust"}): "fly more manoeuvres: a gust does not come back, turbulence does",
     frozenset({"alpha_dot", "unsteady_lift"}): "log the accelerometer at a higher rate",
     frozenset({"actuator_backlash", "actuator_deadband"}): "fly two amplitudes, and steps short of neutral",
 }

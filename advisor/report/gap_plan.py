@@ -2,50 +2,122 @@
 
 import json
 import math
+from collections.abc import Sequence
 
 import click
+from rich import box
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
 
 from advisor.aircraft import Aircraft
-from advisor.gap.foresee import Foreseen
+from advisor.gap.foresee import CONFUSED_AT, Foreseen
 from advisor.gap.plan import foresee_plan
+from advisor.report.gap_sizes import in_units, spelled
 
-_SHOWN = {"_s": (1e3, "ms"), "_rad": (57.29578, "deg"), "_rad_s": (57.29578, "deg/s"), "_m": (1.0, "m")}
+_OF_LINEAR = {"M_alpha2": "M_alpha", "Z_alpha2": "Z_alpha", "M_delta2": "M_delta_e"}
+
+_IN_WORDS = {"gain": "deg/s per deg", "M_throttle": "rad/s², full throttle", "M_thrust": "rad/s² of trim"}
+_ALIKE = 2
+"""Confusions that are shown; JSON has them all."""
 
 
 def print_foresight(
     aircraft: Aircraft, plan: str, rate_hz: float, amplitude_deg: float, without: str, as_json: bool
 ) -> int:
-    """Print the smallest detectable size and the confusions of every effect; exit code 0."""
+    """Print the smallest detectable size and the confusions of every effect; exit code 0.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft file has no complete ``model``, or the plan cannot be flown or sampled as it says.
+    """
     inputs = [name.strip() for name in plan.split(",") if name.strip()]
     absent = [name.strip() for name in without.split(",") if name.strip()]
-    found = sorted(foresee_plan(aircraft, inputs, rate_hz, amplitude_deg, absent), key=lambda f: f.effect)
+    found = foresee_plan(aircraft, inputs, rate_hz, amplitude_deg, absent)
     if as_json:
-        click.echo(json.dumps(_document(found), indent=1))
+        click.echo(json.dumps(_document(found), allow_nan=False, indent=1))
         return 0
-    click.echo(f"{len(inputs)} manoeuvres at {rate_hz:g} Hz, {amplitude_deg:g} deg of elevator")
-    click.echo(f"{'effect':28s}{'smallest size seen':>20s}   looks like")
-    for f in found:
-        alike = ", ".join(f"{name.replace('_', ' ')} ({100 * c:.0f} %)" for name, c in f.confused_with)
-        click.echo(
-            f"{f.effect.replace('_', ' '):28s}{size_of(f):>20s}   {alike}{f' -> {f.add}' if f.add else ''}"
-        )
+    kept = f", without {', '.join(absent)}" if absent else ""
+    title = f"{len(inputs)} manoeuvres at {rate_hz:g} Hz, {amplitude_deg:g} deg of elevator{kept}"
+    Console(highlight=False).print(ForesightScreen(title, found))
     return 0
 
 
+class ForesightScreen:
+    """Sizes that would show, what tells twins apart, and what the plan cannot show at all."""
+
+    def __init__(self, title: str, found: Sequence[Foreseen]) -> None:
+        self.title, self.found = title, found
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Yield the table and the two lists."""
+        yield Text(self.title, style="bold")
+        yield ""
+        yield _table([f for f in self.found if math.isfinite(f.smallest)])
+        ways = _ways(self.found)
+        if ways:
+            yield ""
+            yield Text("To tell these apart:", style="bold")
+            yield _listed(ways)
+        hidden = [(spelled(f.effect), f.add) for f in self.found if not math.isfinite(f.smallest)]
+        if hidden:
+            yield ""
+            yield Text("Not with this plan (→ what would show it):", style="bold")
+            yield _listed([(name, f"→ {add}") for name, add in hidden])
+
+
 def size_of(f: Foreseen) -> str:
-    """The smallest size with a unit people use."""
-    if not math.isfinite(f.smallest):
-        return "not at all"
-    if f.parameter.endswith("_per_s"):
-        return f"{f.smallest:.3g} 1/s"
-    for ending in sorted(_SHOWN, key=len, reverse=True):
-        if f.parameter.endswith(ending):
-            factor, unit = _SHOWN[ending]
-            return f"{factor * f.smallest:.3g} {unit}"
-    return f"{f.smallest:.3g}"
+    """The smallest size that shows, with a unit people use."""
+    factor, unit = in_units(f.parameter)
+    size = abs(factor * f.smallest)
+    if f.share is not None:
+        return f"{100.0 * f.share:.2g} % of {_OF_LINEAR[f.parameter]}"
+    if f.effect == "actuator_rate_limit":
+        return f"any limit below {_whole(size)} {unit}"
+    if f.parameter in _IN_WORDS:
+        return f"{size:.2g} {_IN_WORDS[f.parameter]}"
+    return f"{_whole(size)} {unit}"
 
 
-def _document(found: list[Foreseen]) -> dict[str, object]:
+def _table(shown: Sequence[Foreseen]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    table.add_column("effect", no_wrap=True)
+    table.add_column("shows from", no_wrap=True)
+    table.add_column("looks like")
+    for f in shown:
+        alike = ", ".join(f"{spelled(name)} {100 * c:.0f} %" for name, c in f.confused_with[:_ALIKE])
+        table.add_row(spelled(f.effect), size_of(f), Text(alike))
+    return table
+
+
+def _ways(found: Sequence[Foreseen]) -> list[tuple[str, str]]:
+    """Each pair of twins once, and what would tell the two apart."""
+    ways: dict[frozenset[str], tuple[str, str]] = {}
+    for f in found:
+        twins = [name for name, cosine in f.confused_with if cosine > CONFUSED_AT]
+        if f.add and math.isfinite(f.smallest):
+            pair = frozenset({f.effect, *twins})
+            ways.setdefault(pair, (", ".join([spelled(f.effect), *map(spelled, twins)]), f.add))
+    return list(ways.values())
+
+
+def _listed(rows: Sequence[tuple[str, str]]) -> Padding:
+    table = Table.grid(padding=(0, 2))
+    table.add_column(max_width=30)
+    table.add_column()
+    for left, right in rows:
+        table.add_row(Text(left), Text(right))
+    return Padding(table, (0, 0, 0, 2))
+
+
+def _whole(x: float) -> str:
+    """Two digits; all of them before the point."""
+    return f"{x:.0f}" if x >= 100.0 else f"{x:.2g}"
+
+
+def _document(found: Sequence[Foreseen]) -> dict[str, object]:
     return {
         "schema": "advisor.foresee/1",
         "effects": [
@@ -53,6 +125,7 @@ def _document(found: list[Foreseen]) -> dict[str, object]:
                 "effect": f.effect,
                 "parameter": f.parameter,
                 "smallest": f.smallest if math.isfinite(f.smallest) else None,
+                "share_of_linear": f.share,
                 "add": f.add,
                 "confused_with": [{"effect": name, "cosine": c} for name, c in f.confused_with],
             }

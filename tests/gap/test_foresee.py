@@ -1,0 +1,152 @@
+"""What a plan could show: every effect of the catalogue, with what to add where it cannot."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from rich.console import Console
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.cli import advisor
+from advisor.gap.baseline import believed_derivatives
+from advisor.gap.candidates.catalogue import BLOCK_OF
+from advisor.gap.data import prepare
+from advisor.gap.diagnose import diagnose
+from advisor.gap.floor import white_noise
+from advisor.gap.plan import foresee_flights, foresee_plan
+from advisor.problems import ConfigurationError
+from advisor.report.gap_plan import ForesightScreen, size_of
+from tests.gap.generator import UAV, Setup, fly
+
+MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0), strict=True))
+PLANE = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
+PLAN = ("3211", "rev", "rev", "3211")
+
+
+@pytest.fixture(scope="module")
+def foreseen():
+    return {f.effect: f for f in foresee_plan(PLANE, PLAN, 50.0, 2.0)}
+
+
+def test_every_effect_of_the_catalogue_is_foreseen_in_its_order(foreseen):
+    assert tuple(foreseen) == tuple(BLOCK_OF)
+
+
+def test_what_the_plan_cannot_show_says_what_to_add(foreseen):
+    assert not np.isfinite(foreseen["ground_effect"].smallest)
+    assert "low and high" in foreseen["ground_effect"].add
+    assert all(f.add for f in foreseen.values() if not np.isfinite(f.smallest))
+
+
+@pytest.mark.parametrize(
+    ("without", "effect", "message"),
+    [
+        ("climb_rate", "alpha_bias", "VFR_HUD"),
+        ("airspeed", "airspeed_variation", "VFR_HUD"),
+        ("a_z", "accelerometer_offset", "RAW_IMU"),
+        ("theta", "attitude_skew", "ATTITUDE"),
+        ("alpha", "turbulence", "AOA_SSA"),
+    ],
+)
+def test_without_its_channel_an_effect_is_invisible_and_the_message_is_named(without, effect, message):
+    found = {f.effect: f for f in foresee_plan(PLANE, PLAN, 50.0, 2.0, (without,))}[effect]
+    assert not np.isfinite(found.smallest)
+    assert message in found.add
+
+
+def test_changes_from_one_manoeuvre_to_the_next_need_three_of_them():
+    found = {f.effect: f for f in foresee_plan(PLANE, PLAN[:2], 50.0, 2.0)}
+    assert not np.isfinite(found["mass_change"].smallest)
+    assert "early and late" in found["mass_change"].add
+
+
+def test_nothing_is_foreseen_below_what_the_diagnosis_would_name(foreseen):
+    assert foreseen["transport_delay"].smallest > 0.004
+    assert foreseen["alpha_bias"].smallest >= np.radians(0.1)
+    assert foreseen["airspeed_variation"].smallest >= 0.03
+
+
+def test_a_latency_that_is_part_of_every_model_hides_as_long_a_delay(foreseen):
+    assert foreseen["transport_delay"].smallest > 0.005
+
+
+def test_a_slow_rate_limit_shows_and_a_limit_no_command_reaches_does_not(foreseen):
+    steepest_rad_s = np.radians(2.0) * 2.6 / 0.02
+    assert 0.0 < foreseen["actuator_rate_limit"].smallest < steepest_rad_s
+    assert size_of(foreseen["actuator_rate_limit"]).startswith("any limit below")
+
+
+def test_a_curved_term_is_a_share_of_the_linear_one_and_halves_with_twice_the_step(foreseen):
+    large = {f.effect: f for f in foresee_plan(PLANE, PLAN, 50.0, 4.0)}
+    for effect in ("elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift"):
+        assert large[effect].share == pytest.approx(foreseen[effect].share / 2.0, rel=0.25)
+        assert size_of(foreseen[effect]).split(" % of ")[1] in MODEL
+
+
+def test_a_gust_needs_to_be_stronger_than_turbulence_and_looks_like_it(foreseen):
+    assert foreseen["gust"].smallest > foreseen["turbulence"].smallest > 0.0
+    assert foreseen["gust"].confused_with[0][0] == "turbulence"
+    assert "does not come back" in foreseen["gust"].add
+
+
+def test_the_screen_fits_80_columns_and_every_size_has_its_unit(foreseen):
+    out = io.StringIO()
+    console = Console(file=out, width=80, color_system=None, highlight=False)
+    console.print(ForesightScreen("4 manoeuvres", list(foreseen.values())))
+    lines = out.getvalue().splitlines()
+    assert max(map(len, lines)) <= 80
+    assert "…" not in out.getvalue()
+    assert all(" " in size_of(f) and "e+" not in size_of(f) for f in foreseen.values())
+
+
+def test_json_has_every_effect_in_si_and_null_for_what_cannot_be_seen(tmp_path):
+    path = tmp_path / "plane.yaml"
+    path.write_text(json.dumps({"model": MODEL, "reference_airspeed_m_s": 22.0}))
+    arguments = ["gap", "--foresee", "--aircraft", str(path), "--plan", "3211,rev,rev", "--json"]
+    result = CliRunner().invoke(advisor, arguments)
+    document = json.loads(result.stdout)
+    effects = {e["effect"]: e for e in document["effects"]}
+    assert set(effects) == set(BLOCK_OF)
+    assert effects["ground_effect"]["smallest"] is None
+    assert 0.005 < effects["transport_delay"]["smallest"] < 0.05
+    assert {"effect", "parameter", "smallest", "add", "confused_with"} <= set(effects["gust"])
+
+
+@pytest.mark.parametrize(
+    ("plan", "rate_hz", "without", "said"),
+    [
+        (("3211", "loop"), 50.0, (), "'loop' is none of"),
+        ((), 50.0, (), "at least one"),
+        (PLAN, 0.0, (), "above zero"),
+        (PLAN, 4.0, (), "plan a rate of"),
+        (PLAN, 50.0, ("q",), "'q' is none of"),
+    ],
+)
+def test_a_plan_that_cannot_be_flown_is_refused_with_what_would_do(plan, rate_hz, without, said):
+    with pytest.raises(ConfigurationError, match=said):
+        foresee_plan(PLANE, plan, rate_hz, 2.0, without)
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(
+    ("effect", "changes"),
+    [
+        ("transport_delay", lambda size: {"switches": {"delay": size}}),
+        ("pitch_rate_scale", lambda size: {"q_scale": size}),
+        ("alpha_lag", lambda size: {"switches": {"vane_lag": size}}),
+    ],
+)
+def test_flown_by_another_generator_twice_the_foreseen_size_is_named_and_a_third_is_not(effect, changes):
+    flown = prepare(fly(Setup(maneuvers=7, seed=21)), PLANE)
+    noise = white_noise(flown)
+    sizes = np.array([noise[channel] for channel in flown.channels])
+    found = foresee_flights(PLANE, believed_derivatives(PLANE), flown, sizes, UAV.unit_s)
+    smallest = {f.effect: f.smallest for f in found}[effect]
+    twice, third = (
+        diagnose(fly(Setup(maneuvers=7, seed=22, **changes(share * smallest))), Aircraft())
+        for share in (2.0, 0.3)
+    )
+    assert twice.causes[0].effect == effect
+    assert effect not in {cause.effect for cause in third.causes if cause.present}
