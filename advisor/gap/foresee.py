@@ -114,7 +114,7 @@ def unseen_effects(
     for seen in foresee(problem, fitted, variants, noise, rounds=1):
         twins = [name for name, cosine in seen.confused_with if cosine > CONFUSED_AT]
         if not np.isfinite(seen.smallest):
-            out.append(Unseen(seen.effect, *hidden_from(problem.channels)))
+            out.append(Unseen(seen.effect, *hidden_from(seen.effect, problem.channels)))
         elif twins and seen.effect not in present:
             alike = " or ".join(name.replace("_", " ") for name in twins)
             out.append(Unseen(seen.effect, f"when small it looks like {alike}", seen.add))
@@ -171,7 +171,9 @@ def _response(problem: Problem, fitted: Fitted, variant: Variant, size: float) -
 def _needed(marks: Marks, numbers: int) -> float:
     """Power a mark must have: found in nearly every flight, worth its numbers, enough of a change."""
     price = numbers * float(np.log(marks.rows))
-    return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, LEAST_GAP * marks.rows)
+    # A filter of moving air leaves of a change far less than the outputs show of it.
+    change = 0.0 if marks.filtered else LEAST_GAP * marks.rows
+    return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
 
 
 def _foreseen(
@@ -189,7 +191,7 @@ def _foreseen(
     ways = [way for way in (breaking(mark.effect, other) for other in twins) if way]
     add = "; ".join(dict.fromkeys(ways)) or (OTHERWISE if twins else "")
     if not np.isfinite(smallest):
-        _, add = hidden_from(channels)
+        add = "; ".join(dict.fromkeys([hidden_from(mark.effect, channels)[1], *ways]))
     share = smallest * shares[mark.parameter] if mark.parameter in shares else None
     return Foreseen(
         mark.effect,

@@ -24,6 +24,7 @@ class Marks:
 
     def __init__(self, problem: Problem, fitted: Fitted, noise: FloatArray) -> None:
         self.problem = problem
+        self.filtered = problem.knows_the_noise
         self.rows = 0
         self._weights, self._own, shared = [], [], []
         for i, block in enumerate(fitted.linear):

@@ -41,8 +41,14 @@ OTHERWISE = "fly another time unit and another amplitude"
 _CHANNELS = {"alpha": "AOA_SSA at 50 Hz", "a_z": "RAW_IMU at 50 Hz", "theta": "ATTITUDE at 50 Hz"}
 
 
-def hidden_from(channels: Sequence[str]) -> tuple[str, str]:
+_NOT_OF_THE_STICK = frozenset({"ground_effect", "thrust_moment", "airspeed_variation"})
+"""Effects of something else than the elevator, which must itself vary."""
+
+
+def hidden_from(effect: str, channels: Sequence[str]) -> tuple[str, str]:
     """Why an effect that was looked for leaves no mark of its own, and what to add."""
+    if effect in _NOT_OF_THE_STICK:
+        return NEEDS[effect].because, NEEDS[effect].add
     missing = [message for channel, message in _CHANNELS.items() if channel not in channels]
     if missing:
         return "these channels do not show it", " and ".join(missing)

@@ -20,6 +20,8 @@ def ranking(causes: Sequence[Cause]) -> Iterator[RenderableType]:
     likely = [c for c in causes if c.present or c.probability >= _LIKELY]
     if likely:
         yield _table(likely)
+        kept = f"{PRESENT} part of the improved simulator; " if any(c.present for c in likely) else ""
+        yield Text(f"{kept}prob.: that it is the main cause", style="dim")
     unlikely = [spelled(c.effect) for c in causes if c not in likely]
     if unlikely:
         yield Text(f"Below 1 %: {', '.join(unlikely)}.", style="dim")
@@ -58,8 +60,6 @@ def _table(causes: Sequence[Cause]) -> Table:
             Text(f"{mark} {spelled(c.effect)}", style="bold" if c.present else ""),
             f"{100.0 * c.probability:.0f} %", Text("\n".join(sizes_of(c))), short(c.gap_after),
         )  # fmt: skip
-    table.caption = f"{PRESENT} part of the improved simulator" if any(c.present for c in causes) else None
-    table.caption_justify = "left"
     return table
 
 

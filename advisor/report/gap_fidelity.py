@@ -1,9 +1,11 @@
 """How far: the error along the worst manoeuvre, and accepted yardsticks, before and after."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from rich import box
+from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -15,6 +17,10 @@ _DEG = math.degrees(1.0)
 _UNITS = {"alpha": ("deg", _DEG), "q": ("deg/s", _DEG), "a_z": ("m/s²", 1.0), "theta": ("deg", _DEG)}
 _LETTERS = {"alpha": "α", "q": "q", "a_z": "a_z", "theta": "θ"}
 _TICKS = "▁▂▃▄▅▆▇█"
+_LEGEND = (
+    "Theil: below 0.25 is called acceptable. Of error, after: per cent bias/variance/covariance. "
+    "Band: q ±2 deg/s, θ ±1.5 deg, a_z ±0.10 g."
+)
 _BESIDE_BARS = 34
 """Columns taken by the letters before and the numbers behind the bars."""
 
@@ -31,10 +37,15 @@ def worst_maneuver(d: Diagnosis) -> int:
     return max(d.gap.by_maneuver, key=lambda row: row[1])[0]
 
 
-def yardsticks(d: Diagnosis) -> Table:
+def yardsticks(d: Diagnosis) -> Iterator[RenderableType]:
     """Gap, Theil's coefficient with its split, R² and the share inside the qualification's band."""
+    yield Text("fidelity on manoeuvres kept out, before → after", style="bold")
+    yield _yardsticks(d)
+    yield Text(_LEGEND, style="dim")
+
+
+def _yardsticks(d: Diagnosis) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    table.title, table.title_justify = "fidelity on manoeuvres kept out, before → after", "left"
     for heading in ("", "gap", "Theil", "of error", "R²", "in band"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
     for channel, (before, after) in d.yardsticks.items():
@@ -47,11 +58,6 @@ def yardsticks(d: Diagnosis) -> Table:
             f"{short(d.gap.by_channel[channel])} → {short(d.gap.by_channel_after[channel])}",
             f"{before.theil:.3f} → {after.theil:.3f}", split, f"{before.r2:.4f} → {after.r2:.4f}", inside,
         )  # fmt: skip
-    table.caption = (
-        "Theil: below 0.25 is called acceptable. Of error, after: per cent bias/variance/covariance. "
-        "Band: q ±2 deg/s, θ ±1.5 deg, a_z ±0.10 g."
-    )
-    table.caption_justify = "left"
     return table
 
 

@@ -1,9 +1,10 @@
 """The diagnosis on a terminal: verdict, block picture, waterfall, ranking, error before and after."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
-from rich.console import Console, ConsoleOptions, RenderResult
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
+from rich.constrain import Constrain
 from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
@@ -32,6 +33,8 @@ _PICTURE = (
     (("timing", "time stamps"), ("accelerometer", "accelerometer"), ("attitude_sensor", "attitude")),
 )
 _BAR = 40
+_WORTH_SAYING = 0.005
+"""Shares that round to nothing are left out."""
 
 
 class GapScreen:
@@ -42,22 +45,25 @@ class GapScreen:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the parts from the verdict to the notes."""
-        d = self.diagnosis
         width = min(options.max_width, WIDEST)
-        yield Panel(Text(d.sentence), title=_VERDICTS[d.verdict], title_align="left", width=width)
+        yield Constrain(Group(*self._parts(width)), width)
+
+    def _parts(self, width: int) -> Iterator[RenderableType]:
+        d = self.diagnosis
+        yield Panel(Text(d.sentence), title=_VERDICTS[d.verdict], title_align="left")
         yield _numbers(d)
-        yield Panel(_picture(d), title=_where(d), title_align="left", width=width)
+        yield Panel(_picture(d), title=_where(d), title_align="left")
         if d.waterfall:
             title = "gap as effects are added, one after another"
-            yield Panel(_waterfall(d), title=title, title_align="left", width=width)
+            yield Panel(_waterfall(d), title=title, title_align="left")
         if d.causes:
             yield ""
             yield from ranking(d.causes)
         title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap"
         yield ""
-        yield Panel(errors(d, width), title=title, title_align="left", width=width)
+        yield Panel(errors(d, width), title=title, title_align="left")
         yield ""
-        yield yardsticks(d)
+        yield from yardsticks(d)
         yield ""
         floor = d.gap.floor_note and f"Noise floor {d.gap.floor_note}."
         for note in (d.kinematics.sentence, floor, *d.notes, self._written()):
@@ -102,7 +108,8 @@ def _counted(numbers: Sequence[int]) -> str:
 def _where(d: Diagnosis) -> str:
     if d.verdict not in ("effect", "unknown"):
         return "where"
-    return f"where: {place(d.where.block)}, {100 * d.where.share:.0f} % of the gap"
+    share = f", {100 * d.where.share:.0f} % of the gap" if d.where.share >= _WORTH_SAYING else ""
+    return f"where: {place(d.where.block)}{share}"
 
 
 def _picture(d: Diagnosis) -> Table:
@@ -116,7 +123,7 @@ def _picture(d: Diagnosis) -> Table:
             score = scores.get(block, 0.0)
             if block == guilty:
                 cells.append(Text(f"▶ {label.upper()} ◀", style="bold reverse"))
-            elif score >= 0.005:
+            elif score >= _WORTH_SAYING:
                 cells.append(Text(f"[{label}] {100 * score:.0f} %"))
             else:
                 cells.append(Text(f"[{label}]", style="dim"))
