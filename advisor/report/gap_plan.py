@@ -13,7 +13,7 @@ from rich.text import Text
 
 from advisor.aircraft import Aircraft
 from advisor.gap.foresee import CONFUSED_AT, Foreseen
-from advisor.gap.plan import foresee_plan
+from advisor.gap.plan import TYPICAL_NOISE, foresee_plan
 from advisor.report.gap_sizes import in_units, spelled
 
 _OF_LINEAR = {"M_alpha2": "M_alpha", "Z_alpha2": "Z_alpha", "M_delta2": "M_delta_e"}
@@ -54,6 +54,7 @@ class ForesightScreen:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the table and the two lists."""
         yield Text(self.title, style="bold")
+        yield Text(f"assumed noise: {_noise()}; speeds ±2 %, every other step at 60 %", style="dim")
         yield ""
         yield _table([f for f in self.found if math.isfinite(f.smallest)])
         ways = _ways(self.found)
@@ -110,6 +111,14 @@ def _listed(rows: Sequence[tuple[str, str]]) -> Padding:
     for left, right in rows:
         table.add_row(Text(left), Text(right))
     return Padding(table, (0, 0, 0, 2))
+
+
+def _noise() -> str:
+    degrees = {c: math.degrees(TYPICAL_NOISE[c]) for c in ("alpha", "theta", "q")}
+    return (
+        f"α {degrees['alpha']:.1f} deg, θ {degrees['theta']:.1f} deg, q {degrees['q']:.1f} deg/s, "
+        f"a_z {TYPICAL_NOISE['a_z']:.1f} m/s²"
+    )
 
 
 def _whole(x: float) -> str:
