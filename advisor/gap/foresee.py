@@ -192,15 +192,11 @@ def _foreseen(
     add = "; ".join(dict.fromkeys(ways)) or (OTHERWISE if twins else "")
     if not np.isfinite(smallest):
         add = "; ".join(dict.fromkeys([hidden_from(mark.effect, channels)[1], *ways]))
-    share = smallest * shares[mark.parameter] if mark.parameter in shares else None
-    return Foreseen(
-        mark.effect,
-        mark.parameter,
-        1.0 / smallest if mark.inverted else smallest,
-        tuple(confused),
-        add,
-        share,
-    )
+    share = None
+    if mark.parameter in shares and np.isfinite(smallest):
+        share = smallest * shares[mark.parameter]
+    size = 1.0 / smallest if mark.inverted and np.isfinite(smallest) else smallest
+    return Foreseen(mark.effect, mark.parameter, size, tuple(confused), add, share)
 
 
 def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:

@@ -89,7 +89,11 @@ def foresee_flights(
     """
     problem = Problem(flights, base_entries(aircraft), believed=derivatives)
     own = np.zeros((len(flights), 4))
-    own[:, 2] = -GRAVITY_M_S2 / flights.reference_m_s
+    # Lift carries the weight at each manoeuvre's own speed: g/V + (V/V_r) Z_trim = 0.
+    own[:, 2] = [
+        -GRAVITY_M_S2 * (f.trim[2] if f.trim[3] else f.slow[0, 0]) / f.slow[0, 0] ** 2
+        for f in flights.flights
+    ]
     point = Point(derivatives, own).with_effect(input.LATENCY, (0.0,))
     linear = linearise(problem, point)
     _, _, information, lefts = solve_blocks(problem, linear, 1.0 / noise, 0.0, derivatives)

@@ -114,6 +114,28 @@ def test_json_has_every_effect_in_si_and_null_for_what_cannot_be_seen(tmp_path):
     assert {"effect", "parameter", "smallest", "add", "confused_with"} <= set(effects["gust"])
 
 
+def test_a_step_lost_in_the_noise_shows_next_to_nothing_and_the_document_has_no_infinity(tmp_path):
+    path = tmp_path / "plane.yaml"
+    path.write_text(json.dumps({"model": MODEL, "reference_airspeed_m_s": 22.0}))
+    arguments = [
+        "gap",
+        "--foresee",
+        "--aircraft",
+        str(path),
+        "--amplitude-deg",
+        "0.0001",
+        "--plan",
+        "3211,rev,rev",
+    ]
+    result = CliRunner().invoke(advisor, [*arguments, "--json"])
+    assert result.exit_code == 0
+    effects = {e["effect"]: e for e in json.loads(result.stdout)["effects"]}
+    assert effects["transport_delay"]["smallest"] is None
+    assert "larger steps" in effects["transport_delay"]["add"]
+    assert effects["actuator_rate_limit"]["smallest"] is None
+    assert effects["turbulence"]["smallest"] is not None
+
+
 @pytest.mark.parametrize(
     ("plan", "rate_hz", "without", "said"),
     [
