@@ -30,7 +30,7 @@ _LEAST_QUIET_S = 4.0
 """Over all manoeuvres; less tells nothing of slow air."""
 _LONE = 8.0
 """Power of a stretch, over that of its likes, from which on a gust may have hit it."""
-_MARGIN = 1.1
+_MARGIN = 1.03
 """By which the air must explain it better than any other place."""
 ANY_GUST = 0.2
 """Gust angle of air of which nothing is assumed, rad: a bump is nothing like the noise of a filter."""

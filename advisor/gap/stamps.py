@@ -27,14 +27,34 @@ _LEAST = 0.3
 
 def stamp_variance(problem: Problem, fitted: Fitted) -> list[FloatArray]:
     """Per manoeuvre, shape (rows,): variance of each sample for not knowing quite when it was taken."""
-    p = problem.driving(fitted.point)
-    grids = [problem.fly(flight, p[i]) for i, flight in enumerate(problem.flights.flights)]
-    rates = [_read(problem, i, [np.gradient(y, f.h) for y in grids[i]])
-             for i, f in enumerate(problem.flights.flights)]  # fmt: skip
-    jerks = [_read(problem, i, [np.abs(np.diff(y, 2, prepend=y[0], append=y[-1])) for y in grid])
-             for i, grid in enumerate(grids)]  # fmt: skip
+    rates = rates_of(problem, fitted)
     jitter = stamp_jitter(problem, fitted, rates)
-    return [(jitter * rate) ** 2 + 0.25 * jerk**2 for rate, jerk in zip(rates, jerks, strict=True)]
+    return [
+        (jitter * rate) ** 2 + 0.25 * jerk**2
+        for rate, jerk in zip(rates, _jerks_of(problem, fitted), strict=True)
+    ]
+
+
+def rates_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
+    """Per manoeuvre, shape (rows,): how fast each channel moves in the simulation at each stamp."""
+    flights = problem.flights.flights
+    return [
+        _read(problem, i, [np.gradient(y, flights[i].h) for y in grid])
+        for i, grid in enumerate(_flown(problem, fitted))
+    ]
+
+
+def _jerks_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
+    """The same: by how much it departs from a straight line within a step."""
+    return [
+        _read(problem, i, [np.abs(np.diff(y, 2, prepend=y[0], append=y[-1])) for y in grid])
+        for i, grid in enumerate(_flown(problem, fitted))
+    ]
+
+
+def _flown(problem: Problem, fitted: Fitted) -> list[FloatArray]:
+    p = problem.driving(fitted.point)
+    return [problem.fly(flight, p[i]) for i, flight in enumerate(problem.flights.flights)]
 
 
 def stamp_jitter(problem: Problem, fitted: Fitted, rates: list[FloatArray]) -> float:

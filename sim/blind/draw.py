@@ -63,7 +63,11 @@ def draw_case(group: Group, generator: np.random.Generator) -> Case:
     for _ in range(40):
         names = _names(group, generator)
         scenario, background = _scenario(group, names, hard, generator)
-        case = _sized(group, scenario, names, hard, background, generator)
+        try:
+            case = _sized(group, scenario, names, hard, background, generator)
+        except TrimError:
+            # An airframe, a speed and an effect that do not go together are drawn again.
+            continue
         if case is not None:
             return case
     raise RuntimeError(f"no visible case of group {group}")
@@ -177,11 +181,7 @@ def _sized(
 ) -> Case | None:
     """Draw sizes until the effect shows; None: this flight cannot show it."""
     quiet = replace(scenario, noise=Noise(), air=Air(), clock=replace(scenario.clock, jitter_s=0.0))
-    try:
-        flight = flight_of(without_effects(quiet))
-    except TrimError:
-        # An airframe and a speed that do not go together are drawn again.
-        return None
+    flight = flight_of(without_effects(quiet))
     truth = flight.engine.truth
     belief = _believed(truth, generator) if group == "parameters" else truth
     if not names:

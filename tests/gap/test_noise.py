@@ -1,0 +1,90 @@
+"""The noise of a flight: what neighbouring samples have in common is found, and counted once."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.baseline import fit_baseline
+from advisor.gap.data import prepare
+from advisor.gap.stamps import rates_of, stamp_jitter
+from advisor.gap.whitening import Filters
+from advisor.oem.innovations import AirModel, gains_of
+from tests.gap.generator import Setup, fly
+
+SYSTEM = np.array([-4.3, -0.03, -37.0, -4.8, 22.0])
+
+
+def merged(n: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Irregular stamps of all four channels in order of time."""
+    rng = np.random.default_rng(seed)
+    t = np.sort(rng.uniform(0.0, 3.0, 4 * n))
+    return t, rng.permutation(np.repeat(np.arange(4), n)).astype(np.int64)
+
+
+def test_innovations_of_coloured_instruments_agree_with_their_covariance_matrix():
+    t, channel = merged(40, 1)
+    white, coloured = np.array([0.001, 0.002, 0.05, 0.001]), np.array([0.002, 0.001, 0.1, 0.003])
+    gains = gains_of(t, channel, SYSTEM, AirModel(white, coloured, 0.2, 0.0, 1.0), start_variance=0.0)
+    apart = np.abs(t[:, None] - t[None, :])
+    same = channel[:, None] == channel[None, :]
+    dense = np.diag(white[channel] ** 2) + same * (coloured[channel] ** 2)[:, None] * np.exp(-apart / 0.2)
+    left = np.random.default_rng(2).standard_normal(len(t)) * 0.003
+    e = gains.innovations(left[:, None])[:, 0]
+    assert e @ e == pytest.approx(left @ np.linalg.solve(dense, left), rel=1e-9)
+    assert 2.0 * np.sum(np.log(gains.root)) == pytest.approx(np.linalg.slogdet(dense)[1], rel=1e-9)
+
+
+def test_air_that_moves_as_assumed_leaves_white_innovations():
+    rng = np.random.default_rng(3)
+    h, n = 0.002, 15_000
+    gust, state, columns = 0.0, np.zeros(3), []
+    keep = np.exp(-h / 0.8)
+    z_a, z_q, m_a, m_q, speed = SYSTEM
+    for k in range(n):
+        gust = keep * gust + 0.004 * np.sqrt(1.0 - keep**2) * rng.standard_normal()
+        a, q, _ = state
+        if k % 10 == 0:
+            force = z_a * (a + gust) + z_q * q
+            columns.append((a + gust, q, speed * force, state[2]))
+        state = state + h * np.array([z_a * (a + gust) + (1.0 + z_q) * q, m_a * (a + gust) + m_q * q, q])
+    white = np.array([0.0006, 0.002, 0.05, 0.0005])
+    y = np.array(columns) + white * rng.standard_normal((len(columns), 4))
+    t = np.repeat(np.arange(len(y)) * 10 * h, 4)
+    channel = np.tile(np.arange(4), len(y)).astype(np.int64)
+    air = AirModel(white, np.full(4, 1e-9), 0.3, 0.004, 0.8)
+    e = gains_of(t, channel, SYSTEM, air, start_variance=0.0).innovations(y.reshape(-1, 1))[:, 0]
+    assert np.mean(e**2) == pytest.approx(1.0, abs=0.05)
+    for c in range(4):
+        one = e[channel == c]
+        assert abs(one[1:] @ one[:-1] / (one @ one)) < 0.08
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.004])
+def test_wrong_stamps_are_read_from_the_roughness_of_the_residual_and_uneven_ones_are_not_wrong(jitter):
+    rng = np.random.default_rng(11)
+    maneuvers = []
+    for maneuver in fly(Setup(maneuvers=4, jitter=0.004, noise=0.005, seed=11)):
+        q = maneuver.channels["q"]
+        wrong = replace(q, t=np.sort(q.t + rng.uniform(-jitter, jitter, len(q))))
+        maneuvers.append(replace(maneuver, channels={**maneuver.channels, "q": wrong}))
+    problem, fitted = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
+    found = stamp_jitter(problem, fitted, rates_of(problem, fitted))
+    # Uniform over ±jitter: its standard deviation is jitter/√3.
+    assert found == pytest.approx(jitter / np.sqrt(3.0), rel=0.25, abs=1e-4)
+
+
+def test_a_gust_is_told_from_turbulence_by_the_manoeuvres_it_spared():
+    flights = prepare(fly(Setup(maneuvers=6, gust_pulse=2.0, seed=12)), Aircraft())
+    problem, _ = fit_baseline(flights, Aircraft())
+    assert isinstance(problem.whitening, Filters)
+    moving = [air.gust > 0.1 for air in problem.whitening.airs]
+    assert moving == [False, True, False, False, True, False]
+
+
+def test_derivatives_are_right_although_a_gust_hit_every_third_manoeuvre():
+    still = prepare(fly(Setup(maneuvers=6, seed=13)), Aircraft())
+    gusty = prepare(fly(Setup(maneuvers=6, gust_pulse=2.0, seed=13)), Aircraft())
+    (_, plain), (_, spoilt) = fit_baseline(still, Aircraft()), fit_baseline(gusty, Aircraft())
+    assert spoilt.point.derivatives[3:] == pytest.approx(plain.point.derivatives[3:], rel=0.04)

@@ -1,0 +1,73 @@
+"""What has no name is called unknown, with the place it comes from; the file decides what data cannot."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.gap.belief import log_belief
+from advisor.gap.diagnose import diagnose
+from advisor.gap.layout import ENTRIES, INDEX
+from advisor.gap.simulate import surface
+from tests.gap.generator import Setup, fly
+
+BELIEVED = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0])
+
+
+def test_damping_that_grows_with_the_rate_has_no_name_but_a_place():
+    found = diagnose(fly(Setup(maneuvers=6, switches={"q_square": -4.0}, seed=21)), Aircraft())
+    assert found.verdict == "unknown"
+    assert found.where.block == "moment_equation"
+
+
+def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane():
+    maneuvers = []
+    rng = np.random.default_rng(22)
+    for maneuver in fly(Setup(maneuvers=6, seed=22)):
+        alpha = maneuver.channels["alpha"]
+        hit = np.convolve(rng.random(len(alpha)) < 0.006, np.ones(4), mode="same") > 0.0
+        jumpy = replace(alpha, y=alpha.y + 0.03 * hit)
+        maneuvers.append(replace(maneuver, channels={**maneuver.channels, "alpha": jumpy}))
+    found = diagnose(maneuvers, Aircraft())
+    assert found.verdict == "unknown"
+    assert found.where.block == "alpha_sensor"
+
+
+def test_two_effects_are_both_named_the_larger_one_first():
+    flown = fly(Setup(maneuvers=6, switches={"delay": 0.06}, alpha_scale=0.1, seed=23))
+    found = diagnose(flown, Aircraft())
+    present = [c.effect for c in found.causes if c.present]
+    assert present == ["transport_delay", "alpha_scale"]
+
+
+def test_the_files_derivatives_tell_a_moment_of_the_angles_rate_from_three_other_derivatives():
+    """In still air at constant speed the two are the same motion."""
+    still = diagnose(fly(Setup(maneuvers=6, seed=24)), Aircraft())
+    file = Aircraft(model={name: still.model[name].value for name in PARAMETERS})
+    found = diagnose(fly(Setup(maneuvers=6, switches={"cm_alphadot": -8.0}, seed=25)), file)
+    assert found.causes[0].effect == "alpha_dot"
+
+
+def test_derivatives_near_the_files_are_believed_more_than_others_and_unknown_ones_neither_way():
+    sure, unsure = 1e-8 * np.diag(BELIEVED**2), np.diag(BELIEVED**2)
+    off = BELIEVED * 1.2
+    gained = log_belief(BELIEVED, sure, BELIEVED) - log_belief(off, sure, BELIEVED)
+    assert gained > 5.0
+    assert log_belief(BELIEVED, unsure, BELIEVED) - log_belief(off, unsure, BELIEVED) == pytest.approx(
+        0.0, abs=0.2
+    )
+
+
+def test_a_dead_band_off_the_trim_swallows_one_side_only():
+    p = np.zeros(len(ENTRIES))
+    p[INDEX["half_deadband_rad"]], p[INDEX["neutral_rad"]] = 0.01, 0.01
+    t = np.array([0.0, 0.4, 0.400001, 1.0])
+
+    def answer(level: float) -> float:
+        u = np.array([0.0, 0.0, level, level])
+        return float(surface(0.005, 200, t, u, False, 0.0, p)[-1])
+
+    assert answer(0.015) == pytest.approx(0.0)
+    assert answer(0.03) == pytest.approx(0.01)
+    assert answer(-0.02) == pytest.approx(-0.02)
