@@ -21,7 +21,7 @@ PROCESSES = 2
 
 
 def answer(case: Path) -> tuple[str, dict[str, Any], float]:
-    """Return the case's name, the document of ``advisor gap --json`` (empty if there is none), CPU seconds."""
+    """Return the case's name, the document of ``advisor gap --json`` (empty without one), CPU seconds."""
     from advisor.commands.options import read_aircraft
     from advisor.gap.document import gap_document
     from advisor.problems import UnusableInputError
