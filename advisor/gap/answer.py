@@ -52,9 +52,10 @@ def answer(
     removed = max(float(np.mean((first.mean_square - last.mean_square) / floor**2)), 0.0)
     speed = airspeed_cause(problem, e.constant_speed, last, floor)
     air_cause = _air_cause(e)
-    late = alpha_lag_cause(kinematics, problem, [s.added for s in stages if s.added is not None])
     named = [s.added for s in stages if s.added is not None]
-    bias = alpha_bias_cause(kinematics, named, problem)
+    left = float(np.mean(gap_of(last.mean_square, floor)))
+    bias = alpha_bias_cause(kinematics, named, problem, left)
+    late = alpha_lag_cause(kinematics, problem, named, left)
     unknown = e.leftover is not None and late is None
     causes = tuple(
         with_doubt(cause, problem)

@@ -148,10 +148,13 @@ def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, flo
     return tuple(sorted(scores.items(), key=lambda item: -item[1]))
 
 
-def alpha_bias_cause(check: KinematicCheck, named: Sequence[Judged], problem: Problem) -> Cause | None:
+def alpha_bias_cause(
+    check: KinematicCheck, named: Sequence[Judged], problem: Problem, left: float
+) -> Cause | None:
     """A constant offset of α, from the climb rate: the dynamics cannot tell it from Z_0 and M_0.
 
-    A scale error shifts the trim, too; only what the named one leaves over is an offset.
+    A scale error shifts the trim, too; only what the named one leaves over is an offset. ``left`` is the gap
+    of the last model: what the motion alone shows takes nothing off it.
     """
     if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
         return None
@@ -165,18 +168,20 @@ def alpha_bias_cause(check: KinematicCheck, named: Sequence[Judged], problem: Pr
     return Cause(
         "alpha_bias", "alpha_sensor", 0.9, {"bias_rad": Value(check.bias_rad, check.bias_std_rad)},
         ("an offset of the attitude's zero", "steady up- or downwash"),
-        "level the attitude reference on the ground; fly in still air", 0.0, True,
+        "level the attitude reference on the ground; fly in still air", left, True,
     )  # fmt: skip
 
 
-def alpha_lag_cause(check: KinematicCheck, problem: Problem, named: Sequence[Judged]) -> Cause | None:
+def alpha_lag_cause(
+    check: KinematicCheck, problem: Problem, named: Sequence[Judged], left: float
+) -> Cause | None:
     """A late α that the motion shows and the fit cannot: an autopilot's estimate is smooth and coarse."""
     found_there = any(BLOCK_OF[j.effect] in ("alpha_sensor", "accelerometer") for j in named)
     if not problem.flights.alpha_is_derived or found_there or check.finding != "late":
         return None
     return Cause(
         "alpha_lag", "alpha_sensor", 0.9, {"lag_s": Value(check.lag_s, check.lag_std_s)},
-        ("alpha_skew", "alpha_vane_offset"), _BREAK_ALPHA_LAG, 0.0, True,
+        ("alpha_skew", "alpha_vane_offset"), _BREAK_ALPHA_LAG, left, True,
     )  # fmt: skip
 
 
