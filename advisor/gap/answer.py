@@ -34,7 +34,7 @@ from advisor.gap.numbers import (
     without_air,
 )
 from advisor.gap.result import Cause, Diagnosis, Value, Verdict, Where
-from advisor.gap.score import shared_std, worth
+from advisor.gap.score import file_is_off, shared_std, worth
 from advisor.gap.text import sentence_of
 
 
@@ -65,9 +65,10 @@ def answer(
     )
     extra = [c for c in (air_cause, bias, late) if c is not None]
     before = e.file_model if e.file_model is not None else first
-    wrong_values = e.file_model is not None and float(
+    visible = e.file_model is not None and float(
         np.mean((e.file_model.mean_square - first.mean_square) / floor**2)
     ) > VISIBLE  # fmt: skip
+    wrong_values = visible and file_is_off(problem, stages[-1].fitted)
     if speed is not None and not (extra or named or wrong_values) and speed_wanders(problem):
         extra = [speed]
     if unknown:

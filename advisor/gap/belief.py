@@ -45,11 +45,23 @@ def log_belief(derivatives: FloatArray, covariance: FloatArray, believed: FloatA
     believed
         Shape (6,): the file's.
     """
+    narrow, wide = _densities(derivatives, covariance, believed)
+    return float(np.logaddexp(narrow, wide) - np.log(2.0))
+
+
+def is_off(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray) -> bool:
+    """Whether the file's derivatives are likelier off than right; arguments as of ``log_belief``."""
+    narrow, wide = _densities(derivatives, covariance, believed)
+    return bool(wide > narrow)
+
+
+def _densities(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray) -> tuple[float, float]:
+    """Log densities of what was fitted, the file being right, and being off."""
     scale = scale_of(believed)
     off = (derivatives - believed) / scale
     known = covariance / np.outer(scale, scale)
-    densities = []
+    found = []
     for width in (NARROW, WIDE):
         spread = known + width**2 * np.eye(6)
-        densities.append(-0.5 * (off @ np.linalg.solve(spread, off) + np.linalg.slogdet(spread)[1]))
-    return float(np.logaddexp(densities[0], densities[1]) - np.log(2.0))
+        found.append(float(-0.5 * (off @ np.linalg.solve(spread, off) + np.linalg.slogdet(spread)[1])))
+    return found[0], found[1]

@@ -21,6 +21,7 @@ _FEW = ("fewer than three manoeuvres", "repeat the same manoeuvre early and late
 NEEDS = {
     "thrust_moment": Need("M_thrust", "speed and throttle did not move", "two air speeds; VFR_HUD at 10 Hz"),
     "ground_effect": Need("Z_h", "height above ground not varied", "fly low and high with a range finder"),
+    "alpha_dot": Need("M_alpha_dot", "the derivatives mimic it", "pulses of a flap, which move α and not q"),
     "alpha_bias": Need("bias_rad", "no climb rate", "VFR_HUD and ATTITUDE at 10 Hz"),
     "alpha_lag": Need("lag_s", *_NO_ALPHA),
     "alpha_vane_offset": Need("arm_m", *_NO_ALPHA),
@@ -41,8 +42,8 @@ OTHERWISE = "fly another time unit and another amplitude"
 _CHANNELS = {"alpha": "AOA_SSA at 50 Hz", "a_z": "RAW_IMU at 50 Hz", "theta": "ATTITUDE at 50 Hz"}
 
 
-_NOT_OF_THE_STICK = frozenset({"ground_effect", "thrust_moment", "airspeed_variation"})
-"""Effects of something else than the elevator, which must itself vary."""
+_NOT_OF_THE_STICK = frozenset({"ground_effect", "thrust_moment", "airspeed_variation", "alpha_dot"})
+"""Effects that the elevator alone cannot show: something else must vary."""
 
 
 def hidden_from(effect: str, channels: Sequence[str]) -> tuple[str, str]:

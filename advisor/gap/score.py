@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.belief import log_belief
+from advisor.gap.belief import is_off, log_belief
 from advisor.gap.fit import Fitted, fit, rms_of
 from advisor.gap.floor import independent_samples, prefiltered
 from advisor.gap.holdout import HeldOut, hold_out
@@ -155,6 +155,15 @@ def belief_in(problem: Problem, fitted: Fitted, independent: FloatArray) -> floa
     n = len(problem.believed)
     known = covariance(problem, fitted, independent)[:n, :n]
     return log_belief(fitted.point.derivatives, known, problem.believed)
+
+
+def file_is_off(problem: Problem, fitted: Fitted) -> bool:
+    """Whether what was fitted says that the aircraft file's derivatives are wrong."""
+    if problem.believed is None:
+        return False
+    n = len(problem.believed)
+    known = covariance(problem, fitted, worth(problem, fitted.innovations))[:n, :n]
+    return is_off(fitted.point.derivatives, known, problem.believed)
 
 
 def shared_std(problem: Problem, fitted: Fitted, independent: FloatArray) -> FloatArray:
