@@ -13,6 +13,8 @@ NARROW = 0.03
 """Relative error of derivatives that are right: linearised, at a nearby speed."""
 WIDE = 0.3
 """Relative error of derivatives that are not."""
+_CHI_SQUARE_95 = 12.59
+"""Of six degrees of freedom."""
 
 
 def scale_of(believed: FloatArray) -> FloatArray:
@@ -45,23 +47,21 @@ def log_belief(derivatives: FloatArray, covariance: FloatArray, believed: FloatA
     believed
         Shape (6,): the file's.
     """
-    narrow, wide = _densities(derivatives, covariance, believed)
-    return float(np.logaddexp(narrow, wide) - np.log(2.0))
+    scale = scale_of(believed)
+    densities = []
+    for width in (NARROW, WIDE):
+        spread = covariance / np.outer(scale, scale) + width**2 * np.eye(6)
+        distance = _distance((derivatives - believed) / scale, spread)
+        densities.append(-0.5 * (distance + float(np.linalg.slogdet(spread)[1])))
+    return float(np.logaddexp(densities[0], densities[1]) - np.log(2.0))
 
 
 def is_off(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray) -> bool:
-    """Whether the file's derivatives are likelier off than right; arguments as of ``log_belief``."""
-    narrow, wide = _densities(derivatives, covariance, believed)
-    return bool(wide > narrow)
-
-
-def _densities(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray) -> tuple[float, float]:
-    """Log densities of what was fitted, the file being right, and being off."""
+    """Whether the file's derivatives cannot be right within their tolerance; arguments as of ``log_belief``."""
     scale = scale_of(believed)
-    off = (derivatives - believed) / scale
-    known = covariance / np.outer(scale, scale)
-    found = []
-    for width in (NARROW, WIDE):
-        spread = known + width**2 * np.eye(6)
-        found.append(float(-0.5 * (off @ np.linalg.solve(spread, off) + np.linalg.slogdet(spread)[1])))
-    return found[0], found[1]
+    spread = covariance / np.outer(scale, scale) + NARROW**2 * np.eye(6)
+    return _distance((derivatives - believed) / scale, spread) > _CHI_SQUARE_95
+
+
+def _distance(off: FloatArray, spread: FloatArray) -> float:
+    return float(off @ np.linalg.solve(spread, off))
