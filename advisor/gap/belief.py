@@ -57,7 +57,7 @@ def log_belief(derivatives: FloatArray, covariance: FloatArray, believed: FloatA
 
 
 def is_off(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray) -> bool:
-    """Whether the file's derivatives cannot be right within their tolerance; arguments as of ``log_belief``."""
+    """Whether the file's derivatives cannot be right within their tolerance; arguments as ``log_belief``."""
     scale = scale_of(believed)
     spread = covariance / np.outer(scale, scale) + NARROW**2 * np.eye(6)
     return _distance((derivatives - believed) / scale, spread) > _CHI_SQUARE_95
