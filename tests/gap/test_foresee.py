@@ -152,6 +152,7 @@ def test_a_plan_that_cannot_be_flown_is_refused_with_what_would_do(plan, rate_hz
 
 
 @pytest.mark.study
+@pytest.mark.timeout(1200)
 @pytest.mark.parametrize(
     ("effect", "changes"),
     [
