@@ -54,7 +54,7 @@ class ForesightScreen:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the table and the two lists."""
         yield Text(self.title, style="bold")
-        yield Text(f"assumed noise: {_noise()}; speeds ±2 %, every other manoeuvre at 60 % of it", style="dim")
+        yield Text(f"assumed noise: {_noise()}; speeds ±2 %, steps alternately 60 % of it", style="dim")
         yield ""
         yield _table([f for f in self.found if math.isfinite(f.smallest)])
         ways = _ways(self.found)
