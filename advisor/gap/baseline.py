@@ -15,6 +15,7 @@ from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.gap.noise import whitening_of
 from advisor.gap.problem import Point, Problem
 from advisor.gap.simulate import GRAVITY_M_S2
+from advisor.gap.stamps import rates_of, stamp_jitter
 from advisor.gap.whitening import Weighting
 
 
@@ -106,6 +107,7 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
 
 
 def _filtered(problem: Problem, fitted: Fitted, first_look: bool = False) -> tuple[Problem, Fitted]:
+    problem = replace(problem, jitter_s=stamp_jitter(problem, fitted, rates_of(problem, fitted)))
     whitening = whitening_of(problem, fitted, first_look)
     if whitening is None:
         return replace(problem, whitening=None), fitted

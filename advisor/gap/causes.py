@@ -158,7 +158,7 @@ def alpha_bias_cause(
     """
     if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
         return None
-    least = max(SMALLEST_BIAS_RAD, 4.0 * check.bias_std_rad)
+    least = max(SMALLEST_BIAS_RAD, 5.0 * check.bias_std_rad)
     trim = float(np.mean([flight.trim[0] for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
     # The trim was read with the offset taken out already, if it was worth taking out.

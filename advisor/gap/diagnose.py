@@ -62,7 +62,7 @@ def diagnose(
          {f.number for f in flights.flights}]
     )  # fmt: skip
     progress("fitting the simulator's model", 0.1)
-    if abs(kinematics.bias_rad) > max(SMALLEST_BIAS_RAD, 4.0 * kinematics.bias_std_rad):
+    if abs(kinematics.bias_rad) > max(SMALLEST_BIAS_RAD, 5.0 * kinematics.bias_std_rad):
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
         flights = prepare([_without_offset(m, kinematics.bias_rad) for m in maneuvers], aircraft)
     problem, baseline = fit_baseline(flights, aircraft)

@@ -13,6 +13,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, rms_of
+from advisor.gap.floor import peak_of
 from advisor.gap.noise import is_quiet
 from advisor.gap.probes import SENSOR_CHANNELS, Probe, probe_blocks
 from advisor.gap.problem import Problem
@@ -25,6 +26,8 @@ _RESTLESS = 2.0
 """Power while the stick moves over that in quiet, from which on it is no noise."""
 _LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
+_OF_PEAK = 0.01
+"""Share of a channel's peak that must be left: a simplified model is no better than that."""
 _DOUBT = 2.5
 """Where the floor is stated, not measured, an unknown cause must exceed it this many times."""
 _HEAVY_TAILS = 2.5
@@ -63,6 +66,10 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     active, quiet = unrest(problem, last.innovations)
     loud = rms_of(problem, last.left) > _DOUBT * stated
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
+    beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - _instruments(problem) ** 2, 0.0))
+    peaks = np.array([peak_of(problem.flights, c) for c in problem.channels])
+    if not np.any(beyond > _OF_PEAK * peaks):
+        return None
     disturbed = best.gain >= _LEAST_GAIN and best.explained >= _LEAST_SHARE and bool(np.any(loud))
     if not disturbed and np.max(louder) < _RESTLESS:
         return None
@@ -91,9 +98,11 @@ def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, F
 
 def _noise(problem: Problem) -> FloatArray:
     """Shape (channels,): what innovations are measured against."""
-    if problem.knows_the_noise or problem.instruments is None:
-        return np.ones(len(problem.channels))
-    return problem.instruments
+    return np.ones(len(problem.channels)) if problem.knows_the_noise else _instruments(problem)
+
+
+def _instruments(problem: Problem) -> FloatArray:
+    return np.zeros(len(problem.channels)) if problem.instruments is None else problem.instruments
 
 
 def _ranking(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ...]:

@@ -115,7 +115,7 @@ def own_columns(problem: Problem, i: int, p: FloatArray, grid: FloatArray) -> tu
             columns.append(area * problem.read(flight, later(pulse, at, flight.h), p))
     prior = np.zeros(len(columns))
     if len(flight.edges):
-        jitter = (_HELD_JITTER_S / flight.edges[:, 2]) ** 2
+        jitter = (np.hypot(_HELD_JITTER_S, problem.jitter_s) / flight.edges[:, 2]) ** 2
         prior[flat:] = 1.0 / (jitter if problem.held else _EDGE_VARIANCE)
     own = np.column_stack(columns)
     return own, prior

@@ -71,6 +71,8 @@ class Problem:
     """Shape (channels,): noise of the innovations is never taken to be below this."""
     believed: FloatArray | None = None
     """Shape (6,): derivatives of the aircraft file, when it has all."""
+    jitter_s: float = 0.0
+    """Standard deviation of the stamps, the command's like all others."""
     whitening: Whitening | None = None
     """Filter of moving air and coloured instruments; None where white noise describes what is left."""
 

@@ -24,6 +24,9 @@ LEAST_GAP = 0.05
 LEAST_SIGMA = 3.0
 _DOUBT = 2.5
 """Where the noise of the instruments is stated, not measured, the change must exceed it this many times."""
+_TIMES = {"delay_s", "lag_s", "skew_s"}
+_JITTERS = 3.0
+"""Standard deviations of the stamps by which a time must exceed its physical minimum."""
 _PROMISE = 0.7
 """Share of the least that the screening must promise before a full fit is spent on a candidate."""
 LEAST_BELIEF = 8.0
@@ -46,6 +49,8 @@ class Judged:
     """What it changes in the outputs of manoeuvres kept out, mean square beside the instruments' noise."""
     least: float
     """What ``removed`` must exceed."""
+    smallest: float
+    """Size below which it is not worth a name."""
     belief: float
     """Log probability gained because the derivatives it leaves agree better with the file's."""
     value: FloatArray
@@ -75,8 +80,9 @@ class Judged:
     def large_enough(self) -> bool:
         """At or above the physical minimum."""
         if self.effect == "icing":
-            return bool(np.max(np.abs(self.value)) >= self.variant.smallest)
-        return bool(abs(self.value[0]) >= self.variant.smallest)
+            # The lift slope and the stability; the elevator's share of the lift is hardly ever known.
+            return bool(np.max(np.abs(self.value[[0, 2]])) >= self.smallest)
+        return bool(abs(self.value[0]) >= self.smallest)
 
 
 def worth(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
@@ -137,6 +143,7 @@ def addition(
         gain=likelihood - price + belief + backward,
         removed=_difference(problem, held_before, held),
         least=LEAST_GAP * (_DOUBT**2 if any(prefiltered(problem.flights).values()) else 1.0),
+        smallest=variant.smallest + (_JITTERS * problem.jitter_s if variant.names[0] in _TIMES else 0.0),
         belief=belief, value=value, std=shared_std(problem, fitted, independent)[at : at + len(value)],
     )  # fmt: skip
 

@@ -9,6 +9,7 @@ is known no better than the simulation's grid.
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.data import STEP_S
 from advisor.gap.fit import Fitted
 from advisor.gap.floor import white_noise
 from advisor.gap.layout import OUTPUTS
@@ -21,17 +22,17 @@ _THIRD = np.array([1.0, -3.0, 3.0, -1.0])
 _BINS = 12
 _MEDIAN = 0.455
 """Of the square of a standard normal number."""
+_FAR = 2.0
+"""Standard deviations of a stamp within which a sample may have been taken on the other side of a step."""
 _LEAST = 0.3
 """Error of the pitch rate through its stamps, over its noise, from which on it counts."""
 
 
 def stamp_variance(problem: Problem, fitted: Fitted) -> list[FloatArray]:
     """Per manoeuvre, shape (rows,): variance of each sample for not knowing quite when it was taken."""
-    rates = rates_of(problem, fitted)
-    jitter = stamp_jitter(problem, fitted, rates)
     return [
-        (jitter * rate) ** 2 + 0.25 * jerk**2
-        for rate, jerk in zip(rates, _jerks_of(problem, fitted), strict=True)
+        (problem.jitter_s * rate) ** 2 + 0.25 * jerk**2
+        for rate, jerk in zip(rates_of(problem, fitted), _jerks_of(problem, fitted), strict=True)
     ]
 
 
@@ -45,11 +46,22 @@ def rates_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
 
 
 def _jerks_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
-    """The same: by how much it departs from a straight line within a step."""
+    """The same: by how much it departs from a straight line, as far as the stamps are uncertain."""
+    reach = 0 if problem.jitter_s == 0.0 else 1 + int(_FAR * problem.jitter_s / STEP_S)
     return [
-        _read(problem, i, [np.abs(np.diff(y, 2, prepend=y[0], append=y[-1])) for y in grid])
+        _read(
+            problem,
+            i,
+            [_largest_near(np.abs(np.diff(y, 2, prepend=y[0], append=y[-1])), reach) for y in grid],
+        )
         for i, grid in enumerate(_flown(problem, fitted))
     ]
+
+
+def _largest_near(y: FloatArray, reach: int) -> FloatArray:
+    """Running maximum over ``reach`` steps to either side."""
+    padded = np.pad(y, reach)
+    return np.asarray(np.max([padded[k : k + len(y)] for k in range(2 * reach + 1)], axis=0))
 
 
 def _flown(problem: Problem, fitted: Fitted) -> list[FloatArray]:

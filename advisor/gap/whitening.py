@@ -13,6 +13,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flights
+from advisor.gap.layout import INDEX
 from advisor.oem.innovations import CHANNELS, AirModel, Gains, gains_of
 
 
@@ -53,14 +54,18 @@ class Filters:
 
 
 def filters_for(
-    flights: Flights, derivatives: FloatArray, airs: Sequence[AirModel], extra: Sequence[FloatArray]
+    flights: Flights,
+    p: FloatArray,
+    airs: Sequence[AirModel],
+    extra: Sequence[FloatArray],
 ) -> Filters:
     """Make the filters ready.
 
     Parameters
     ----------
-    derivatives
-        Shape (6,), as in ``advisor.gap.layout``: how the aircraft answers the air.
+    p
+        Shape (manoeuvres, entries), as in ``advisor.gap.layout``: how the aircraft answers the air, and
+        where its instruments sit.
     airs
         Per manoeuvre: its air and its instruments.
     extra
@@ -69,9 +74,10 @@ def filters_for(
     gains, orders = [], []
     for i, flight in enumerate(flights.flights):
         t, channel, order = rows_in_time(flights, i)
-        system = np.array([*derivatives[[0, 1, 3, 4]], float(np.mean(flight.slow[0]))])
+        system = np.array([*p[i, [0, 1, 3, 4]], float(np.mean(flight.slow[0]))])
+        arms = (float(p[i, INDEX["vane_arm_m"]]), float(p[i, INDEX["imu_arm_m"]]))
         # Every manoeuvre has initial states of its own in the fit: none are left to the filter.
-        gains.append(gains_of(t, channel, system, airs[i], 0.0, extra[i][order]))
+        gains.append(gains_of(t, channel, system, airs[i], 0.0, extra[i][order], arms))
         orders.append(order)
     return Filters(tuple(airs), tuple(gains), tuple(orders))
 

@@ -77,6 +77,7 @@ def gains_of(
     air: AirModel,
     start_variance: float = DIFFUSE,
     extra: FloatArray | float = 0.0,
+    arms_m: tuple[float, float] = (0.0, 0.0),
 ) -> Gains:
     """Find the gains for rows at times ``t``, ascending, of channels ``channel``, both shape (n,).
 
@@ -88,14 +89,18 @@ def gains_of(
         Of α, q and θ at the start; 0 when the fit has initial states of its own.
     extra
         Shape (n,): variance of each row beyond its channel's noise, such as that of an uncertain stamp.
+    arms_m
+        Of the vane and of the accelerometer, ahead of the centre of gravity.
     """
     white = np.asarray(air.white[channel] ** 2 + extra)
     colour = np.array([*air.coloured, air.memory_s, air.gust, air.gust_memory_s])
     observed = np.zeros((4, STATES))
-    z_a, z_q, _, _, speed = system
-    observed[ALPHA, [0, 3, 4]] = 1.0, air.seen_by_alpha, 1.0
+    z_a, z_q, m_a, m_q, speed = system
+    vane, imu = arms_m
+    lift, turn = speed * z_a - imu * m_a, speed * z_q - imu * m_q
+    observed[ALPHA, [0, 1, 3, 4]] = 1.0, -vane / speed, air.seen_by_alpha, 1.0
     observed[Q, [1, 5]] = 1.0
-    observed[A_Z, [0, 1, 3, 6]] = speed * z_a, speed * z_q, speed * z_a, 1.0
+    observed[A_Z, [0, 1, 3, 6]] = lift, turn, lift, 1.0
     observed[THETA, [2, 7]] = 1.0
     step, keep, gain, root = _gains(t, channel, system, white, colour, observed, start_variance)
     return Gains(step, keep, gain, root, channel, observed)

@@ -68,7 +68,7 @@ def _icing(flights: Flights) -> list[Variant]:
                 ((0.0, 0.0, 0.0, 0.0),),
                 (0.005,) * 4,
                 ((-0.9, 0.02), (-0.9, 0.3), (-0.9, 0.3), (-0.9, 0.02)),
-                0.01,
+                0.02,
                 apply_with=apply,
                 fixed={"at_s": at_s},
                 one_sided=True,
