@@ -18,10 +18,13 @@ from advisor.gap.problem import Problem
 from advisor.oem.innovations import CHANNELS
 from advisor.oem.turbulence import find_turbulence
 
-_LEAST_GAIN = 40.0
+AIR_GAIN = 40.0
 """Log likelihood by which moving air must beat coloured instruments."""
-_MOST_MANEUVERS = 5
+AIR_MANEUVERS = 5
 """Enough to recognise turbulence by."""
+
+LEAST_GUST_ANGLE = 0.001
+"""Gust angle below which it is not worth a name, rad."""
 
 
 @dataclass(frozen=True)
@@ -48,12 +51,12 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     if "alpha" not in problem.channels or "q" not in problem.channels:
         return None
     rows = [rows_of(problem, i, fitted.left[i]) for i in range(len(problem.flights))]
-    loudest = sorted(range(len(rows)), key=lambda i: -float(np.mean(fitted.left[i] ** 2)))[:_MOST_MANEUVERS]
+    loudest = sorted(range(len(rows)), key=lambda i: -float(np.mean(fitted.left[i] ** 2)))[:AIR_MANEUVERS]
     derived = problem.flights.alpha_is_derived
     found = find_turbulence(
         [rows[i] for i in loudest], system_of(fitted), instrument_noise(problem), not derived
     )
-    if found.gain < _LEAST_GAIN or found.gust_angle < 0.001:
+    if found.gain < AIR_GAIN or found.gust_angle < LEAST_GUST_ANGLE:
         return None
     model = with_floor(problem, found.air)
     instruments = np.hypot(model.white, model.coloured)[[CHANNELS.index(c) for c in problem.channels]]

@@ -27,7 +27,10 @@ _TIME_DOUBT_S = 0.0006
 _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
 _BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
-_SPEED_SMALLEST = 0.03
+SPEED_CHANGE = 0.03
+"""Relative change of air speed from which on it is looked at."""
+OFFSET_SIGMAS = 5.0
+"""Standard deviations that an offset of α must have to be named."""
 _SPEED_COSTS = 0.05
 """Gap of a simulator at constant speed from which on it is worth a step of the waterfall."""
 _SPEED_WANDERS = 0.015
@@ -158,7 +161,7 @@ def alpha_bias_cause(
     """
     if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
         return None
-    least = max(SMALLEST_BIAS_RAD, 5.0 * check.bias_std_rad)
+    least = max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * check.bias_std_rad)
     trim = float(np.mean([flight.trim[0] for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
     # The trim was read with the offset taken out already, if it was worth taking out.
@@ -191,7 +194,7 @@ def at_constant_speed(problem: Problem, fitted: Fitted) -> HeldOut | None:
     None where the speed hardly moves, or is not measured.
     """
     flights = problem.flights
-    if not flights.speed_measured or flights.speed_moves < _SPEED_SMALLEST:
+    if not flights.speed_measured or flights.speed_moves < SPEED_CHANGE:
         return None
     constant = tuple(
         replace(f, trim=np.array([f.trim[0], f.trim[1], f.trim[2], 0.0])) for f in flights.flights

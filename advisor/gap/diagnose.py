@@ -13,7 +13,7 @@ from advisor.gap.air import moving_air
 from advisor.gap.answer import answer
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.causes import at_constant_speed
+from advisor.gap.causes import OFFSET_SIGMAS, at_constant_speed
 from advisor.gap.data import Flights, prepare
 from advisor.gap.evidence import Evidence
 from advisor.gap.fit import Fitted, own_only
@@ -62,7 +62,7 @@ def diagnose(
          {f.number for f in flights.flights}]
     )  # fmt: skip
     progress("fitting the simulator's model", 0.1)
-    if abs(kinematics.bias_rad) > max(SMALLEST_BIAS_RAD, 5.0 * kinematics.bias_std_rad):
+    if abs(kinematics.bias_rad) > max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * kinematics.bias_std_rad):
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
         flights = prepare([_without_offset(m, kinematics.bias_rad) for m in maneuvers], aircraft)
     problem, baseline = fit_baseline(flights, aircraft)

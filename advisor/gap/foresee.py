@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.causes import SPEED_CHANGE
 from advisor.gap.fit import Fitted
 from advisor.gap.layout import INDEX
 from advisor.gap.marks import Marks
@@ -104,7 +105,7 @@ def unseen_effects(
     tried = {v.effect for v in variants} | {"alpha_bias", "airspeed_variation", "turbulence", "gust"}
     if "climb_rate" not in problem.flights.has:
         tried.discard("alpha_bias")
-    if not problem.flights.speed_measured or problem.flights.speed_moves < 0.03:
+    if not problem.flights.speed_measured or problem.flights.speed_moves < SPEED_CHANGE:
         tried.discard("airspeed_variation")
     out = [
         Unseen(effect, need.because, need.add)

@@ -16,6 +16,8 @@ import numpy as np
 
 from advisor.flight.kinematics import SMALLEST_BIAS_RAD
 from advisor.flight.messages import FloatArray
+from advisor.gap.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
+from advisor.gap.causes import OFFSET_SIGMAS, SPEED_CHANGE
 from advisor.gap.data import Flight
 from advisor.gap.fit import Fitted
 from advisor.gap.foresee import Foreseen, Mark
@@ -27,16 +29,6 @@ from advisor.gap.problem import Problem
 from advisor.gap.simulate import DISTURB_AIR
 from advisor.gap.ties import breaking
 
-AIR_GAIN = 40.0
-"""Log likelihood by which moving air must beat coloured instruments."""
-AIR_MANEUVERS = 5
-"""Manoeuvres it is sought in."""
-LEAST_GUST_ANGLE = 0.001
-"""Gust angle below which it is not worth a name, rad."""
-SPEED_CHANGE = 0.03
-"""Change of air speed from which on it is worth a name."""
-OFFSET_SIGMAS = 4.0
-"""Standard deviations that an offset of α must have to be named."""
 CLIMB_RATE_STD_M_S = 0.1
 """Noise taken for a climb rate that nobody has measured yet; one independent reading a second."""
 _ANGLES = np.geomspace(1e-5, 0.5, 200)
