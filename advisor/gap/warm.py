@@ -13,7 +13,7 @@ def warm_up() -> None:
     """Foresee a tiny plan and filter a few samples: between them they run through every compiled function."""
     foresee_plan(Aircraft(model=_ANY_AIRCRAFT), ("pulse", "pulse"), 50.0, 1.0)
     one = np.ones(4)
-    gains = gains_of(np.arange(4) * 0.02, np.arange(4), np.ones(5), AirModel(one, one, 1.0, 0.1, 1.0))
+    gains = gains_of(np.linspace(0.0, 0.06, 4), np.arange(4), np.ones(5), AirModel(one, one, 1.0, 0.1, 1.0))
     gains.innovations(np.ones((4, 2)))
 
 
