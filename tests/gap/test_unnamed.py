@@ -7,6 +7,7 @@ import pytest
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.gap.belief import log_belief
+from advisor.gap.candidates.between import shift_moments
 from advisor.gap.diagnose import diagnose
 from advisor.gap.layout import ENTRIES, INDEX
 from advisor.gap.simulate import surface
@@ -71,3 +72,13 @@ def test_a_dead_band_off_the_trim_swallows_one_side_only():
     assert answer(0.015) == pytest.approx(0.0)
     assert answer(0.03) == pytest.approx(0.01)
     assert answer(-0.02) == pytest.approx(-0.02)
+
+
+def test_a_wandering_centre_of_gravity_gives_every_force_the_same_further_arm():
+    p = np.zeros((2, len(ENTRIES)))
+    p[:, :6] = BELIEVED
+    shift_moments(p, np.array([0.0, -0.2]))
+    changes = (p[1] - p[0])[[INDEX["M_alpha"], INDEX["M_q"], INDEX["M_delta_e"]]]
+    forces = BELIEVED[[0, 1, 2]]
+    assert changes[0] == pytest.approx(-0.2 * BELIEVED[3])
+    assert changes / forces == pytest.approx(np.full(3, changes[0] / forces[0]))

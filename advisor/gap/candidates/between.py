@@ -13,14 +13,14 @@ Change = Callable[[FloatArray, FloatArray], None]
 """Change driving numbers (manoeuvres, entries), given the relative change of each manoeuvre."""
 
 
-def scale(*entries: str) -> Change:
-    """Multiply these derivatives by 1 + change."""
-    columns = [INDEX[name] for name in entries]
+def shift_moments(p: FloatArray, by: FloatArray) -> None:
+    """Move the centre of gravity: every force of Eq. (1) gets the same further arm in Eq. (2).
 
-    def change(p: FloatArray, by: FloatArray) -> None:
-        p[:, columns] *= (1.0 + by)[:, None]
-
-    return change
+    ``by`` is the relative change of M_α.
+    """
+    arm = by * p[:, INDEX["M_alpha"]] / p[:, INDEX["Z_alpha"]]
+    for force, moment in (("Z_alpha", "M_alpha"), ("Z_q", "M_q"), ("Z_delta_e", "M_delta_e")):
+        p[:, INDEX[moment]] += arm * p[:, INDEX[force]]
 
 
 def divide(*entries: str) -> Change:

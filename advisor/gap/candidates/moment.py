@@ -1,6 +1,6 @@
 """The moment equation: curved moments, thrust line, rate of α, a wandering centre of gravity."""
 
-from advisor.gap.candidates.between import ramps_and_steps, scale
+from advisor.gap.candidates.between import ramps_and_steps, shift_moments
 from advisor.gap.data import Flights
 from advisor.gap.variant import Variant
 
@@ -52,5 +52,5 @@ def variants(flights: Flights) -> list[Variant]:
             0.0,
             entries=("M_alpha_dot",),
         ),
-        *ramps_and_steps("cg_shift", BLOCK, flights, scale("M_alpha")),
+        *ramps_and_steps("cg_shift", BLOCK, flights, shift_moments),
     ]
