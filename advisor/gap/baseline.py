@@ -109,11 +109,11 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
 def _filtered(problem: Problem, fitted: Fitted, first_look: bool = False) -> tuple[Problem, Fitted]:
     problem = replace(problem, jitter_s=stamp_jitter(problem, fitted, rates_of(problem, fitted)))
     whitening = whitening_of(problem, fitted, first_look)
-    if whitening is None:
-        return replace(problem, whitening=None), fitted
-    if isinstance(whitening, Weighting):
-        weighted = replace(problem, whitening=whitening)
-        return weighted, fit(weighted, fitted.point, fitted.noise, iterations=8)
+    if whitening is None or isinstance(whitening, Weighting):
+        # A filter of the round before measured innovations in units of their own.
+        assert problem.instruments is not None
+        white = replace(problem, whitening=whitening, smallest_noise=0.5 * problem.instruments)
+        return white, fit(white, fitted.point, problem.instruments, iterations=8)
     one = np.ones(len(problem.channels))
     filtered = replace(problem, whitening=whitening, smallest_noise=0.5 * one)
     return filtered, fit(filtered, fitted.point, one, iterations=8)

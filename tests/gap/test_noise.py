@@ -88,3 +88,11 @@ def test_derivatives_are_right_although_a_gust_hit_every_third_manoeuvre():
     gusty = prepare(fly(Setup(maneuvers=6, gust_pulse=2.0, seed=13)), Aircraft())
     (_, plain), (_, spoilt) = fit_baseline(still, Aircraft()), fit_baseline(gusty, Aircraft())
     assert spoilt.point.derivatives[3:] == pytest.approx(plain.point.derivatives[3:], rel=0.04)
+
+
+def test_noise_without_a_filter_is_given_in_the_units_of_the_channels_whatever_was_thought_at_first():
+    """An unseen delay looks like moving air at a first look, and like white noise at a second."""
+    flown = fly(Setup(maneuvers=9, rate_hz=20.0, switches={"delay": 0.05}, seed=5))
+    problem, fitted = fit_baseline(prepare(flown, Aircraft()), Aircraft())
+    assert not problem.knows_the_noise
+    assert np.all(fitted.noise < 2.0 * problem.instruments)

@@ -4,10 +4,6 @@ from advisor.gap.candidates import force, input, moment, sensors, timing
 from advisor.gap.data import Flights
 from advisor.gap.variant import Variant
 
-BLOCKS = (
-    "input", "force_equation", "moment_equation", "air", "alpha_sensor", "pitch_rate_sensor", "accelerometer",
-    "attitude_sensor", "timing",
-)  # fmt: skip
 BLOCK_OF = {
     "actuator_lag": "input", "actuator_rate_limit": "input", "actuator_backlash": "input",
     "actuator_deadband": "input", "transport_delay": "input",
