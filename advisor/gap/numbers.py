@@ -29,7 +29,7 @@ def gap_numbers(e: Evidence, before: HeldOut, last: HeldOut, bias: Cause | None)
         offset[problem.channels.index("alpha")] = bias.parameters["bias_rad"].value ** 2
     here, there = gap_of(before.mean_square + offset, floor), gap_of(last.mean_square, floor)
     smooth = [c for c, yes in prefiltered(problem.flights).items() if yes]
-    note = "measured: what neither an effect nor the motion explains on manoeuvres kept out"
+    note = "measured where nothing was flown, before the first step and late in the free response"
     if smooth:
         note = f"stated as 2 % of peak for {', '.join(smooth)} (filtered before storage); else measured"
     return Gap(

@@ -27,7 +27,7 @@ class Gap:
     after: float
     """The same for the final model."""
     floor: Mapping[str, float]
-    """Standard deviation of what neither an effect nor the motion explains, SI of the channel."""
+    """Standard deviation of what is left where nothing was flown, SI of the channel."""
     floor_note: str
     """Whether the floor was measured, or stated because the record was filtered before."""
     by_channel: Mapping[str, float]
