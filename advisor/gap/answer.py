@@ -1,17 +1,13 @@
 """From evidence to the answer: the numbers beside the judgement, and the sentence."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import KinematicCheck
-from advisor.flight.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.causes import (
-    block_ranking,
-)
+from advisor.gap.causes import block_ranking
 from advisor.gap.evidence import Evidence
 from advisor.gap.foresee import unseen_effects
 from advisor.gap.holdout import hold_out
@@ -38,7 +34,6 @@ def answer(
     aircraft: Aircraft,
     kinematics: KinematicCheck,
     holdout: int | None,
-    maneuvers: Sequence[Maneuver],
 ) -> Diagnosis:
     """Turn the evidence into the diagnosis."""
     problem, stages, floor = e.problem, e.stages, e.floor

@@ -68,7 +68,7 @@ def diagnose(
     problem, baseline = fit_baseline(flights, aircraft)
     evidence = _explain(problem, baseline, aircraft, progress)
     progress("measuring the gap", 0.9)
-    return answer(evidence, aircraft, kinematics, holdout, maneuvers)
+    return answer(evidence, aircraft, kinematics, holdout)
 
 
 def _refuse(flights: Flights) -> None:
