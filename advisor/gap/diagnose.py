@@ -16,7 +16,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.causes import OFFSET_SIGMAS, at_constant_speed
 from advisor.gap.data import Flights, prepare
 from advisor.gap.evidence import Evidence
-from advisor.gap.fit import Fitted, own_only
+from advisor.gap.fit import Fitted, solve_blocks
 from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.layout import DERIVATIVES
@@ -133,7 +133,7 @@ def _file_model(problem: Problem, baseline: Fitted, aircraft: Aircraft) -> HeldO
     lefts: list[FloatArray] = []
     for _ in range(3):
         linear = linearise(problem, point)
-        owns, _ = own_only(problem, linear, 1.0 / baseline.noise)
+        owns = solve_blocks(problem, linear, 1.0 / baseline.noise, point.derivatives).free
         still = np.zeros(len(point.shared))
         lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
         point = replace(point, own=point.own + np.array([o[:4] for o in owns]))

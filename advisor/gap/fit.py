@@ -22,6 +22,10 @@ from advisor.gap.problem import Point, Problem, counts, row_weights
 
 _SETTLED = 0.02
 """Relative change of the weights below which they and the own numbers have settled together."""
+_SHORTER = 0.3
+"""A step that led uphill is shortened by this ..."""
+_SHORTEST = 0.05
+"""... but not below this: the cost is rough at the grid of the simulation."""
 
 
 @dataclass(frozen=True)
@@ -52,20 +56,42 @@ def factor(problem: Problem, i: int, own: FloatArray, prior: FloatArray, weights
     return factored(normal)
 
 
-def solve_blocks(
-    problem: Problem, linear: Sequence[Linear], weights: FloatArray, damping: float, derivatives: FloatArray
-) -> tuple[FloatArray, list[FloatArray], FloatArray, list[FloatArray]]:
-    """One Gauss-Newton step.
+@dataclass(frozen=True)
+class Step:
+    """A Gauss-Newton step from where the model was made linear."""
 
-    Returns
-    -------
-    Step of the shared numbers (k,), per manoeuvre the own numbers' solution (m,), the information
-    matrix (k, k), and per manoeuvre the predicted residual after the step.
-    """
+    shared: FloatArray
+    """Shape (k,)."""
+    free: list[FloatArray]
+    """Per manoeuvre, shape (m,): own numbers' solution at the old shared numbers ..."""
+    follow: list[FloatArray]
+    """... and shape (m, k), what they lose per unit of the shared ones."""
+    information: FloatArray
+    """Shape (k, k)."""
+    gradient: FloatArray
+    """Shape (k,): half the decrease of the cost per unit of each shared number."""
+
+    def promised(self, shared: FloatArray) -> float:
+        """Decrease of the cost by a step of the shared numbers, were the model linear."""
+        return float(2.0 * self.gradient @ shared - shared @ self.information @ shared)
+
+    def owns(self, shared: FloatArray) -> list[FloatArray]:
+        """Per manoeuvre the own numbers' solution after some step of the shared ones."""
+        return [free - follow @ shared for free, follow in zip(self.free, self.follow, strict=True)]
+
+    def ahead(self, linear: Sequence[Linear]) -> list[FloatArray]:
+        """Per manoeuvre, the residual that the whole step should leave."""
+        return [b.after(self.shared, own) for b, own in zip(linear, self.owns(self.shared), strict=True)]
+
+
+def solve_blocks(
+    problem: Problem, linear: Sequence[Linear], weights: FloatArray, derivatives: FloatArray
+) -> Step:
+    """One Gauss-Newton step, own numbers eliminated manoeuvre by manoeuvre."""
     k = linear[0].shared.shape[1]
     H, g = np.zeros((k, k)), np.zeros(k)
     H[:6, :6], g[:6] = np.diag(problem.pull), problem.pull * problem.missed(derivatives)
-    kept = []
+    free, follow = [], []
     for i, block in enumerate(linear):
         w = row_weights(problem, i, weights)
         A, J, r = block.own * w[:, None], block.shared * w[:, None], block.left * w
@@ -74,16 +100,11 @@ def solve_blocks(
         eliminated = solved(chol, np.column_stack([AJ, Ar]))
         H += J.T @ J - AJ.T @ eliminated[:, :k]
         g += J.T @ r - AJ.T @ eliminated[:, k]
-        kept.append(eliminated)
+        free.append(eliminated[:, k])
+        follow.append(eliminated[:, :k])
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-    normal = H / np.outer(scale, scale)
-    step = np.linalg.lstsq(normal + damping * np.eye(k), g / scale, rcond=1e-12)[0] / scale
-    owns, lefts = [], []
-    for block, eliminated in zip(linear, kept, strict=True):
-        own = eliminated[:, k] - eliminated[:, :k] @ step
-        owns.append(own)
-        lefts.append(block.after(step, own))
-    return step, owns, H, lefts
+    step = np.linalg.lstsq(H / np.outer(scale, scale), g / scale, rcond=1e-12)[0] / scale
+    return Step(step, free, follow, H, g)
 
 
 def noise_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
@@ -122,72 +143,61 @@ def fit(
     start: Point,
     noise: FloatArray | None = None,
     iterations: int = 12,
-    tolerance: float = 0.02,
+    tolerance: float = 0.1,
 ) -> Fitted:
     """Minimise det R from a start. The first noise decides the weights of the first step."""
     point = start
     linear = linearise(problem, point)
     weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
     lower, upper = bounds_of(point)
-    damping, best = 0.0, np.inf
-    information = np.eye(len(point.shared))
-    lefts: list[FloatArray] = [b.left for b in linear]
-    done = 0
-    kept: tuple[Point, tuple[Linear, ...]] = (point, linear)
-    while done < iterations:
+    kept = _settled(problem, point, linear, weights)
+    length, done = 1.0, 1
+    while done < iterations and length > _SHORTEST:
+        shared = np.clip(kept.point.shared + length * kept.step.shared, lower, upper)
+        change = shared - kept.point.shared
+        if kept.step.promised(change) < tolerance:
+            break
+        owns = kept.step.owns(change)
+        point = kept.point.moved(shared, kept.point.own + np.array([o[: len(NUISANCES)] for o in owns]))
+        here = _settled(problem, point, linearise(problem, point), kept.weights)
         done += 1
-        # Weights and own numbers settle together at a fixed linearisation: cheap, no simulation.
-        for _ in range(4):
-            step, owns, information, lefts = solve_blocks(
-                problem, linear, weights, damping, point.derivatives
-            )
-            before, weights = weights, 1.0 / noise_of(problem, lefts)
-            if np.max(np.abs(np.log(weights / before))) < _SETTLED:
-                break
-        owns_here, left_here = own_only(problem, linear, weights)
-        here = cost_of(problem, point, left_here, owns_here, linear)
-        if here < best + 1e-9:
-            gained = best - here
-            best, kept = here, (point, linear)
-            damping = damping / 10.0 if damping > 1e-6 else 0.0
-            if gained < tolerance:
-                break
+        if here.cost < kept.cost:
+            kept, length = here, 1.0
         else:
-            damping = max(10.0 * damping, 1e-3)
-            point, linear = kept
-            if damping > 1e3:
-                break
-            step, owns, information, lefts = solve_blocks(
-                problem, linear, weights, damping, point.derivatives
-            )
-        shared = np.clip(point.shared + step, lower, upper)
-        own = point.own + np.array([o[: len(NUISANCES)] for o in owns])
-        point = point.moved(shared, own)
-        linear = linearise(problem, point)
-    point, linear = kept
-    owns_here, left_here = own_only(problem, linear, weights)
-    _, _, information, _ = solve_blocks(
-        problem, linear, 1.0 / noise_of(problem, left_here), 0.0, point.derivatives
+            length *= _SHORTER
+    still = np.zeros(len(kept.point.shared))
+    measured = tuple(
+        block.measured.after(still, own) for block, own in zip(kept.linear, kept.step.free, strict=True)
     )
-    still = np.zeros(len(point.shared))
-    measured = tuple(block.measured.after(still, own) for block, own in zip(linear, owns_here, strict=True))
-    return Fitted(
-        point, noise_of(problem, left_here), best, tuple(left_here), measured, information, linear, done
-    )
+    information = solve_blocks(problem, kept.linear, 1.0 / kept.noise, kept.point.derivatives).information
+    return Fitted(kept.point, kept.noise, kept.cost, kept.left, measured, information, kept.linear, done)
 
 
-def own_only(
-    problem: Problem, linear: Sequence[Linear], weights: FloatArray
-) -> tuple[list[FloatArray], list[FloatArray]]:
-    """Own numbers and residuals of every manoeuvre at fixed shared numbers."""
-    owns, lefts = [], []
-    for i, block in enumerate(linear):
-        w = row_weights(problem, i, weights)
-        chol = factor(problem, i, block.own, block.prior, weights)
-        own = solved(chol, (block.own * w[:, None]).T @ (block.left * w))
-        owns.append(own)
-        lefts.append(block.left - block.own @ own)
-    return owns, lefts
+@dataclass(frozen=True)
+class _Place:
+    """A point that was flown, with the step from there."""
+
+    point: Point
+    linear: tuple[Linear, ...]
+    weights: FloatArray
+    """Shape (channels,): of the model after the step."""
+    step: Step
+    left: tuple[FloatArray, ...]
+    """Per manoeuvre, own numbers refitted."""
+    noise: FloatArray
+    cost: float
+
+
+def _settled(problem: Problem, point: Point, linear: tuple[Linear, ...], weights: FloatArray) -> _Place:
+    """Weights and own numbers settle together at a fixed linearisation: cheap, no simulation."""
+    for _ in range(4):
+        step = solve_blocks(problem, linear, weights, point.derivatives)
+        before, weights = weights, 1.0 / noise_of(problem, step.ahead(linear))
+        if np.max(np.abs(np.log(weights / before))) < _SETTLED:
+            break
+    left = tuple(block.left - block.own @ own for block, own in zip(linear, step.free, strict=True))
+    cost = cost_of(problem, point, left, step.free, linear)
+    return _Place(point, linear, weights, step, left, noise_of(problem, left), cost)
 
 
 def bounds_of(point: Point) -> tuple[FloatArray, FloatArray]:

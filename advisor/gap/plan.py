@@ -96,8 +96,9 @@ def foresee_flights(
     ]
     point = Point(derivatives, own).with_effect(input.LATENCY, (0.0,))
     linear = linearise(problem, point)
-    _, _, information, lefts = solve_blocks(problem, linear, 1.0 / noise, 0.0, derivatives)
-    fitted = Fitted(point, noise, 0.0, tuple(lefts), tuple(lefts), information, linear, 0)
+    step = solve_blocks(problem, linear, 1.0 / noise, derivatives)
+    left = tuple(step.ahead(linear))
+    fitted = Fitted(point, noise, 0.0, left, left, step.information, linear, 0)
     marks = Marks(problem, fitted, noise)
     apart = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []
     found = [

@@ -29,6 +29,8 @@ _JITTERS = 3.0
 """Standard deviations of the stamps by which a time must exceed its physical minimum."""
 _PROMISE = 0.7
 """Share of the least that the screening must promise before a full fit is spent on a candidate."""
+_RIVAL = 0.3
+"""Share of the best promise below which a candidate is no rival."""
 LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
 _BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
@@ -99,7 +101,10 @@ def judge(
 ) -> list[Judged]:
     """Full fits of the best variant of the best effects; the best judgement first."""
     chosen: dict[str, Screened] = {}
-    for candidate in candidates:
+    promises = [0.5 * (before.cost - c.cost) + c.belief for c in candidates]
+    for candidate, promise in zip(candidates, promises, strict=True):
+        if promise < _RIVAL * max(promises):
+            continue
         promised = 0.5 * (before.cost - candidate.cost)
         if promised < _PROMISE * LEAST_GAIN and candidate.belief < _PROMISE * LEAST_BELIEF:
             continue

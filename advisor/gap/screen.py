@@ -12,6 +12,9 @@ from advisor.gap.normal import solved
 from advisor.gap.problem import Point, Problem, counts, row_weights
 from advisor.gap.variant import Variant
 
+HARDLY = 6.0
+"""Decrease of the cost (twice the log likelihood) below which a description is not followed any further."""
+
 
 @dataclass(frozen=True)
 class Screened:
@@ -66,6 +69,8 @@ class Screen:
             AJ = A.T @ J
             self.kept.append(_Kept(A, J, chol, AJ, J.T @ J - AJ.T @ solved(chol, AJ)))
         self.count = counts(problem)
+        self.plain: Place | None = None
+        self.plain = self.at(fitted.point)
 
     def try_all(self, variants: list[Variant], believed: Callable[[Point], float]) -> list[Screened]:
         """Quick fits of all, the likeliest description of the data first.
@@ -94,7 +99,13 @@ class Screen:
             return None
         lower, upper = bounds_of(point)
         for n in range(iterations):
-            step = self._step(here)
+            step, promised = self._step(here)
+            if self.fitted.cost - here.cost + promised < HARDLY:
+                # Not worth a flight: what the model says of the step is answer enough.
+                shared = np.clip(here.point.shared + step, lower, upper)
+                return Screened(
+                    variant, here.point.moved(shared, here.point.own), here.cost - promised, here.noise
+                )
             # A first step along numbers that nearly mimic each other may be too long for a linear model.
             for length in (1.0, 0.5, 0.25) if n == 0 else (1.0,):
                 shared = np.clip(here.point.shared + length * step, lower, upper)
@@ -118,10 +129,13 @@ class Screen:
         grids, weighted, after, owns = [], [], [], []
         power = problem.disbelief(point.derivatives)
         for i, kept in enumerate(self.kept):
-            left, grid = problem.parts(i, p[i])
-            if not np.all(np.isfinite(left)):
-                return None
-            r = problem.innovations(i, left[:, None])[:, 0] * self.weights[i]
+            if self.plain is not None and np.array_equal(p[i], self.plain.p[i]):
+                grid, r = self.plain.grids[i], self.plain.weighted[i]
+            else:
+                left, grid = problem.parts(i, p[i])
+                if not np.all(np.isfinite(left)):
+                    return None
+                r = problem.innovations(i, left[:, None])[:, 0] * self.weights[i]
             own = solved(kept.chol, kept.A.T @ r)
             after.append((r - kept.A @ own) / self.weights[i])
             power += float(np.sum(self.fitted.linear[i].prior * own**2))
@@ -134,8 +148,11 @@ class Screen:
             point.moved(point.shared, point.own + np.array(owns)), point, p, grids, weighted, cost, noise
         )
 
-    def _step(self, here: "Place") -> FloatArray:
-        """Step of all shared numbers: the baseline's keep their sensitivities, the effect's get new ones."""
+    def _step(self, here: "Place") -> tuple[FloatArray, float]:
+        """Step of all shared numbers, and the decrease of the cost that it promises.
+
+        The baseline's numbers keep their sensitivities, the effect's get new ones.
+        """
         problem, flown = self.problem, here.flown
         k = len(self.fitted.point.shared)
         ke = len(flown.shared) - k
@@ -156,7 +173,8 @@ class Screen:
             g[k:] += XX[:ke, ke]
         scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
         normal = H / np.outer(scale, scale) + 1e-9 * np.eye(k + ke)
-        return np.asarray(np.linalg.lstsq(normal, g / scale, rcond=1e-12)[0] / scale)
+        step = np.linalg.lstsq(normal, g / scale, rcond=1e-12)[0] / scale
+        return step, float(g @ step)
 
     def _effect_columns(self, here: "Place", which: range) -> list[FloatArray]:
         """Weighted sensitivities to an effect's parameters.

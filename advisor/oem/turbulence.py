@@ -30,6 +30,10 @@ def cost_of(rows: Sequence[Rows], system: FloatArray, air: AirModel) -> float:
     return sum(gains_of(r.t, r.channel, np.append(system, r.speed), air).cost(r.left) for r in rows)
 
 
+_MEMORY_GAIN = 5.0
+"""Log likelihood that noise with a memory must bring over white noise before moving air is looked for."""
+
+
 @dataclass(frozen=True)
 class Turbulence:
     """Whether the residuals look like moving air, and how strongly."""
@@ -65,6 +69,10 @@ def find_turbulence(
     white = np.clip(white, 1e-3 * rms + 1e-9, rms + 1e-9)
     colour = np.sqrt(np.maximum(rms**2 - white**2, (0.1 * rms) ** 2))
     still = _descend(rows, system, AirModel(white, colour, 0.3, 0.0, 1.0, float(seen_by_alpha)), False)
+    plain = AirModel(rms, np.full(4, 1e-12), 0.3, 0.0, 1.0, float(seen_by_alpha))
+    if 0.5 * (cost_of(rows, system, plain) - still[1]) < _MEMORY_GAIN:
+        # Air that moves has a memory; where no channel shows any, there is nothing to tell apart.
+        return Turbulence(0.0, 0.0, still[0])
     moving = min(
         (
             _descend(
