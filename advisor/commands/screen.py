@@ -1,6 +1,5 @@
 """Running a campaign with a screen where there is one, as lines of text where there is none."""
 
-import gc
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -82,8 +81,6 @@ def _show(
 
     conductor = RemoteConductor(Task(open_source, make_campaign))
     app = AdvisorApp(conductor, aircraft, title, tempo, load_settings())
-    # What was imported lives as long as the screens: looking through it for garbage would hold up keys.
-    gc.freeze()
     app.run()
     if app.failure is not None:
         raise app.failure

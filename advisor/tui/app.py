@@ -4,11 +4,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 from math import inf
+from pathlib import PurePath
 from time import monotonic
 from typing import Any, ClassVar
 
 from textual.app import App, SystemCommand
 from textual.binding import BindingType
+from textual.events import Event, InputEvent
 from textual.message import Message
 from textual.screen import Screen
 from textual.worker import Worker, WorkerState
@@ -18,18 +20,22 @@ from advisor.problems import UnusableInputError
 from advisor.tui import keys, replay_actions
 from advisor.tui.conducting import Conducting, Report
 from advisor.tui.explaining import explanation, keys_at_hand
+from advisor.tui.garbage import Garbage
 from advisor.tui.hand import HandDecision
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
+from advisor.tui.sheets import Sheets
 from advisor.tui.source import Tempo
 from advisor.tui.themes import NAMES, THEMES
 from advisor.tui.view import View, view_before_first
 
 _TWICE_WITHIN_S = 3.0
 _AT_ONCE_S = 0.001
+_LEISURE_EVERY_S, _QUIET_S = 0.25, 0.5
+"""So often the application sees whether nobody has pressed a key for so long."""
 
 
 class AdvisorApp(replay_actions.ReplayActions, App[None]):
@@ -50,7 +56,10 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
     """
 
     TITLE = "inflight advisor"
-    CSS_PATH = "styles/app.tcss"
+    # Those of the screens too: read when a screen comes up, they would have the one before it styled anew.
+    CSS_PATH: ClassVar[list[str | PurePath]] = [
+        f"styles/{name}.tcss" for name in ("app", "pilot", "engineer", "explain")
+    ]
     BINDINGS: ClassVar[list[BindingType]] = [*keys.EVERYWHERE, *keys.REPLAY, *keys.SELDOM]
     MODES: ClassVar[dict[str, str | Callable[[], Screen[Any]]]] = {
         "pilot": PilotScreen,
@@ -82,10 +91,13 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         self.conductor = conductor
         self.failure: BaseException | None = None
         """What the caller must answer for: why the thread broke off, or why the input could not be used."""
-        self._leaving_s = -inf
+        self._leaving_s = self._pressed_s = -inf
+        self._garbage = Garbage()
+        self._sheets = Sheets(THEMES)
         for theme in THEMES:
             self.register_theme(theme)
         self.theme = self.settings.theme
+        self.stylesheet = self._sheets.of(self.theme, self.stylesheet)
         # The palette would offer Textual's own, which have no colours for plots.
         for name in set(self.available_themes) - set(NAMES):
             self.unregister_theme(name)
@@ -96,10 +108,25 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         await self.action_face(self.settings.screen)
         run = partial(self.conductor.run, lambda report: self.post_message(self.Told(report)))
         self.call_after_refresh(self.run_worker, run, thread=True, exit_on_error=False)
+        self._garbage.begin()
+        self.set_interval(_LEISURE_EVERY_S, self._at_leisure)
 
     def on_unmount(self) -> None:
         """Let the work end."""
         self.conductor.stop()
+        self._garbage.end()
+
+    async def on_event(self, event: Event) -> None:
+        """Keys come before what can be done at leisure."""
+        if isinstance(event, InputEvent):
+            self._pressed_s = monotonic()
+        await super().on_event(event)
+
+    def _at_leisure(self) -> None:
+        """Do one piece of what would hold up a key."""
+        quiet = monotonic() - self._pressed_s > _QUIET_S
+        if not (quiet and self._sheets.prepare(self.stylesheet)):
+            self._garbage.collect_if_due(quiet)
 
     def on_advisor_app_told(self, event: Told) -> None:
         """Show the newest report."""
@@ -134,6 +161,11 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
             if isinstance(screen, Face):
                 screen.show(self.view)
 
+    def say(self, text: str, seconds: float = 3.0) -> None:
+        """Tell something on the screen, for a while."""
+        if isinstance(self.screen, Face):
+            self.screen.say(text, seconds)
+
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the replay's actions only in a replay."""
         return action not in replay_actions.ACTIONS or self.view.tempo is not None
@@ -153,12 +185,17 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         """Paint at once: by itself Textual hides transitions for 50 ms, which mounted screens do not have."""
         super().delay_update(_AT_ONCE_S)
 
+    def refresh_css(self, animate: bool = True) -> None:
+        """Style everything by the sheet of the theme."""
+        self.stylesheet = self._sheets.of(self.theme, self.stylesheet)
+        super().refresh_css(animate)
+
     def action_next_theme(self) -> None:
         """Switch to the next theme."""
         here = NAMES.index(self.theme) if self.theme in NAMES else -1
         theme = NAMES[(here + 1) % len(NAMES)]
-        self.notify(f"theme: {theme}", timeout=2)
         self.theme = theme
+        self.say(f"theme: {theme}")
 
     def action_explain(self) -> None:
         """Help for what has the focus."""
@@ -179,4 +216,4 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
             self.exit()
             return
         self._leaving_s = monotonic()
-        self.notify("The link is live. Press the key once more to stop advising.", timeout=_TWICE_WITHIN_S)
+        self.say("The link is live. Press the key once more to stop advising.", _TWICE_WITHIN_S)

@@ -60,6 +60,10 @@ class ReplayActions(Base):
     def show(self, view: View) -> None:
         """Show another moment on the screens."""
 
+    @abstractmethod
+    def say(self, text: str, seconds: float = 3.0) -> None:
+        """Tell something on the screen, for a while."""
+
     @property
     def _tempo(self) -> Tempo:
         return self.view.tempo or Tempo()
@@ -71,4 +75,4 @@ class ReplayActions(Base):
 
     def _jump(self, number: int) -> None:
         self.conductor.jump(max(1, number))
-        self.notify(f"jumping to manoeuvre {max(1, number)}", timeout=2)
+        self.say(f"jumping to manoeuvre {max(1, number)}")

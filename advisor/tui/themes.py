@@ -2,13 +2,27 @@
 
 from textual.theme import Theme
 
+_SCROLLBAR, _SCROLLBAR_BACKGROUND = "#808080", "#80808033"
+_IN_EVERY_THEME = {
+    "scrollbar": _SCROLLBAR,
+    "scrollbar-hover": _SCROLLBAR,
+    "scrollbar-active": _SCROLLBAR,
+    "scrollbar-background": _SCROLLBAR_BACKGROUND,
+    "scrollbar-background-hover": _SCROLLBAR_BACKGROUND,
+    "scrollbar-background-active": _SCROLLBAR_BACKGROUND,
+    "scrollbar-corner-color": _SCROLLBAR_BACKGROUND,
+    "link-background-hover": _SCROLLBAR,
+}
+"""Grey stands out from light and from dark. Textual gives these colours to every widget, with a scroll bar or
+without, and each that changes with the theme refreshes all that the widget holds: most of a change's time."""
 
-def _inks(measured: str, fitted: str, residual: str, elevator: str, limit: str, prior: str) -> dict[str, str]:
+
+def _variables(
+    measured: str, fitted: str, residual: str, elevator: str, limit: str, prior: str
+) -> dict[str, str]:
     names = ("measured", "fitted", "residual", "input", "limit", "prior")
-    return {
-        f"ink-{n}": c
-        for n, c in zip(names, (measured, fitted, residual, elevator, limit, prior), strict=True)
-    }
+    inks = zip(names, (measured, fitted, residual, elevator, limit, prior), strict=True)
+    return _IN_EVERY_THEME | {f"ink-{name}": colour for name, colour in inks}
 
 
 THEMES = (
@@ -24,7 +38,7 @@ THEMES = (
         background="#10151b",
         surface="#161d25",
         panel="#1f2933",
-        variables=_inks("#7fb8e6", "#f2c14e", "#c79bf2", "#57cc99", "#ef6461", "#b0b8c0"),
+        variables=_variables("#7fb8e6", "#f2c14e", "#c79bf2", "#57cc99", "#ef6461", "#b0b8c0"),
     ),
     Theme(
         name="light",
@@ -40,7 +54,7 @@ THEMES = (
         panel="#e4e8ec",
         dark=False,
         text_alpha=1.0,
-        variables=_inks("#0057b8", "#b34700", "#6a1b9a", "#00695c", "#b00020", "#444444"),
+        variables=_variables("#0057b8", "#b34700", "#6a1b9a", "#00695c", "#b00020", "#444444"),
     ),
     Theme(
         name="high contrast",
@@ -55,7 +69,7 @@ THEMES = (
         surface="#000000",
         panel="#000000",
         text_alpha=1.0,
-        variables=_inks("#00ffff", "#ffff00", "#ff88ff", "#00ff00", "#ff5555", "#ffffff"),
+        variables=_variables("#00ffff", "#ffff00", "#ff88ff", "#00ff00", "#ff5555", "#ffffff"),
     ),
     # Okabe and Ito's palette: told apart with any of the common colour vision deficiencies.
     Theme(
@@ -70,7 +84,7 @@ THEMES = (
         background="#101010",
         surface="#181818",
         panel="#262626",
-        variables=_inks("#56b4e9", "#e69f00", "#cc79a7", "#009e73", "#d55e00", "#f2f2f2"),
+        variables=_variables("#56b4e9", "#e69f00", "#cc79a7", "#009e73", "#d55e00", "#f2f2f2"),
     ),
 )
 

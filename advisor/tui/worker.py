@@ -16,6 +16,9 @@ from advisor.tui.changes import changes
 from advisor.tui.conducting import Report
 from advisor.tui.conductor import Conductor
 
+_GIVES_WAY = 5
+"""Where processors are scarce, an estimate may come a moment later; the answer to a key may not."""
+
 
 class Reporter:
     """Writes the first report, then what changed in each."""
@@ -46,6 +49,7 @@ def serve(conductor: Conductor, requests: IO[bytes]) -> None:
 
 def main() -> None:
     """Conduct one campaign from its task to its end; what breaks it off is the last message."""
+    os.nice(_GIVES_WAY)
     # An interrupt is for the screens, which then stop this process in order.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # Closed at the end, upon which the other side closes the requests and ``serve`` returns.

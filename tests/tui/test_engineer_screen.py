@@ -120,7 +120,7 @@ async def test_a_decision_by_hand_is_acknowledged_before_it_is_computed(monkeypa
     async with stage(flights.state(3), settings=ENGINEER, size=(80, 24)) as here:
         await filled(here, 3)
         said: list[str] = []
-        monkeypatch.setattr(here.app.screen, "notify", lambda text, **options: said.append(text))
+        monkeypatch.setattr(here.app.screen, "say", said.append)
         monkeypatch.setattr(here.app.conductor, "decide", lambda decision: None)
         await here.press("up", "x", *"gust", "enter")
         assert said == ["exclude manoeuvre 2: every decision is made again"]

@@ -16,6 +16,7 @@ from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
+from advisor.tui.panes.notice import Notice
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.pane_tabs import PaneTabs
 from advisor.tui.panes.parameters import Parameters
@@ -39,7 +40,6 @@ _LOW = 7
 class EngineerScreen(Face):
     """Eight panes: all at once on a wide terminal, one beside or below the manoeuvres on a small one."""
 
-    CSS_PATH = "../styles/engineer.tcss"
     BINDINGS = keys.ENGINEER
     HELP = """\
 # Engineer
@@ -63,6 +63,7 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
                 yield Container(*(pane() for pane in panes), id=column, classes="column")
         yield ReplayBar()
         yield Ask()
+        yield Notice()
         yield KeysLine()
 
     def on_mount(self) -> None:
@@ -130,7 +131,7 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         """Take the selected manoeuvre out of every decision, or in again; ask why."""
         judged = self._view.judged if self._view else None
         if judged is None:
-            self.notify("There is no manoeuvre to exclude yet.")
+            self.say("There is no manoeuvre to exclude yet.")
             return
         verb: Verb = "exclude" if judged.excluded_because is None else "include"
         self._ask(verb, judged.maneuver.number, f"Why {verb} manoeuvre {judged.maneuver.number}?")
@@ -139,7 +140,7 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         """Add a note to the selected manoeuvre."""
         judged = self._view.judged if self._view else None
         if judged is None:
-            self.notify("There is no manoeuvre to note anything on yet.")
+            self.say("There is no manoeuvre to note anything on yet.")
             return
         self._ask("note", judged.maneuver.number, f"Note on manoeuvre {judged.maneuver.number}:")
 
@@ -150,6 +151,4 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         """Hand it on, and say so: the table follows when everything has been computed anew."""
         self.post_message(self.Decided(decision))
         if decision.verb != "note":
-            self.notify(
-                f"{decision.verb} manoeuvre {decision.number}: every decision is made again", timeout=3
-            )
+            self.say(f"{decision.verb} manoeuvre {decision.number}: every decision is made again")

@@ -13,7 +13,6 @@ from textual.widgets import Static
 class Explain(ModalScreen[None]):
     """Shows a text; any of escape, q and ? closes it."""
 
-    CSS_PATH = "../styles/explain.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,question_mark", "dismiss", "Close")]
 
     def __init__(self, page: Text) -> None:

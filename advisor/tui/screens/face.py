@@ -10,6 +10,7 @@ from textual.screen import Screen
 
 from advisor.tui.hand import HandDecision
 from advisor.tui.panes.ask import Ask
+from advisor.tui.panes.notice import Notice
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 
@@ -35,6 +36,10 @@ class Face(Screen[None]):
     def ask(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
         """Ask for one line at the foot of the screen."""
         self.query_one(Ask).put(question, answered, integer=integer)
+
+    def say(self, text: str, seconds: float = 3.0) -> None:
+        """Tell something, for a while."""
+        self.query_one(Notice).say(text, seconds)
 
     def show(self, view: View) -> None:
         """Update every part that wants to be to a new moment."""

@@ -9,6 +9,7 @@ from advisor.tui.panes.crew_notes import CrewNotes
 from advisor.tui.panes.gauge import Gauge
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.last_verdict import LastVerdict
+from advisor.tui.panes.notice import Notice
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.screens.face import Face
@@ -19,7 +20,6 @@ _TALL = 38
 class PilotScreen(Face):
     """Word, verdict, progress, what to fly next; nothing moves unless it matters."""
 
-    CSS_PATH = "../styles/pilot.tcss"
     HELP = """\
 # Pilot
 
@@ -45,6 +45,7 @@ The large word is what to do now:
         yield CrewNotes()
         yield ReplayBar()
         yield Ask()
+        yield Notice()
         yield KeysLine()
 
     def on_resize(self, event: Resize) -> None:
