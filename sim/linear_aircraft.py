@@ -39,8 +39,14 @@ class LinearTerms:
     """rad/s²: the thrust's part of the trimmed moment, which does not grow with dynamic pressure."""
     unsteady_share: float = 0.0
     unsteady_lag: float = 1.0
+    stall_alpha: float = 0.0
+    """rad, where half the flow has separated (Kirchhoff)."""
+    stall_sharpness: float = 0.0
+    """1/rad; 0: the flow always stays attached."""
     Z_h: float = 0.0
     """1/s at the ground, decaying as e^(−h / ground_scale)."""
+    lift_h: float = 0.0
+    """Relative gain of all lift at the ground, decaying likewise."""
     M_h: float = 0.0
     ground_scale: float = 1.0
     speed_scaled: float = 0.0
@@ -71,25 +77,25 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
     lifting = air - m.unsteady_share * (air - late)
     off, off_elevator = air - m.alpha_ref, elevator - m.delta_ref
     gamma = theta - alpha
-    ratio = 1.0
-    z_0, gravity = m.Z_0, 0.0
+    ratio, weight, gravity = 1.0, GRAVITY_M_S2 / m.speed_ref, 0.0
+    wing = m.Z_0 - weight + m.Z_alpha * lifting
     if m.speed_scaled > 0.0:
-        ratio = speed / m.speed_ref
-        z_0 = GRAVITY_M_S2 / speed + (m.Z_0 - GRAVITY_M_S2 / m.speed_ref) * ratio
+        ratio, weight = speed / m.speed_ref, GRAVITY_M_S2 / speed
+    if m.stall_sharpness > 0.0:
+        stalled = 0.5 * (1.0 + math.tanh(m.stall_sharpness * (air - m.stall_alpha)))
+        wing *= ((1.0 + math.sqrt(1.0 - stalled)) / 2.0) ** 2
     if m.gravity > 0.0:
         gravity = GRAVITY_M_S2 / speed * (math.cos(gamma) * math.cos(phi) - 1.0)
     ground = 0.0
-    if m.Z_h != 0.0 or m.M_h != 0.0:
+    if m.Z_h != 0.0 or m.M_h != 0.0 or m.lift_h != 0.0:
         ground = math.exp(-max(height, 0.0) / m.ground_scale)
     alpha_dot = (
-        z_0
+        weight
         + gravity
         + ratio
         * (
-            m.Z_alpha * lifting
-            + m.Z_delta_e * elevator
-            + m.Z_alpha2 * off**2
-            + m.Z_alpha3 * off**3
+            (wing + m.Z_delta_e * elevator + m.Z_alpha2 * off**2 + m.Z_alpha3 * off**3)
+            * (1.0 + m.lift_h * ground)
             + m.Z_h * ground
         )
         + (1.0 + m.Z_q) * q

@@ -14,6 +14,8 @@ from advisor.gap.simulate import GRAVITY_M_S2
 
 STEP_S = 0.005
 LEAST_SAMPLES = 30
+DEPARTED_RAD = 1.0
+"""Swing of the angle of attack that no equation about a trim describes any more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +81,7 @@ class Flights:
 
 
 def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed: bool = True) -> Flights:
-    """Make the manoeuvres ready; those without elevator or pitch rate are left out."""
+    """Make the manoeuvres ready; those without elevator or pitch rate, or that departed, are left out."""
     usable = [m for m in maneuvers if _usable(m)]
     speeds = [
         m.channels["airspeed"].y
@@ -108,7 +110,9 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
 
 def _usable(maneuver: Maneuver) -> bool:
     found = maneuver.channels
-    return all(name in found and len(found[name]) >= LEAST_SAMPLES for name in ("elevator", "q"))
+    if not all(name in found and len(found[name]) >= LEAST_SAMPLES for name in ("elevator", "q")):
+        return False
+    return "alpha" not in found or float(np.ptp(found["alpha"].y)) < DEPARTED_RAD
 
 
 def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, scaled: bool) -> Flight:

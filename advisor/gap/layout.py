@@ -15,7 +15,8 @@ EFFECT_ENTRIES = (
     # moment equation
     "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_throttle", "M_thrust", "M_alpha_dot", "M_h",
     # force equation
-    "Z_alpha2", "Z_alpha3", "lift_share", "lift_lag_s", "Z_h", "scale_m",
+    "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s",
+    "Z_h", "lift_h", "scale_m",
     # step inside a manoeuvre
     "step_at_s", "step_Z_alpha", "step_Z_delta_e", "step_M_alpha", "step_M_delta_e",
     # sensors

@@ -5,7 +5,7 @@ the attitude and, where the speed is measured, derivatives that scale with it. T
 of the candidate effects are in the same loop, each switched off by a zero (``advisor.gap.layout``).
 
     v = V/V_r,  Δα = α − α_trim,  Δδ = δ − δ_trim
-    N  = v (Z_trim + Z_α Δα_e + Z_δe Δδ + ...) + Z_q q              normal force over m·V
+    N  = v (1 + k_h e^(−h/b)) (Z_trim + Z_α Δα_e + Z_δe Δδ + ...) + Z_q q       normal force over m·V
     α̇ = q + G + N,   G = (g/V)(cos α cos θ cos φ + sin α sin θ)
     q̇ = v² (M_trim + M_α Δα + M_δe Δδ + ...) + v (M_q q + M_α̇ α̇) + M_T ΔT + M_P (1 − v²)
     θ̇ = q cos φ,   a_z cos α = V N + a_x sin α
@@ -25,7 +25,7 @@ _I = tuple(INDEX[name] for name in INDEX)
     Z_ALPHA, Z_Q, Z_DELTA, M_ALPHA, M_Q, M_DELTA, ALPHA_START, Q_START, Z_TRIM, M_TRIM,
     DELAY, LAG, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL,
     M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_THROTTLE, M_THRUST, M_ALPHA_DOT, M_H,
-    Z_ALPHA2, Z_ALPHA3, LIFT_SHARE, LIFT_LAG, Z_H, SCALE_H,
+    Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, Z_H, LIFT_H, SCALE_H,
     STEP_AT, STEP_Z_ALPHA, STEP_Z_DELTA, STEP_M_ALPHA, STEP_M_DELTA,
     ALPHA_LAG, ALPHA_SCALE, ALPHA_BIAS, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
@@ -98,6 +98,13 @@ def surface(
 
 
 @njit(cache=True)
+def _attached(beyond: float) -> float:
+    """Share of the lift that is left, the flow separated over half the chord at 0 (Kirchhoff's flow)."""
+    chord = 0.5 * (1.0 - np.tanh(beyond))
+    return float(0.25 * (1.0 + np.sqrt(chord)) ** 2)
+
+
+@njit(cache=True)
 def _beyond(x: float, dead: float) -> float:
     return float(np.sign(x) * max(abs(x) - dead, 0.0))
 
@@ -166,7 +173,8 @@ def simulate(
         cb = np.cos(slow[BANK, j])
         gravity = GRAVITY_M_S2 / V * (ca * ct * cb + sa * st)
         near = np.exp(-slow[HEIGHT, j] / max(p[SCALE_H], 1e-3)) if p[SCALE_H] > 0.0 else 0.0
-        z_c = v * (p[Z_TRIM] + z_d * d + p[Z_H] * near) + force_in
+        z_c = v * p[Z_H] * near + force_in
+        lifting = v * (1.0 + p[LIFT_H] * near)
         m_c = (v * v * (p[M_TRIM] + m_d * d + p[M_DELTA2] * d * d + p[M_DELTA3] * d * d * d + p[M_H] * near)
                + p[M_THROTTLE] * slow[THROTTLE, j] + p[M_THRUST] * (1.0 - v * v) + moment_in)  # fmt: skip
         a0, q0 = alpha, q
@@ -177,11 +185,10 @@ def simulate(
             a_s, q_s = a0 + 0.5 * h * ka, q0 + 0.5 * h * kq
             da = a_s + air - alpha_trim
             lagged = da - p[LIFT_SHARE] * (a_s + air - lift_state)
-            normal = (
-                z_c
-                + v * (z_a * lagged + (p[Z_ALPHA2] + p[Z_ALPHA3] * lagged) * lagged * lagged)
-                + p[Z_Q] * q_s
-            )
+            wing = p[Z_TRIM] + z_a * lagged + (p[Z_ALPHA2] + p[Z_ALPHA3] * lagged) * lagged * lagged
+            if p[SHARPNESS] > 0.0:
+                wing *= _attached(p[SHARPNESS] * (a_s + air - p[STALL]))
+            normal = z_c + lifting * (wing + z_d * d) + p[Z_Q] * q_s
             ka = q_s + gravity + normal
             kq = (m_c + v * v * (m_a * da + (p[M_ALPHA2] + p[M_ALPHA3] * da) * da * da)
                   + v * (p[M_Q] * q_s + p[M_ALPHA_DOT] * ka))  # fmt: skip
@@ -189,7 +196,7 @@ def simulate(
                 normal_0, qdot_0 = normal, kq
         # Outputs belong to the start of the step: there the deflection lies between the means of two steps.
         ahead = 0.5 * (delta[j] - delta[max(j - 1, 0)])
-        normal_0 -= v * z_d * ahead
+        normal_0 -= lifting * z_d * ahead
         qdot_0 -= v * v * m_d * ahead
         vane = alpha + air - p[VANE_ARM] * q / V
         if i > 0:

@@ -15,14 +15,14 @@ _ENDINGS = {
     "_m": (1.0, "m"),
 }
 """Ending of a parameter's name: factor from SI, unit. The longest that fits counts."""
-_SHARES = frozenset({"scale", "step", "change", "share", "damping"})
+_SHARES = frozenset({"scale", "step", "change", "share", "damping", "lift_h"})
 _ICE = frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e"})
 """Changes of derivatives, as a share of them."""
 _OF_DERIVATIVES = {
     "Z_alpha2": "s⁻¹rad⁻¹", "Z_alpha3": "s⁻¹rad⁻²", "Z_h": "s⁻¹",
     "M_alpha2": "s⁻²rad⁻¹", "M_alpha3": "s⁻²rad⁻²", "M_delta2": "s⁻²rad⁻¹", "M_delta3": "s⁻²rad⁻²",
     "M_alpha_dot": "s⁻¹", "M_thrust": "s⁻²", "M_throttle": "s⁻²", "M_h": "s⁻²",
-    "gain": "s⁻¹", "displacement_gain": "s⁻¹",
+    "gain": "s⁻¹", "displacement_gain": "s⁻¹", "sharpness": "rad⁻¹",
 }  # fmt: skip
 _SIGNED = frozenset({"scale", "step", "change", "skew_s", "bias_rad", "bias_rad_s", *_ICE})
 """Parameters whose direction matters to the reader."""

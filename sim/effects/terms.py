@@ -79,8 +79,13 @@ _DERIVATIVES = tuple(name for name in ShortPeriod.__dataclass_fields__ if not na
 
 TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
     "nonlinear_lift": (
-        frozenset({"Z_alpha2", "Z_alpha3"}),
-        _fields(Z_alpha2="Z_alpha2", Z_alpha3="Z_alpha3"),
+        frozenset({"Z_alpha2", "Z_alpha3", "stall_rad", "sharpness"}),
+        _fields(
+            Z_alpha2="Z_alpha2",
+            Z_alpha3="Z_alpha3",
+            stall_rad="stall_alpha",
+            sharpness="stall_sharpness",
+        ),
     ),
     "nonlinear_pitching_moment": (
         frozenset({"M_alpha2", "M_alpha3"}),
@@ -97,8 +102,8 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
     ),
     "unsteady_lift": (frozenset({"share", "lag_s"}), _fields(share="unsteady_share", lag_s="unsteady_lag")),
     "ground_effect": (
-        frozenset({"Z_h", "M_h", "scale_m"}),
-        _fields(Z_h="Z_h", M_h="M_h", scale_m="ground_scale"),
+        frozenset({"Z_h", "lift_h", "M_h", "scale_m"}),
+        _fields(Z_h="Z_h", lift_h="lift_h", M_h="M_h", scale_m="ground_scale"),
     ),
     "airspeed_variation": (frozenset(), _speed),
     "cg_shift": (frozenset({"rate_per_s", "step", "at_s"}), _between_maneuvers(("M_alpha",), inverse=False)),

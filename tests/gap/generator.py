@@ -51,10 +51,11 @@ SWITCHES = {
     "ice_t": 1e9, "ice": 0.0, "height": 1e9, "ground": 0.0,
     "vane_lag": 0.0, "vane_arm": 0.0, "mode_gain": 0.0, "mode_hz": 5.0, "acc_arm": 0.0,
     "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
+    "kink_at": 9.0, "kink_width": 0.02,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
-(LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET, ICE, HEIGHT,
- GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM) = range(len(SWITCHES))  # fmt: skip
+(LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET, ICE, HEIGHT, GROUND,
+ VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM, KINK, KWIDTH) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -103,6 +104,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, out):
             + sw[CLA3] * da**3
             + clq * q * chord / (2 * V)
             + clde * (1 - 0.5 * ice) * de
+            - 0.7 * cla * sw[KWIDTH] * np.log1p(np.exp((a - sw[KINK]) / sw[KWIDTH]))
         )
         cd = cd0 + induced * cl * cl + 3.0 * ice * cd0
         cm = (
@@ -154,6 +156,8 @@ class Setup:
     q_scale: float = 0.0
     skew: dict[str, float] = field(default_factory=dict)
     thrust_amplitude: float = 0.0
+    heights_m: tuple[float, ...] = ()
+    """Height of each manoeuvre above ground, in turn, and logged; none: far above it."""
     gust_std: float = 0.0
     gust_pulse: float = 0.0
     cg_drift: float = 0.0
@@ -198,6 +202,8 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
         command = _soften(command, 0.008)
         sw = np.array([setup.switches.get(k, v) for k, v in SWITCHES.items()])
         sw[ICET] = 1e9 if i < setup.ice_after else -1.0
+        if setup.heights_m:
+            sw[HEIGHT] = setup.heights_m[i % len(setup.heights_m)]
         mass_factor = 1.0 + (setup.mass_step if i >= setup.maneuvers // 2 else 0.0)
         cm_alpha = frame.cm_alpha * (1.0 + setup.cg_drift * i / max(setup.maneuvers - 1, 1))
         body = (
@@ -286,6 +292,9 @@ def _measure(setup, rng, i, t, command, out, start) -> Maneuver:
     add("airspeed", out[4], 10.0, 0.1)
     add("climb_rate", out[6], 10.0, 0.05)
     add("elevator", command, rate, 0.0)
+    if setup.heights_m:
+        height = setup.heights_m[i % len(setup.heights_m)] + np.cumsum(out[6]) * H
+        add("height", height, 10.0, 0.02)
     if setup.thrust_amplitude:
         wave = setup.thrust_amplitude * ((t > start + 1.5) & (t < start + 3.0))
         add("throttle", 0.4 * (1 + wave), rate, 0.0)

@@ -71,6 +71,7 @@ def test_an_effect_in_the_aircraft_file_changes_the_flight(tmp_path):
     ("effect", "sizes"),
     [
         ("nonlinear_lift", {"Z_alpha2": 3.0, "Z_alpha3": 1.0}),
+        ("nonlinear_lift", {"stall_rad": 0.1, "sharpness": 40.0}),
         ("nonlinear_pitching_moment", {"M_alpha2": 20.0, "M_alpha3": 1.0}),
         ("elevator_nonlinearity", {"M_delta2": 30.0, "M_delta3": 10.0}),
         ("alpha_dot", {"M_alpha_dot": -1.0}),
@@ -79,6 +80,7 @@ def test_an_effect_in_the_aircraft_file_changes_the_flight(tmp_path):
         ("mass_change", {"rate_per_s": 0.01}),
         ("icing", {"Z_alpha": -0.2, "M_alpha": -0.2, "at_s": 35.0}),
         ("ground_effect", {"Z_h": -0.05, "M_h": 0.05, "scale_m": 100.0}),
+        ("ground_effect", {"lift_h": 0.2, "scale_m": 100.0}),
         ("thrust_moment", {"M_throttle": 1.0}),
         ("structural_mode", {"gain": 2.0, "frequency_hz": 3.0, "damping": 0.05}),
         ("alpha_skew", {"skew_s": -0.05}),

@@ -1,5 +1,7 @@
 """The force equation: curved and unsteady lift, mass, ice, the ground."""
 
+import numpy as np
+
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import breaks, divide, ramps_and_steps
 from advisor.gap.data import Flights
@@ -33,8 +35,21 @@ def variants(flights: Flights) -> list[Variant]:
             0.01,
             entries=("lift_share", "lift_lag_s"),
         ),
+        *_stall(flights),
         *ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES)),
         *_icing(flights),
+        # Near the ground all lift grows by a share; a trim that is merely another adds the same at any lift.
+        Variant(
+            "ground_effect",
+            BLOCK,
+            ("lift_h", "M_h", "scale_m"),
+            ((0.0, 0.0, 1.0), (0.0, 0.0, 5.0)),
+            (0.02, 0.2, 0.1),
+            ((-0.9, 3.0), (-500.0, 500.0), (0.1, 50.0)),
+            0.0,
+            entries=("lift_h", "M_h", "scale_m"),
+            needs=frozenset({"height"}),
+        ),
         Variant(
             "ground_effect",
             BLOCK,
@@ -46,6 +61,26 @@ def variants(flights: Flights) -> list[Variant]:
             entries=("Z_h", "M_h", "scale_m"),
             needs=frozenset({"height"}),
         ),
+    ]
+
+
+def _stall(flights: Flights) -> list[Variant]:
+    """Flow that separates about some angle of attack (Kirchhoff's flow): a kink, which no parabola is."""
+    if "alpha" not in flights.channels:
+        return []
+    trim = float(np.median([f.trim[0] for f in flights.flights]))
+    top = max(float(np.max(f.outputs["alpha"].y)) for f in flights.flights)
+    return [
+        Variant(
+            "nonlinear_lift",
+            BLOCK,
+            ("stall_rad", "sharpness"),
+            ((trim + 0.5 * (top - trim), 40.0), (top, 40.0), (top + 0.03, 20.0)),
+            (0.002, 0.5),
+            ((0.0, 1.0), (2.0, 200.0)),
+            0.0,
+            entries=("stall_rad", "stall_sharpness"),
+        )
     ]
 
 
