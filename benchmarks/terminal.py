@@ -76,22 +76,27 @@ class Terminal:
         self._process = subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs, env=env)
         os.close(theirs)
 
+    def read(self) -> bytes:
+        """What was painted since, put on the page too; nothing if nothing comes at once."""
+        if not select.select([self._ours], [], [], 0.01)[0]:
+            return b""
+        said = os.read(self._ours, 1 << 16)
+        self.page.feed(said)
+        return said
+
     def until(self, shown: Callable[[str], bool], patience_s: float = 20.0) -> float:
         """Read until the page is as wanted; seconds since the call."""
         begun = time.perf_counter()
         while time.perf_counter() - begun < patience_s:
-            if select.select([self._ours], [], [], 0.01)[0]:
-                self.page.feed(os.read(self._ours, 1 << 16))
-                if shown(self.page.text):
-                    return time.perf_counter() - begun
+            if self.read() and shown(self.page.text):
+                return time.perf_counter() - begun
         raise TimeoutError(f"the screen never came to that:\n{self.page.text}")
 
     def watch(self, seconds: float) -> None:
         """Read whatever is painted."""
         end = time.perf_counter() + seconds
         while time.perf_counter() < end:
-            if select.select([self._ours], [], [], 0.01)[0]:
-                self.page.feed(os.read(self._ours, 1 << 16))
+            self.read()
 
     def press(self, keys: bytes) -> None:
         """Type."""

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from textual.app import App, SystemCommand
 from textual.binding import BindingType
-from textual.events import Event, InputEvent
+from textual.events import Event, Key
 from textual.message import Message
 from textual.screen import Screen
 from textual.worker import Worker, WorkerState
@@ -34,8 +34,8 @@ from advisor.tui.view import View, view_before_first
 
 _TWICE_WITHIN_S = 3.0
 _AT_ONCE_S = 0.001
-_LEISURE_EVERY_S, _QUIET_S = 0.25, 0.5
-"""So often the application sees whether nobody has pressed a key for so long."""
+_BREATH_S, _QUIET_S = 0.02, 0.5
+"""What would hold up a key is done so long after the answer to one, and when none has come for so long."""
 
 
 class AdvisorApp(replay_actions.ReplayActions, App[None]):
@@ -109,7 +109,7 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         run = partial(self.conductor.run, lambda report: self.post_message(self.Told(report)))
         self.call_after_refresh(self.run_worker, run, thread=True, exit_on_error=False)
         self._garbage.begin()
-        self.set_interval(_LEISURE_EVERY_S, self._at_leisure)
+        self.set_interval(_QUIET_S, self._tidy_if_quiet)
 
     def on_unmount(self) -> None:
         """Let the work end."""
@@ -117,16 +117,21 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         self._garbage.end()
 
     async def on_event(self, event: Event) -> None:
-        """Keys come before what can be done at leisure."""
-        if isinstance(event, InputEvent):
-            self._pressed_s = monotonic()
+        """Answer a key; the moment after is the best one to tidy up."""
         await super().on_event(event)
+        if isinstance(event, Key):
+            self._pressed_s = monotonic()
+            self.call_after_refresh(self.set_timer, _BREATH_S, self._tidy)
 
-    def _at_leisure(self) -> None:
+    def _tidy_if_quiet(self) -> None:
+        """Tidy up when no key is being answered."""
+        if monotonic() - self._pressed_s > _QUIET_S:
+            self._tidy()
+
+    def _tidy(self) -> None:
         """Do one piece of what would hold up a key."""
-        quiet = monotonic() - self._pressed_s > _QUIET_S
-        if not (quiet and self._sheets.prepare(self.stylesheet)):
-            self._garbage.collect_if_due(quiet)
+        if not self._sheets.prepare(self.stylesheet):
+            self._garbage.collect_if_due()
 
     def on_advisor_app_told(self, event: Told) -> None:
         """Show the newest report."""
@@ -162,7 +167,7 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
                 screen.show(self.view)
 
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something on the screen, for a while."""
+        """Tell something on the last line of the screen, for a while."""
         if isinstance(self.screen, Face):
             self.screen.say(text, seconds)
 

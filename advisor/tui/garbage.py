@@ -1,34 +1,34 @@
 """Looking for garbage while nobody waits.
 
-A full collection visits every object there is and holds everything up for 10 to 50 ms. Python begins one
-whenever enough objects have outlived the collections of the young: most often amid what a key has set off.
+Python looks whenever enough objects were made, which is most often amid what a key has set off: every few
+milliseconds at those just made, and now and then at all there are, which holds everything up for 10 to 50 ms.
 """
 
 import gc
 
-_NEVER = 1_000_000
-_OVERDUE = 20
-"""Times Python's own threshold, at which a collection waits no longer."""
+_LOT = 5_000
+"""New objects worth a look, of a millisecond; repainting a large screen makes five times as many."""
+_LOTS = 5
+"""After so many, what was left of them is looked at with all the rest."""
 
 
 class Garbage:
-    """Full collections when told that nobody waits; those of the young take a millisecond and go on."""
-
-    def __init__(self) -> None:
-        self._usual = gc.get_threshold()
+    """Collections when told that nobody waits, instead of Python's own."""
 
     def begin(self) -> None:
         """Take over. What was imported so far lives as long as the application and is not looked at again."""
         gc.freeze()
-        gc.set_threshold(*self._usual[:2], _NEVER)
+        gc.disable()
 
     def end(self) -> None:
         """Give back."""
-        gc.set_threshold(*self._usual)
+        gc.enable()
         gc.unfreeze()
 
-    def collect_if_due(self, quiet: bool) -> None:
-        """Collect if Python would have by now; while keys come in, only if it would have long ago."""
-        waiting, enough = gc.get_count()[2], self._usual[2]
-        if waiting > enough * (1 if quiet else _OVERDUE):
+    def collect_if_due(self) -> None:
+        """Collect if there is enough to look at."""
+        new, lots, _ = gc.get_count()
+        if lots >= _LOTS:
             gc.collect()
+        elif new >= _LOT:
+            gc.collect(0)

@@ -62,7 +62,7 @@ class ReplayActions(Base):
 
     @abstractmethod
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something on the screen, for a while."""
+        """Tell something on the last line of the screen, for a while."""
 
     @property
     def _tempo(self) -> Tempo:

@@ -1,21 +1,25 @@
-"""The keys that work now, on the last line of every screen."""
+"""The last line of every screen: the keys that work now, or for a while what has just been done."""
 
 from rich.style import Style
 from rich.text import Text
 from textual.binding import Binding
 from textual.screen import Screen
+from textual.timer import Timer
 from textual.widgets import Static
 
 
 class KeysLine(Static):
     """Key and what it does, in the order of their worth; a click on one presses it.
 
-    One line of text where Textual's footer mounts a widget for every key anew whenever the focus moves.
+    One line of text where Textual's footer mounts a widget for every key anew whenever the focus moves. What
+    is said takes the same line and needs no new layout, where Textual's toasts come up a repaint later.
     """
 
     def __init__(self) -> None:
         super().__init__()
         self._keys: list[tuple[str, str, str]] = []
+        self._said = ""
+        self._until: Timer | None = None
 
     def on_mount(self) -> None:
         """Follow what has the focus."""
@@ -23,6 +27,18 @@ class KeysLine(Static):
 
     def on_resize(self) -> None:
         """Show as many as have room."""
+        self._write()
+
+    def say(self, text: str, seconds: float) -> None:
+        """Tell something in place of the keys; what is still told is replaced."""
+        if self._until is not None:
+            self._until.stop()
+        self._until = self.set_timer(seconds, self._said_enough)
+        self._said = text
+        self._write()
+
+    def _said_enough(self) -> None:
+        self._said = ""
         self._write()
 
     def _follow(self, screen: Screen[object]) -> None:
@@ -36,8 +52,8 @@ class KeysLine(Static):
             self._write()
 
     def _write(self) -> None:
-        line = Text(no_wrap=True)
-        for key, display, does in self._keys:
+        line = Text(f" {self._said} " if self._said else "", Style(reverse=True), no_wrap=True)
+        for key, display, does in self._keys if not self._said else ():
             if line.cell_len + len(display) + len(does) + 2 > self.size.width:
                 break
             press = {"@click": f"app.simulate_key('{key}')"}

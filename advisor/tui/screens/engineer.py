@@ -16,7 +16,6 @@ from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
-from advisor.tui.panes.notice import Notice
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.pane_tabs import PaneTabs
 from advisor.tui.panes.parameters import Parameters
@@ -63,7 +62,6 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
                 yield Container(*(pane() for pane in panes), id=column, classes="column")
         yield ReplayBar()
         yield Ask()
-        yield Notice()
         yield KeysLine()
 
     def on_mount(self) -> None:

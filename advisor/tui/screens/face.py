@@ -10,7 +10,7 @@ from textual.screen import Screen
 
 from advisor.tui.hand import HandDecision
 from advisor.tui.panes.ask import Ask
-from advisor.tui.panes.notice import Notice
+from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 
@@ -38,8 +38,8 @@ class Face(Screen[None]):
         self.query_one(Ask).put(question, answered, integer=integer)
 
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something, for a while."""
-        self.query_one(Notice).say(text, seconds)
+        """Tell something on the last line, for a while."""
+        self.query_one(KeysLine).say(text, seconds)
 
     def show(self, view: View) -> None:
         """Update every part that wants to be to a new moment."""

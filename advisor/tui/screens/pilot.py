@@ -9,7 +9,6 @@ from advisor.tui.panes.crew_notes import CrewNotes
 from advisor.tui.panes.gauge import Gauge
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.last_verdict import LastVerdict
-from advisor.tui.panes.notice import Notice
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.screens.face import Face
@@ -45,7 +44,6 @@ The large word is what to do now:
         yield CrewNotes()
         yield ReplayBar()
         yield Ask()
-        yield Notice()
         yield KeysLine()
 
     def on_resize(self, event: Resize) -> None:
