@@ -37,6 +37,10 @@ class LinearTerms:
     """rad/s² per unit of throttle away from trim."""
     M_thrust: float = 0.0
     """rad/s²: the thrust's part of the trimmed moment, which does not grow with dynamic pressure."""
+    washed_share: float = 0.0
+    """Of the elevator's power: what does not grow with dynamic pressure, the propeller blowing on it."""
+    blown_share: float = 0.0
+    """Of the elevator's power: what grows with the excess of thrust over drag, per unit of weight."""
     unsteady_share: float = 0.0
     unsteady_lag: float = 1.0
     stall_alpha: float = 0.0
@@ -69,7 +73,7 @@ MODEL_RECORD = np.dtype(
 
 @njit(cache=True)
 def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArray[np.float64]) -> None:
-    """Fill ``dx`` from x = [α, q, θ, h, φ, p, α_late] and u = [δe, throttle, aileron, w, V, ΔZ, ΔM]."""
+    """Fill ``dx`` from x = [α, q, θ, h, φ, p, α_late] and u = [δe, throttle, aileron, w, V, ΔZ, ΔM, V̇]."""
     m = model[0]
     alpha, q, theta, height, phi, p, late = x[0], x[1], x[2], x[3], x[4], x[5], x[6]
     elevator, speed = u[0], u[4]
@@ -115,7 +119,8 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
             + m.M_h * ground
         )
         + m.M_throttle * (u[1] - m.throttle_ref)
-        + m.M_thrust * (1.0 - ratio**2)
+        + (m.M_thrust + m.washed_share * m.M_delta_e * off_elevator) * (1.0 - ratio**2)
+        + m.blown_share * m.M_delta_e * off_elevator * (u[7] / GRAVITY_M_S2 + math.sin(gamma))
         + u[6]
     )
     dx[0] = alpha_dot
@@ -171,7 +176,7 @@ class LinearAircraft:
         """m/s; constant unless an effect or a replayed record moves it."""
         self.airspeed_dot = 0.0
         self._state = np.array([alpha, 0.0, alpha, height_m, 0.0, 0.0, alpha])
-        self._inputs = np.array([elevator, throttle, 0.0, 0.0, airspeed_m_s, 0.0, 0.0])
+        self._inputs = np.array([elevator, throttle, 0.0, 0.0, airspeed_m_s, 0.0, 0.0, 0.0])
         self._before = self._inputs.copy()
         self._rates = np.empty_like(self._state)
         rates(self._state, self._inputs, self.record, self._rates)
@@ -180,7 +185,7 @@ class LinearAircraft:
         """Return the motion now."""
         alpha, q, theta, height, phi, p, _ = self._state.tolist()
         alpha_dot, q_dot, _, climb, _, _, _ = self._rates.tolist()
-        elevator, throttle, _, gust_up, speed, _, _ = self._inputs.tolist()
+        elevator, throttle, _, gust_up, speed, _, _, _ = self._inputs.tolist()
         turning = speed * (alpha_dot - q)
         along = self.airspeed_dot
         sin_a, cos_a = math.sin(alpha), math.cos(alpha)
@@ -211,6 +216,8 @@ class LinearAircraft:
         """
         self._before, self._inputs = self._inputs, self._before
         elevator, throttle, aileron, gust_up, _, extra_z, extra_m = controls
-        self._inputs[:] = (elevator, throttle, aileron, gust_up, self.airspeed, extra_z, extra_m)
+        self._inputs[:] = (
+            elevator, throttle, aileron, gust_up, self.airspeed, extra_z, extra_m, self.airspeed_dot
+        )  # fmt: skip
         step(self._state, self._before, self._inputs, self.record, dt, self._rates)
         return self.motion()

@@ -10,6 +10,9 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulate import GRAVITY_M_S2
 
+_SLOW_S = 1.0
+"""Over which the thrust's excess is averaged: quicker than the speed it changes, slower than the noise."""
+
 
 def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
     """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,)."""
@@ -34,8 +37,19 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
     return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else _smoothed(grid, t, y)
 
 
-def _smoothed(grid: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
-    """Moving mean over half a second of the linear interpolation."""
+def along_the_path(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
+    """Thrust less drag over mass, m/s², shape (n,): a_x cos α + a_z sin α; 0 where it was not measured."""
+    found = maneuver.channels
+    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "alpha")):
+        return np.zeros(len(grid))
+    t = found["a_z"].t
+    alpha, a_x = (np.interp(t, found[name].t, found[name].y) for name in ("alpha", "a_x"))
+    along = a_x * np.cos(alpha) + found["a_z"].y * np.sin(alpha)
+    return _smoothed(grid, t - start_s, along, seconds=_SLOW_S)
+
+
+def _smoothed(grid: FloatArray, t: FloatArray, y: FloatArray, seconds: float = 0.5) -> FloatArray:
+    """Moving mean of the linear interpolation."""
     fine = np.interp(grid, t, y)
-    width = max(1, round(0.5 / float(grid[1] - grid[0]))) | 1
+    width = max(1, round(seconds / float(grid[1] - grid[0]))) | 1
     return np.convolve(np.pad(fine, width // 2, mode="edge"), np.full(width, 1.0 / width), mode="valid")

@@ -6,9 +6,12 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import KinematicCheck
+from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.moment import PROPELLER
 from advisor.gap.causes import block_ranking
 from advisor.gap.evidence import Evidence
+from advisor.gap.fit import Fitted
 from advisor.gap.foresee import unseen_effects
 from advisor.gap.holdout import hold_out
 from advisor.gap.judgement import judgement
@@ -25,7 +28,7 @@ from advisor.gap.numbers import (
     without_air,
 )
 from advisor.gap.result import Cause, Diagnosis, Verdict, Where
-from advisor.gap.score import shared_std, worth
+from advisor.gap.score import LEAST_SIGMA, shared_std, worth
 from advisor.gap.text import sentence_of
 
 
@@ -61,11 +64,24 @@ def answer(
         cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), floor, present),
         kinematics=kinematics, model=model_of(problem, fitted, std),
         reference_airspeed_m_s=problem.flights.reference_m_s if problem.flights.speed_measured else None,
-        effects={c.effect: {k: v.value for k, v in c.parameters.items()} for c in causes if c.present},
+        effects=_improvements(fitted, std, causes),
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         notes=_notes(e, aircraft), maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
     return replace(diagnosis, sentence=sentence_of(diagnosis))
+
+
+def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) -> dict[str, dict[str, float]]:
+    """What the improved simulator gets: the named effects, and the propeller's share where it shows."""
+    effects = {c.effect: {k: v.value for k, v in c.parameters.items()} for c in causes if c.present}
+    at = len(fitted.point.derivatives)
+    for variant, values in zip(fitted.point.effects, fitted.point.values, strict=True):
+        error = std[at : at + len(values)]
+        if variant is PROPELLER and np.any(np.abs(values) > LEAST_SIGMA * error):
+            thrust = effects.setdefault("thrust_moment", {})
+            thrust.update(zip(variant.names, map(float, values), strict=True))
+        at += len(values)
+    return effects
 
 
 def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:

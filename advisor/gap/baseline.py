@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates import input
+from advisor.gap.candidates.catalogue import everywhere
 from advisor.gap.command import read_command, with_latency
 from advisor.gap.data import Flight, Flights
 from advisor.gap.fit import Fitted, fit
@@ -99,7 +99,7 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )
-    fitted = fit(problem, first_guess(flights, aircraft).with_effect(input.LATENCY, (0.001,)))
+    fitted = fit(problem, everywhere(first_guess(flights, aircraft), flights, latency_s=0.001))
     fitted = with_latency(problem, fitted)
     problem, fitted = read_command(*_filtered(problem, fitted, first_look=True))
     # The noise is seen through the fit, and the fit made by the noise: the second round is the last.

@@ -1,6 +1,6 @@
 """Manoeuvres made ready: command at its stamps, slow inputs on the grid, outputs untouched."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -8,9 +8,9 @@ import numpy as np
 from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.gap.airspeed import airspeed_on
+from advisor.gap.airspeed import airspeed_on, along_the_path
 from advisor.gap.layout import OUTPUTS
-from advisor.gap.simulate import GRAVITY_M_S2
+from advisor.gap.simulate import GRAVITY_M_S2, THRUST
 
 STEP_S = 0.005
 LEAST_SAMPLES = 30
@@ -43,7 +43,7 @@ class Flight:
     """The elevator command at its stamps, rad."""
     u_trim: float
     slow: FloatArray
-    """Shape (5, n): speed, a_x, bank, throttle, height on the grid."""
+    """Shape (6, n): speed, a_x, bank, throttle, height, and thrust less drag over weight, on the grid."""
     trim: FloatArray
     """Shape (4,): α and θ at the start, reference speed, 1 when derivatives scale with speed."""
     outputs: Mapping[str, Measured]
@@ -95,7 +95,7 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
     else:
         reference, moves = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 20.0, 0.0
     scaled = measured and scale_with_speed
-    flights = tuple(_ready(m, aircraft, reference, measured, scaled) for m in usable)
+    flights = _about_their_mean(_ready(m, aircraft, reference, measured, scaled) for m in usable)
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
     flights = tuple(_with_rows(f, channels) for f in flights)
@@ -106,6 +106,16 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
     )
     derived = any(m.channels["alpha"].provenance == "derived" for m in usable if "alpha" in m.channels)
     return Flights(flights, channels, measured, reference, moves, derived, has)
+
+
+def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:
+    """The same with the thrust's excess counted from its mean over all manoeuvres."""
+    found = tuple(flights)
+    if found:
+        mean = float(np.mean(np.concatenate([f.slow[THRUST] for f in found])))
+        for flight in found:
+            flight.slow[THRUST] -= mean
+    return found
 
 
 def _usable(maneuver: Maneuver) -> bool:
@@ -134,7 +144,8 @@ def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, sc
     bank = smooth(on_grid("bank", 0.0), 0.1)
     throttle = on_grid("throttle", 0.0)
     height = on_grid("height", 1e3)
-    slow = np.vstack([speed, a_x, bank, throttle - float(np.mean(throttle[:20])), height])
+    along = along_the_path(grid, m, start) / GRAVITY_M_S2
+    slow = np.vstack([speed, a_x, bank, throttle - float(np.mean(throttle[:20])), height, along])
     outputs = _outputs(m, start, end)
     t_u, u = m.channels["elevator"].t - start, m.channels["elevator"].y
     lead = (t_u >= 0.0) & (t_u < max(first - 0.02, 0.1))

@@ -13,7 +13,8 @@ EFFECT_ENTRIES = (
     # input
     "delay_s", "lag_s", "slowness_s_rad", "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad",
     # moment equation
-    "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_throttle", "M_thrust", "M_alpha_dot", "M_h",
+    "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_alpha_dot", "M_h",
+    "M_throttle", "M_thrust", "washed_share", "blown_share",
     # force equation
     "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s",
     "Z_h", "lift_h", "scale_m",

@@ -19,7 +19,7 @@ _NO_A_Z = ("no vertical acceleration", "RAW_IMU at 50 Hz")
 _NO_THETA = ("no attitude", "ATTITUDE at 50 Hz")
 _FEW = ("fewer than three manoeuvres", "repeat the same manoeuvre early and late")
 NEEDS = {
-    "thrust_moment": Need("M_thrust", "speed and throttle did not move", "two air speeds; VFR_HUD at 10 Hz"),
+    "thrust_moment": Need("M_throttle", "the throttle did not move", "two air speeds; VFR_HUD at 10 Hz"),
     "ground_effect": Need("Z_h", "height above ground not varied", "fly low and high with a range finder"),
     "alpha_dot": Need("M_alpha_dot", "the derivatives mimic it", "pulses of a flap, which move α and not q"),
     "alpha_bias": Need("bias_rad", "no climb rate", "VFR_HUD and ATTITUDE at 10 Hz"),

@@ -9,8 +9,7 @@ from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 from advisor.gap.baseline import base_entries, believed_derivatives
-from advisor.gap.candidates import input
-from advisor.gap.candidates.catalogue import BLOCK_OF, variants_for
+from advisor.gap.candidates.catalogue import BLOCK_OF, everywhere, variants_for
 from advisor.gap.data import LEAST_SAMPLES, Flights, prepare
 from advisor.gap.fit import Fitted, solve_blocks
 from advisor.gap.foresee import Foreseen, foresee
@@ -94,7 +93,7 @@ def foresee_flights(
         -GRAVITY_M_S2 * (f.trim[2] if f.trim[3] else f.slow[0, 0]) / f.slow[0, 0] ** 2
         for f in flights.flights
     ]
-    point = Point(derivatives, own).with_effect(input.LATENCY, (0.0,))
+    point = everywhere(Point(derivatives, own), flights)
     linear = linearise(problem, point)
     step = solve_blocks(problem, linear, 1.0 / noise, derivatives)
     left = tuple(step.ahead(linear))

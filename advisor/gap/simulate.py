@@ -24,7 +24,7 @@ _I = tuple(INDEX[name] for name in INDEX)
 (
     Z_ALPHA, Z_Q, Z_DELTA, M_ALPHA, M_Q, M_DELTA, ALPHA_START, Q_START, Z_TRIM, M_TRIM,
     DELAY, LAG, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL,
-    M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_THROTTLE, M_THRUST, M_ALPHA_DOT, M_H,
+    M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, M_THRUST, WASHED, BLOWN,
     Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, Z_H, LIFT_H, SCALE_H,
     STEP_AT, STEP_Z_ALPHA, STEP_Z_DELTA, STEP_M_ALPHA, STEP_M_DELTA,
     ALPHA_LAG, ALPHA_SCALE, ALPHA_BIAS, VANE_ARM, Q_BIAS, Q_SCALE,
@@ -32,7 +32,7 @@ _I = tuple(INDEX[name] for name in INDEX)
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY,
 ) = _I  # fmt: skip
 # Rows of the slow inputs, one value a step.
-SPEED, A_X, BANK, THROTTLE, HEIGHT = range(5)
+SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST = range(6)
 # Rows of the disturbances, one value a step: added to δ, α̇, q̇ and to the angle of the air.
 DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = range(4)
 
@@ -122,7 +122,8 @@ def simulate(
     delta
         Shape (n,). Mean deflection over each step relative to trim, from ``surface``.
     slow
-        Shape (5, n). Speed m/s, a_x m/s², bank rad, throttle relative to its mean, height m.
+        Shape (6, n). Speed m/s, a_x m/s², bank rad, throttle relative to its start, height m, and thrust
+        less drag over weight, less its mean.
     disturbance
         Shape (4, n), or (4, 0) for none: added to δ, α̇, q̇ and the angle of the air.
     trim
@@ -175,7 +176,9 @@ def simulate(
         near = np.exp(-slow[HEIGHT, j] / max(p[SCALE_H], 1e-3)) if p[SCALE_H] > 0.0 else 0.0
         z_c = v * p[Z_H] * near + force_in
         lifting = v * (1.0 + p[LIFT_H] * near)
-        m_c = (v * v * (p[M_TRIM] + m_d * d + p[M_DELTA2] * d * d + p[M_DELTA3] * d * d * d + p[M_H] * near)
+        tail = v * v + p[WASHED] * (1.0 - v * v) + p[BLOWN] * slow[THRUST, j]
+        m_c = (tail * m_d * d
+               + v * v * (p[M_TRIM] + p[M_DELTA2] * d * d + p[M_DELTA3] * d * d * d + p[M_H] * near)
                + p[M_THROTTLE] * slow[THROTTLE, j] + p[M_THRUST] * (1.0 - v * v) + moment_in)  # fmt: skip
         a0, q0 = alpha, q
         ka, kq = 0.0, 0.0
@@ -197,7 +200,7 @@ def simulate(
         # Outputs belong to the start of the step: there the deflection lies between the means of two steps.
         ahead = 0.5 * (delta[j] - delta[max(j - 1, 0)])
         normal_0 -= lifting * z_d * ahead
-        qdot_0 -= v * v * m_d * ahead
+        qdot_0 -= tail * m_d * ahead
         vane = alpha + air - p[VANE_ARM] * q / V
         if i > 0:
             if vane_tau > 1e-6:

@@ -120,9 +120,9 @@ def _rebuilt(
 
 
 def _only(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
-    """The model with some of its effects; what every model has (the command's latency) stays."""
+    """The model with some of its effects; what is part of every model stays."""
     point = full.point
-    keep = [0, *(k for k, v in enumerate(point.effects) if v.effect in names)]
+    keep = [k for k, v in enumerate(point.effects) if v.always or v.effect in names]
     start = replace(
         point, effects=tuple(point.effects[k] for k in keep), values=tuple(point.values[k] for k in keep)
     )

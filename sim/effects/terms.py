@@ -97,8 +97,13 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
     ),
     "alpha_dot": (frozenset({"M_alpha_dot"}), _fields(M_alpha_dot="M_alpha_dot")),
     "thrust_moment": (
-        frozenset({"M_throttle", "M_thrust"}),
-        _fields(M_throttle="M_throttle", M_thrust="M_thrust"),
+        frozenset({"M_throttle", "M_thrust", "washed_share", "blown_share"}),
+        _fields(
+            M_throttle="M_throttle",
+            M_thrust="M_thrust",
+            washed_share="washed_share",
+            blown_share="blown_share",
+        ),
     ),
     "unsteady_lift": (frozenset({"share", "lag_s"}), _fields(share="unsteady_share", lag_s="unsteady_lag")),
     "ground_effect": (

@@ -2,6 +2,7 @@
 
 from advisor.gap.candidates import force, input, moment, sensors, timing
 from advisor.gap.data import Flights
+from advisor.gap.problem import Point
 from advisor.gap.variant import Variant
 
 BLOCK_OF = {
@@ -26,6 +27,12 @@ _CHANNEL_OF = {
     "alpha_lag": "alpha", "alpha_scale": "alpha", "alpha_vane_offset": "alpha", "alpha_skew": "alpha",
     "accelerometer_offset": "a_z", "accelerometer_skew": "a_z", "attitude_skew": "theta",
 }  # fmt: skip
+
+
+def everywhere(point: Point, flights: Flights, latency_s: float = 0.0) -> Point:
+    """The point with what is part of every model."""
+    late = point.with_effect(input.LATENCY, (latency_s,))
+    return late.with_effect(moment.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 
 
 def variants_for(flights: Flights) -> list[Variant]:

@@ -20,6 +20,7 @@ LATENCY = Variant(
     ((-0.004, 0.005),),
     0.0,
     entries=("latency_s",),
+    always=True,
 )
 """Part of every model: stamps have a resolution, and a command takes effect a few milliseconds after."""
 

@@ -7,6 +7,21 @@ from advisor.gap.variant import Variant
 BLOCK = "moment_equation"
 
 
+PROPELLER = Variant(
+    "propeller",
+    BLOCK,
+    ("M_thrust", "washed_share", "blown_share"),
+    ((0.0, 0.0, 0.0),),
+    (0.05, 0.05, 0.05),
+    ((-100.0, 100.0), (-1.0, 2.0), (-2.0, 2.0)),
+    0.0,
+    entries=("M_thrust", "washed_share", "blown_share"),
+    always=True,
+)
+"""Part of every model where the speed is measured: the thrust's share of the trim does not grow with V², nor
+does the power of an elevator as far as it lies in the propeller's wash."""
+
+
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block; those between manoeuvres depend on how many were flown."""
     return [
@@ -33,13 +48,12 @@ def variants(flights: Flights) -> list[Variant]:
         Variant(
             "thrust_moment",
             BLOCK,
-            # What the throttle changes, and the thrust's own part of the trim, which does not grow with V².
-            ("M_throttle", "M_thrust"),
-            ((0.0, 0.0),),
-            (0.05, 0.05),
-            ((-100.0, 100.0), (-100.0, 100.0)),
+            ("M_throttle",),
+            ((0.0,),),
+            (0.05,),
+            ((-100.0, 100.0),),
             0.0,
-            entries=("M_throttle", "M_thrust"),
+            entries=("M_throttle",),
             needs=frozenset({"throttle"}),
         ),
         Variant(
