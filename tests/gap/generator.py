@@ -55,7 +55,8 @@ SWITCHES = {
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
- ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM, KINK, KWIDTH) = range(len(SWITCHES))  # fmt: skip
+ ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
+ KINK, KWIDTH) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
