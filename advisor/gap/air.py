@@ -15,6 +15,7 @@ from advisor.gap.holdout import mean_squares
 from advisor.gap.noise import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
 from advisor.gap.probes import KNOTS_S, disturbance_course
 from advisor.gap.problem import Problem
+from advisor.gap.score import Judged
 from advisor.oem.innovations import CHANNELS
 from advisor.oem.turbulence import find_turbulence
 
@@ -25,6 +26,13 @@ AIR_MANEUVERS = 5
 
 LEAST_GUST_ANGLE = 0.001
 """Gust angle below which it is not worth a name, rad."""
+
+_OF_AIR = 0.02
+"""Share of the log likelihood that moving air brings which an effect must bring beside it ..."""
+_OF_POWER = 0.1
+"""... or else the share of its power that the effect must change."""
+_OF_GUST = 0.05
+"""The same beside a gust: in its manoeuvre a bump of any shape passes for anything."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +52,14 @@ class Air:
     """Vehicle time of its peak."""
     left: FloatArray
     """Shape (channels,): mean square that stays when the likeliest course of the air is taken out."""
+    power: float
+    """What its course takes up, mean over channels of the mean square beside the instruments' noise."""
+
+    def may_be(self, effect: Judged) -> bool:
+        """Whether an effect is no more than the shape of the air, which is known to low order only."""
+        if self.gust:
+            return effect.gain < _OF_GUST * self.gain
+        return effect.gain < _OF_AIR * self.gain and effect.removed < _OF_POWER * self.power
 
 
 def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
@@ -72,11 +88,14 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     number = int(np.argmax(peaks))
     at = int(np.argmax(np.abs(courses[number])))
     flight = problem.flights.flights[number]
+    left = _mean_square(problem, lefts)
+    taken = np.mean(mean_squares(problem, fitted.left), axis=0) - left
+    floor = 1.0 if problem.instruments is None else problem.instruments
     return Air(
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
         gust_angle=float(courses[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
-        left=_mean_square(problem, lefts),
+        left=left, power=float(np.mean(taken / floor**2)),
     )  # fmt: skip
 
 

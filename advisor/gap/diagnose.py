@@ -26,7 +26,7 @@ from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
 from advisor.gap.result import Diagnosis
 from advisor.gap.score import worth
-from advisor.gap.waterfall import Progress, build_up
+from advisor.gap.waterfall import Progress, build_up, reduced_to
 from advisor.problems import UnusableInputError
 
 
@@ -106,6 +106,13 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     if problem.knows_the_noise or np.min(worth(problem, last.innovations)) < 0.5 * samples:
         progress("looking at the air", 0.7)
         air = moving_air(problem, last)
+    if air is not None:
+        named = [s.added for s in stages if s.added is not None]
+        kept = [judged.effect for judged in named if not air.may_be(judged)]
+        if len(kept) < len(named):
+            stages = reduced_to(problem, stages, kept)
+            last = stages[-1].fitted
+            air = moving_air(problem, last)
     progress("looking for what has no name", 0.8)
     smooth = prefiltered(problem.flights)
     stated = np.array([white[k] if smooth[c] else 0.0 for k, c in enumerate(problem.channels)])

@@ -99,6 +99,15 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
     return _rebuilt(problem, stages[0], names, full, considered, stages[-1].considered)
 
 
+def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:
+    """The waterfall with some of its effects only, in their order."""
+    considered = {s.added.effect: s.considered for s in stages if s.added is not None}
+    if list(names) == list(considered):
+        return list(stages)
+    full = _only(problem, stages[-1].fitted, names)
+    return _rebuilt(problem, stages[0], names, full, considered, stages[-1].considered)
+
+
 def _rebuilt(
     problem: Problem,
     first: Stage,
