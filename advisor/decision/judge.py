@@ -1,6 +1,7 @@
 """Was that manoeuvre good: what speaks against it itself, then the rule the crew chose."""
 
 from collections.abc import Mapping, Sequence
+from math import floor
 
 from advisor.aircraft import CampaignPlan, Rule
 from advisor.beside import beside
@@ -88,11 +89,30 @@ def _reasons(flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None) -> t
 
 
 def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
+    if isinstance(flown.estimate, NoEstimate):
+        return "good manoeuvre"
     if rule == "information":
-        return "good manoeuvre, it adds to what is known"
-    if result.limit is None or isinstance(flown.estimate, NoEstimate):
-        return "good manoeuvre, the first to compare others with"
-    return f"cost {flown.estimate.cost:.2g}, limit {result.limit:.2g}"
+        compared = "it adds to what is known"
+    elif result.limit is None:
+        compared = "the first to compare others with"
+    else:
+        compared = _of_limit(flown.estimate.cost, result.limit)
+    return f"good manoeuvre, {_explained(flown.estimate)}{compared}"
+
+
+def _explained(estimate: Estimate) -> str:
+    """How much of the motion the model explains; nothing of a record without any."""
+    share = min(estimate.fits[0][name].r2 for name in ("alpha", "q"))
+    # Cut, not rounded: 100 % is said of an exact fit only.
+    return f"the model explains {floor(1000.0 * share) / 10.0:.1f} % of it; " if share > 0.0 else ""
+
+
+def _of_limit(cost: float, limit: float) -> str:
+    """A cost beside its limit: its unit tells nobody anything, the ratio does."""
+    if limit <= 0.0:
+        return "cost above its limit, 0"
+    ratio = beside(cost / limit, 1.0, 2)[0]
+    return f"cost {ratio} of its limit" if cost < limit else f"cost {ratio} times its limit"
 
 
 def _contradicts(odd: Odd) -> Reason:
@@ -103,8 +123,8 @@ def _contradicts(odd: Odd) -> Reason:
 
 def _too_costly(flown: Flown, estimate: Estimate, rule: Rule, limit: float) -> Reason:
     than = "no better than half of the earlier ones" if rule == "separate" else _LESS_WELL
-    cost, most = beside(estimate.cost, limit, 2, "g")
-    text = f"the model explains it {than}, cost {cost} (limit {most}); {_another_try(flown, estimate, rule)}"
+    cost = _of_limit(estimate.cost, limit)
+    text = f"the model explains it {than}, {cost}; {_another_try(flown, estimate, rule)}"
     return Reason("cost", text, estimate.cost, limit)
 
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from advisor.aircraft import CampaignPlan
 from advisor.decision.history import Flown
@@ -51,7 +52,33 @@ def test_a_cost_above_the_limit_is_a_reason_with_both_numbers() -> None:
     (reason,) = verdict.reasons
     assert (reason.code, reason.value, reason.limit) == ("cost", 3e-9, 2e-9)
     assert verdict.sentence.startswith("REPEAT: ")
-    assert "3e-09" in verdict.sentence
+    assert "cost 1.50 times its limit" in verdict.sentence
+
+
+def test_a_cost_hardly_above_its_limit_does_not_read_as_the_limit_itself() -> None:
+    assert "cost 1.0001 times its limit" in judge_campaign(flown([1e-9, 2.0002e-9]), PLAN)[-1].sentence
+    assert "cost 0.9999 of its limit" in judge_campaign(flown([1e-9, 1.9998e-9]), PLAN)[-1].sentence
+
+
+@pytest.mark.parametrize(("left", "percent"), [(0.0, "100.0"), (0.02, "99.9"), (0.1, "99.0"), (2.1, "18.4")])
+def test_an_accepted_manoeuvre_tells_how_well_the_model_explains_it(left: float, percent: str) -> None:
+    first, second = flown([1e-9, 1.08e-9])
+    assert isinstance(second.estimate, Estimate)
+    # Uncorrelated with the motion, so that the variances add: the share explained is 1 / (1 + left²).
+    motion, rest = np.tile([1.0, -1.0, 1.0, -1.0], 50), left * np.tile([1.0, 1.0, -1.0, -1.0], 50)
+    fits = {
+        name: replace(fit, t=np.arange(200.0), measured=motion + rest, fitted=motion)
+        for name, fit in second.estimate.fits[0].items()
+    }
+    seen = replace(second, estimate=replace(second.estimate, fits=(fits,)))
+    sentence = judge_campaign([first, seen], PLAN)[-1].sentence
+    explains = f"the model explains {percent} % of it"
+    assert sentence == f"ACCEPTED: good manoeuvre, {explains}; cost 0.54 of its limit"
+
+
+def test_nothing_is_said_of_the_share_explained_where_nothing_moved() -> None:
+    sentence = judge_campaign(flown([1e-9, 1.08e-9]), PLAN)[-1].sentence
+    assert sentence == "ACCEPTED: good manoeuvre, cost 0.54 of its limit"
 
 
 def test_calmer_air_is_asked_for_only_where_the_air_moved() -> None:
