@@ -3,6 +3,7 @@
 from collections.abc import Collection
 
 from advisor.aircraft import Elevator
+from advisor.beside import beside
 from advisor.doctor.asking import how_to_ask
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.survey import Clocks
@@ -46,11 +47,11 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
             )
         )
     if found.resolution_deg > COARSE_DEG:
+        shown, most = beside(found.resolution_deg, COARSE_DEG, 2)
         limits.append(
             Limit(
                 "resolution",
-                f"One microsecond of the elevator's pulse is {found.resolution_deg:.2f} deg "
-                f"(limit {COARSE_DEG:g})",
+                f"One microsecond of the elevator's pulse is {shown} deg (limit {most})",
                 "check elevator.calibration; use more of the servo's travel",
             )
         )
@@ -116,10 +117,11 @@ def loss_limits(lost_percent: float | None) -> list[Limit]:
     """Packets a live link lost; None: not counted."""
     if lost_percent is None or lost_percent <= LOSSY_PERCENT:
         return []
+    shown, most = beside(lost_percent, LOSSY_PERCENT, 1)
     return [
         Limit(
             "loss",
-            f"{lost_percent:.1f} % of the packets are lost (limit {LOSSY_PERCENT:g} %)",
+            f"{shown} % of the packets are lost (limit {most} %)",
             "lower the rates of messages nobody needs, or check the radio link",
         )
     ]

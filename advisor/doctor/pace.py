@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.beside import beside
 from advisor.doctor.asking import GOOD_HZ, how_to_ask
 from advisor.doctor.examination import Limit
 from advisor.doctor.expectation import Belief, Expectation, expect, frequency
@@ -63,15 +64,25 @@ def rate_limits(
         limits.append(
             Limit(
                 "renewal" if repeats else "rate",
-                f"{arrives}: {channel.renewed_hz * period_s:.1f} samples of {_PLAIN[name]} in a natural "
-                f"period of {period_s:.2f} s (at least {fewest_hz * period_s:.0f}, "
-                f"better {enough_hz * period_s:.0f})",
+                f"{arrives}: {_samples(channel.renewed_hz, fewest_hz, enough_hz, _PLAIN[name], period_s)}",
                 _staircase(channel) if repeats else how_to_ask(channel.message, autopilot),
                 stops=channel.renewed_hz < fewest_hz,
                 std_ratio=_ratio(alone, best),
             )
         )
     return limits
+
+
+def _samples(hz: float, fewest_hz: float, enough_hz: float, plain: str, period_s: float) -> str:
+    """Samples in a natural period beside the limit that they fall short of."""
+    samples, fewest, enough = hz * period_s, fewest_hz * period_s, enough_hz * period_s
+    if hz < fewest_hz:
+        shown, least = beside(samples, fewest, 1)
+        limits = f"at least {least}, better {enough:.0f}"
+    else:
+        shown, better = beside(samples, enough, 1)
+        limits = f"at least {fewest:.0f}, better {better}"
+    return f"{shown} samples of {plain} in a natural period of {period_s:.2f} s ({limits})"
 
 
 def steadiness_limits(arrivals: Mapping[str, Arrival], needed: set[str], period_s: float) -> list[Limit]:

@@ -1,0 +1,49 @@
+"""A limit that was missed by a hair does not print as the number it is held against."""
+
+import re
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Elevator
+from advisor.doctor.examination import ElevatorFound, Limit
+from advisor.doctor.expectation import NOISE, TYPICAL, Belief, frequency
+from advisor.doctor.instruments import COARSE_DEG, LOSSY_PERCENT, elevator_limits, loss_limits
+from advisor.doctor.pace import ENOUGH_PER_PERIOD, FEWEST_PER_PERIOD, Paced, rate_limits
+from advisor.flight.suitability import SLOWEST_HZ
+
+HAIR = 1e-4
+
+
+def numbers(limit: Limit) -> list[str]:
+    """Every number of a sentence."""
+    return re.findall(r"\d+(?:\.\d+)?", limit.text)
+
+
+@pytest.mark.parametrize("per_period", [FEWEST_PER_PERIOD, ENOUGH_PER_PERIOD])
+def test_a_rate_just_too_low_reads_lower_than_what_is_asked_for(per_period: float) -> None:
+    belief = Belief(TYPICAL, NOISE, "a typical aircraft")
+    too_slow_hz = (1.0 - HAIR) * max(SLOWEST_HZ, per_period * frequency(TYPICAL) / (2.0 * np.pi))
+    paced = {name: Paced(name, "ATTITUDE", 50.0, 50.0) for name in ("elevator", "alpha")}
+    paced["q"] = Paced("q", "ATTITUDE", too_slow_hz, too_slow_hz)
+    (limit,) = rate_limits(paced, belief, "ardupilot", 25.0)
+    samples = re.search(r"([\d.]+) samples", limit.text)
+    asked = re.search(r"at least ([\d.]+), better ([\d.]+)", limit.text)
+    assert samples
+    assert asked
+    missed = asked[1] if per_period == FEWEST_PER_PERIOD else asked[2]
+    assert float(samples[1]) < float(missed)
+    assert limit.stops is (per_period == FEWEST_PER_PERIOD)
+
+
+def test_a_step_just_too_coarse_reads_coarser_than_the_limit() -> None:
+    found = ElevatorFound((2,), COARSE_DEG * (1.0 + HAIR), calibrated=True)
+    (limit,) = elevator_limits(found, Elevator(lag_s=0.1))
+    step, most = numbers(limit)
+    assert float(step) > float(most)
+
+
+def test_a_loss_just_too_high_reads_higher_than_the_limit() -> None:
+    (limit,) = loss_limits(LOSSY_PERCENT * (1.0 + HAIR))
+    lost, most = numbers(limit)
+    assert float(lost) > float(most)
