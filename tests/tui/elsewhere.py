@@ -12,6 +12,7 @@ from advisor.flight.messages import Columns
 from advisor.mavlink.logs import open_log
 from advisor.problems import UnusableInputError
 from advisor.tui.replay import LogPlayer
+from advisor.tui.source import LinkHealth
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
 
@@ -63,6 +64,13 @@ def talking() -> HandFedSource:
     """A source with one message."""
     source = HandFedSource()
     source.deliver()
+    return source
+
+
+def polite() -> HandFedSource:
+    """A source that tells its process's niceness."""
+    source = talking()
+    source.condition = LinkHealth("good", str(os.nice(0)))
     return source
 
 
