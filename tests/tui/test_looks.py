@@ -141,8 +141,18 @@ def test_text_stands_out_from_its_background_in_every_theme(theme):
         assert contrast(Color.parse(getattr(theme, name)), background) >= 4.5, name
 
 
+@pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+def test_a_scroll_bar_stands_out_from_its_background_in_every_theme(theme):
+    background = Color.parse(theme.background)
+    track = background + Color.parse(theme.variables["scrollbar-background"])
+    for state in ("scrollbar", "scrollbar-hover", "scrollbar-active"):
+        bar = Color.parse(theme.variables[state])
+        assert contrast(bar, background) >= 3.0
+        assert contrast(bar, track) >= 2.5
+
+
 def contrast(a: Color, b: Color) -> float:
-    """Contrast ratio of WCAG 2.1, 1 to 21; 4.5 is its level AA for text."""
+    """Contrast ratio of WCAG 2.1, 1 to 21; 4.5 is its level AA for text, 3 for what is no text."""
     high, low = sorted((luminance(a), luminance(b)), reverse=True)
     return (high + 0.05) / (low + 0.05)
 
