@@ -15,6 +15,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import peak_of
 from advisor.gap.noise import is_quiet
+from advisor.gap.origin import stick_or_motion
 from advisor.gap.probes import SENSOR_CHANNELS, Probe, probe_blocks
 from advisor.gap.problem import Problem
 
@@ -77,7 +78,8 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
     if unexplained < _LEAST_OF_GAP * taken:
         return None
-    return Leftover(best.block, best.explained, _ranking(probes, best.block))
+    block = stick_or_motion(problem, last, _instruments(problem), probes) or best.block
+    return Leftover(block, best.explained, _ranking(probes, block))
 
 
 def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:

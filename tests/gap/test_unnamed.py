@@ -8,8 +8,11 @@ import pytest
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.gap.belief import log_belief
 from advisor.gap.candidates.between import shift_moments
+from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
 from advisor.gap.layout import ENTRIES, INDEX
+from advisor.gap.origin import followed
+from advisor.gap.probes import KNOTS_S
 from advisor.gap.simulate import surface
 from tests.gap.generator import Setup, fly
 
@@ -20,6 +23,23 @@ def test_damping_that_grows_with_the_rate_has_no_name_but_a_place():
     found = diagnose(fly(Setup(maneuvers=6, switches={"q_square": -4.0}, seed=21)), Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == "moment_equation"
+
+
+def test_an_unknown_moment_is_told_by_whether_it_follows_the_stick_or_the_motion():
+    flights = prepare(fly(Setup(maneuvers=6, seed=26)), Aircraft()).flights
+    rng = np.random.default_rng(26)
+    stuck, damped, neither = [], [], []
+    for flight in flights:
+        t = KNOTS_S * np.arange(1.0, flight.duration_s / KNOTS_S)
+        stick = np.interp(t, flight.t_u, flight.u)
+        rested = np.where(np.abs(stick) > 0.5 * np.abs(stick).max(), stick, 0.0)
+        rate = np.interp(t, flight.outputs["q"].t, flight.outputs["q"].y)
+        stuck.append(stick - rested)
+        damped.append(np.maximum(rate, 0.0))
+        neither.append(rng.standard_normal(len(t)))
+    assert followed(flights, stuck) == "input"
+    assert followed(flights, damped) == "moment_equation"
+    assert followed(flights, neither) is None
 
 
 def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane():
