@@ -28,16 +28,19 @@ def test_damping_that_grows_with_the_rate_has_no_name_but_a_place():
 def test_an_unknown_moment_is_told_by_whether_it_follows_the_stick_or_the_motion():
     flights = prepare(fly(Setup(maneuvers=6, seed=26)), Aircraft()).flights
     rng = np.random.default_rng(26)
-    stuck, damped, neither = [], [], []
+    played, damped, neither = [], [], []
     for flight in flights:
         t = KNOTS_S * np.arange(1.0, flight.duration_s / KNOTS_S)
         stick = np.interp(t, flight.t_u, flight.u)
-        rested = np.where(np.abs(stick) > 0.5 * np.abs(stick).max(), stick, 0.0)
+        at, loose = 0.0, []
+        for deflection in stick:
+            at = float(np.clip(at, deflection - 0.02, deflection + 0.02))
+            loose.append(deflection - at)
         rate = np.interp(t, flight.outputs["q"].t, flight.outputs["q"].y)
-        stuck.append(stick - rested)
+        played.append(np.array(loose))
         damped.append(np.maximum(rate, 0.0))
         neither.append(rng.standard_normal(len(t)))
-    assert followed(flights, stuck) == "input"
+    assert followed(flights, played) == "input"
     assert followed(flights, damped) == "moment_equation"
     assert followed(flights, neither) is None
 
