@@ -140,7 +140,7 @@ def _file_model(problem: Problem, baseline: Fitted, aircraft: Aircraft) -> HeldO
     lefts: list[FloatArray] = []
     for _ in range(3):
         linear = linearise(problem, point)
-        owns = solve_blocks(problem, linear, 1.0 / baseline.noise, point.derivatives).free
+        owns = solve_blocks(problem, linear, 1.0 / baseline.noise, point).free
         still = np.zeros(len(point.shared))
         lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
         point = replace(point, own=point.own + np.array([o[:4] for o in owns]))

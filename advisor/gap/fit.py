@@ -84,13 +84,11 @@ class Step:
         return [b.after(self.shared, own) for b, own in zip(linear, self.owns(self.shared), strict=True)]
 
 
-def solve_blocks(
-    problem: Problem, linear: Sequence[Linear], weights: FloatArray, derivatives: FloatArray
-) -> Step:
+def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray, point: Point) -> Step:
     """One Gauss-Newton step, own numbers eliminated manoeuvre by manoeuvre."""
     k = linear[0].shared.shape[1]
-    H, g = np.zeros((k, k)), np.zeros(k)
-    H[:6, :6], g[:6] = np.diag(problem.pull), problem.pull * problem.missed(derivatives)
+    pull, missed = problem.pull(point)
+    H, g = np.diag(pull), pull * missed
     free, follow = [], []
     for i, block in enumerate(linear):
         w = row_weights(problem, i, weights)
@@ -132,7 +130,7 @@ def cost_of(
 ) -> float:
     """-2 log likelihood profiled over the noise, Σ_c N_c log σ_c², plus the priors."""
     noise = noise_of(problem, lefts)
-    power = problem.disbelief(point.derivatives) + sum(
+    power = problem.disbelief(point) + sum(
         float(np.sum(b.prior * o**2)) for b, o in zip(linear, owns, strict=True)
     )
     return float(np.sum(counts(problem) * 2.0 * np.log(noise))) + power
@@ -169,7 +167,7 @@ def fit(
     measured = tuple(
         block.measured.after(still, own) for block, own in zip(kept.linear, kept.step.free, strict=True)
     )
-    information = solve_blocks(problem, kept.linear, 1.0 / kept.noise, kept.point.derivatives).information
+    information = solve_blocks(problem, kept.linear, 1.0 / kept.noise, kept.point).information
     return Fitted(kept.point, kept.noise, kept.cost, kept.left, measured, information, kept.linear, done)
 
 
@@ -191,7 +189,7 @@ class _Place:
 def _settled(problem: Problem, point: Point, linear: tuple[Linear, ...], weights: FloatArray) -> _Place:
     """Weights and own numbers settle together at a fixed linearisation: cheap, no simulation."""
     for _ in range(4):
-        step = solve_blocks(problem, linear, weights, point.derivatives)
+        step = solve_blocks(problem, linear, weights, point)
         before, weights = weights, 1.0 / noise_of(problem, step.ahead(linear))
         if np.max(np.abs(np.log(weights / before))) < _SETTLED:
             break

@@ -17,7 +17,7 @@ from advisor.gap.marks import Marks
 from advisor.gap.needs import NEEDS, OTHERWISE, hidden_from
 from advisor.gap.problem import Problem
 from advisor.gap.result import Unseen
-from advisor.gap.score import LEAST_GAIN, LEAST_GAP
+from advisor.gap.score import LEAST_GAIN, least_change
 from advisor.gap.ties import breaking
 from advisor.gap.variant import Variant
 
@@ -173,7 +173,7 @@ def _needed(marks: Marks, numbers: int) -> float:
     """Power a mark must have: found in nearly every flight, worth its numbers, enough of a change."""
     price = numbers * float(np.log(marks.rows))
     # A filter of moving air leaves of a change far less than the outputs show of it.
-    change = 0.0 if marks.filtered else LEAST_GAP * marks.rows
+    change = 0.0 if marks.filtered else least_change(marks.problem) * marks.rows
     return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
 
 

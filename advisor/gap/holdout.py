@@ -53,8 +53,9 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     total_H = np.sum([b[0] for b in blocks], axis=0)
     total_g = np.sum([b[1] for b in blocks], axis=0)
     k = len(DERIVATIVES)
-    total_H[:k, :k] += np.diag(problem.pull)
-    total_g[:k] += problem.pull * problem.missed(fitted.point.derivatives)
+    pull, missed = problem.pull(fitted.point)
+    total_H += np.diag(pull)
+    total_g += pull * missed
     lower, upper = bounds_of(fitted.point)
     anchor = _ANCHOR * np.diag(total_H)
     anchor[:k] = 0.0

@@ -140,11 +140,13 @@ def pulse_response(
 
 
 def later(pulse: FloatArray, at: float, h: float) -> FloatArray:
-    """The same response, starting later."""
-    k = max(round(at / h), 0)
+    """The same response, starting later; between two points of the grid it is mixed from both."""
+    k = int(max(at, 0.0) / h)
+    part = max(at, 0.0) / h - k
     out = np.zeros_like(pulse)
-    if k < pulse.shape[1]:
-        out[:, k:] = pulse[:, : pulse.shape[1] - k]
+    n = pulse.shape[1]
+    out[:, k:] = (1.0 - part) * pulse[:, : max(n - k, 0)]
+    out[:, k + 1 :] += part * pulse[:, : max(n - k - 1, 0)]
     return out
 
 

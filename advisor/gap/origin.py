@@ -18,8 +18,8 @@ from advisor.gap.probes import KNOTS_S, Probe, disturbance_course
 from advisor.gap.problem import Problem
 
 ALIKE = frozenset({"input", "moment_equation"})
-_TIED = 0.05
-"""Relative difference in gain below which the two blocks explain a residual equally well."""
+_TIED = 10.0
+"""Difference in log likelihood below which the two blocks explain a residual equally well."""
 _TELLING = 0.1
 """Share of the course that the better regression must predict."""
 _RIDGE = 0.1
@@ -43,7 +43,7 @@ def stick_or_motion(
     """
     if {probes[0].block, probes[1].block} != ALIKE or "alpha" not in problem.channels:
         return None
-    if probes[1].gain < (1.0 - _TIED) * probes[0].gain:
+    if probes[0].gain - probes[1].gain > _TIED:
         return None
     size = next(p.size for p in probes if p.block == "moment_equation")
     courses, _ = disturbance_course(problem, fitted, noise, "moment_equation", size)

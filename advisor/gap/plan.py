@@ -95,7 +95,7 @@ def foresee_flights(
     ]
     point = everywhere(Point(derivatives, own), flights)
     linear = linearise(problem, point)
-    step = solve_blocks(problem, linear, 1.0 / noise, derivatives)
+    step = solve_blocks(problem, linear, 1.0 / noise, point)
     left = tuple(step.ahead(linear))
     fitted = Fitted(point, noise, 0.0, left, left, step.information, linear, 0)
     marks = Marks(problem, fitted, noise)

@@ -86,21 +86,23 @@ class Problem:
         """Outputs that are compared."""
         return self.flights.channels
 
-    @property
-    def pull(self) -> FloatArray:
-        """Shape (6,): inverse variance with which derivatives are drawn to the file's.
+    def pull(self, point: Point) -> tuple[FloatArray, FloatArray]:
+        """Inverse variances with which shared numbers are drawn to what is expected, and what they lack.
 
-        Far weaker than any data that say something; it decides only what the data leave open.
+        Both shape (k,). The derivatives are drawn to the file's, what is part of every model to nothing; far
+        more weakly than by any data that say something: it decides only what the data leave open.
         """
-        return np.zeros(len(DERIVATIVES)) if self.believed is None else pull_of(self.believed)
+        inverse = [np.zeros(len(DERIVATIVES)) if self.believed is None else pull_of(self.believed)]
+        expected = [point.derivatives if self.believed is None else self.believed]
+        for effect, values in zip(point.effects, point.values, strict=True):
+            inverse.append(1.0 / np.array(effect.spread) ** 2 if effect.spread else np.zeros(len(values)))
+            expected.append(np.zeros(len(values)))
+        return np.concatenate(inverse), np.concatenate(expected) - point.shared
 
-    def missed(self, derivatives: FloatArray) -> FloatArray:
-        """Shape (6,): the file's derivatives minus these."""
-        return np.zeros(len(DERIVATIVES)) if self.believed is None else self.believed - derivatives
-
-    def disbelief(self, derivatives: FloatArray) -> float:
+    def disbelief(self, point: Point) -> float:
         """What the pull adds to the cost."""
-        return float(self.pull @ self.missed(derivatives) ** 2)
+        inverse, missed = self.pull(point)
+        return float(inverse @ missed**2)
 
     def driving(self, point: Point) -> FloatArray:
         """Shape (manoeuvres, entries): the numbers each manoeuvre is simulated with."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.belief import is_off, log_belief
+from advisor.gap.belief import NARROW, is_off, log_belief, scale_of
 from advisor.gap.fit import Fitted, fit, rms_of
-from advisor.gap.floor import independent_samples, prefiltered
+from advisor.gap.floor import independent_samples, peak_of, prefiltered
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.layout import DERIVATIVES
 from advisor.gap.problem import Point, Problem, counts
@@ -22,6 +22,8 @@ LEAST_GAIN = 6.0
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
 LEAST_SIGMA = 3.0
+_OF_PEAK = 0.003
+"""Share of each channel's peak that an effect must change."""
 _DOUBT = 2.5
 """Where the noise of the instruments is stated, not measured, the change must exceed it this many times."""
 _TIMES = {"delay_s", "lag_s", "skew_s"}
@@ -147,10 +149,24 @@ def addition(
         variant=variant, fitted=fitted, held_out=held,
         gain=likelihood - price + belief + backward,
         removed=_difference(problem, held_before, held),
-        least=LEAST_GAP * (_DOUBT**2 if any(prefiltered(problem.flights).values()) else 1.0),
+        least=least_change(problem),
         smallest=variant.smallest + (_JITTERS * problem.jitter_s if variant.names[0] in _TIMES else 0.0),
-        belief=belief, value=value, std=shared_std(problem, fitted, independent)[at : at + len(value)],
+        belief=belief, value=value,
+        std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
+
+
+def least_change(problem: Problem) -> float:
+    """Mean square change of the outputs, beside the instruments' noise, from which an effect is worth a name.
+
+    Where instruments are very good, what matters is no longer their noise: a description to low order is
+    itself no better than a share of each channel's peak.
+    """
+    least = LEAST_GAP * (_DOUBT**2 if any(prefiltered(problem.flights).values()) else 1.0)
+    if problem.instruments is None:
+        return least
+    peaks = np.array([peak_of(problem.flights, c) for c in problem.channels])
+    return max(least, float(_OF_PEAK**2 / np.mean((problem.instruments / peaks) ** 2)))
 
 
 def _difference(problem: Problem, before: HeldOut, after: HeldOut) -> float:
@@ -178,18 +194,29 @@ def file_is_off(problem: Problem, fitted: Fitted) -> bool:
     return is_off(fitted.point.derivatives, known, problem.believed)
 
 
-def shared_std(problem: Problem, fitted: Fitted, independent: FloatArray) -> FloatArray:
-    """Shape (k,): standard deviations of the shared numbers."""
-    return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, independent)), 0.0)))
+def shared_std(
+    problem: Problem, fitted: Fitted, independent: FloatArray, trusted: bool = False
+) -> FloatArray:
+    """Shape (k,): standard deviations of the shared numbers; arguments as ``covariance``."""
+    return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, independent, trusted)), 0.0)))
 
 
-def covariance(problem: Problem, fitted: Fitted, independent: FloatArray) -> FloatArray:
-    """Shape (k, k): covariance of the shared numbers, widened for coloured residuals."""
-    scale = np.sqrt(np.maximum(np.diag(fitted.information), 1e-300))
-    normal = fitted.information / np.outer(scale, scale)
-    plain = np.linalg.pinv(normal, rcond=1e-12, hermitian=True) / np.outer(scale, scale)
+def covariance(
+    problem: Problem, fitted: Fitted, independent: FloatArray, trusted: bool = False
+) -> FloatArray:
+    """Shape (k, k): covariance of the shared numbers, widened for coloured residuals.
+
+    Where the file's derivatives are trusted, they count as measured within their tolerance: that is how
+    well an effect is known that trades against them.
+    """
     widened = float(np.mean(counts(problem) / np.maximum(independent, 1.0)))
-    return np.asarray(plain * widened)
+    information = fitted.information / widened
+    if trusted and problem.believed is not None:
+        n = len(problem.believed)
+        information[:n, :n] += np.diag(1.0 / (NARROW * scale_of(problem.believed)) ** 2)
+    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
+    normal = information / np.outer(scale, scale)
+    return np.asarray(np.linalg.pinv(normal, rcond=1e-12, hermitian=True) / np.outer(scale, scale))
 
 
 def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]) -> list[Screened]:

@@ -127,7 +127,7 @@ class Screen:
         problem = self.problem
         p = problem.driving(point)
         grids, weighted, after, owns = [], [], [], []
-        power = problem.disbelief(point.derivatives)
+        power = problem.disbelief(point)
         for i, kept in enumerate(self.kept):
             if self.plain is not None and np.array_equal(p[i], self.plain.p[i]):
                 grid, r = self.plain.grids[i], self.plain.weighted[i]
@@ -157,8 +157,8 @@ class Screen:
         k = len(self.fitted.point.shared)
         ke = len(flown.shared) - k
         extra = self._effect_columns(here, range(k, k + ke))
-        H, g = np.zeros((k + ke, k + ke)), np.zeros(k + ke)
-        H[:6, :6], g[:6] = np.diag(problem.pull), problem.pull * problem.missed(flown.derivatives)
+        pull, missed = problem.pull(flown)
+        H, g = np.diag(pull), pull * missed
         for i, kept in enumerate(self.kept):
             X = np.column_stack([extra[i], here.weighted[i]])
             AX = kept.A.T @ X

@@ -39,6 +39,8 @@ class Variant:
     """Parameters of the aircraft file that are not searched for: the time of a step."""
     one_sided: bool = False
     """Its bounds are physics, not the range of the search: a parameter may well lie there."""
+    spread: tuple[float, ...] = ()
+    """Standard deviation about zero that each parameter has beforehand; none: anything goes."""
     always: bool = False
     """Part of every model and never named: nobody's fault."""
     inverted: bool = False

@@ -16,10 +16,12 @@ PROPELLER = Variant(
     ((-100.0, 100.0), (-1.0, 2.0), (-2.0, 2.0)),
     0.0,
     entries=("M_thrust", "washed_share", "blown_share"),
+    spread=(5.0, 0.5, 1.5),
     always=True,
 )
 """Part of every model where the speed is measured: the thrust's share of the trim does not grow with V², nor
-does the power of an elevator as far as it lies in the propeller's wash."""
+does the power of an elevator as far as it lies in the propeller's wash (momentum theory: its dynamic pressure
+is higher by thrust over disk area, up to twice the weight's share for a light single)."""
 
 
 def variants(flights: Flights) -> list[Variant]:
