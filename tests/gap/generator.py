@@ -51,12 +51,12 @@ SWITCHES = {
     "ice_t": 1e9, "ice": 0.0, "height": 1e9, "ground": 0.0,
     "vane_lag": 0.0, "vane_arm": 0.0, "mode_gain": 0.0, "mode_hz": 5.0, "acc_arm": 0.0,
     "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
-    "kink_at": 9.0, "kink_width": 0.02,
+    "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
- KINK, KWIDTH) = range(len(SWITCHES))  # fmt: skip
+ KINK, KWIDTH, WASH) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -98,6 +98,9 @@ def _integrate(n, command, gust, thrust_wave, body, sw, out):
         near = sw[GROUND] * np.exp(-height / (6.0 * chord))
         hyst += H * (a - hyst) / 0.4
         extra += H * (de - extra) / max(sw[ECMLAG], 10 * H)
+        thrust = trim_thrust * (1.0 + thrust_wave[k])
+        # The tail stands in the propeller's wash: thrust over the disk adds to its dynamic pressure.
+        wash = 1.0 + sw[WASH] * (thrust / trim_thrust * (speed / V) ** 2 - 1.0)
         cl = (
             cl0
             + cla * (1.0 - ice) * (1.0 + near) * ae
@@ -114,13 +117,12 @@ def _integrate(n, command, gust, thrust_wave, body, sw, out):
             + sw[CMA2] * (a - a0) ** 2
             + sw[CMA3] * (a - a0) ** 3
             + (cmq * q + (cmad + sw[CMAD]) * alphadot) * chord / (2 * V)
-            + cmde * (1 - 0.5 * ice) * (de + sw[DE2] * de * de + sw[DE3] * de**3)
+            + wash * cmde * (1 - 0.5 * ice) * (de + sw[DE2] * de * de + sw[DE3] * de**3)
             - 0.4 * near
             + sw[HYST] * (a - hyst)
             + sw[QSQ] * q * abs(q)
             + sw[ECM] * (extra - de)
         )
-        thrust = trim_thrust * (1.0 + thrust_wave[k])
         lift, drag = qb * cl, qb * cd
         fx = -drag * np.cos(a) + lift * np.sin(a) + thrust
         fz = -drag * np.sin(a) - lift * np.cos(a)

@@ -13,10 +13,10 @@ PROPELLER = Variant(
     ("M_thrust", "washed_share", "blown_share"),
     ((0.0, 0.0, 0.0),),
     (0.05, 0.05, 0.05),
-    ((-100.0, 100.0), (-1.0, 2.0), (-2.0, 2.0)),
+    ((-100.0, 100.0), (-1.0, 2.0), (-10.0, 10.0)),
     0.0,
     entries=("M_thrust", "washed_share", "blown_share"),
-    spread=(5.0, 0.5, 1.5),
+    spread=(5.0, 0.5, 3.0),
     always=True,
 )
 """Part of every model where the speed is measured: the thrust's share of the trim does not grow with V², nor
