@@ -15,7 +15,7 @@ from advisor.gap.holdout import mean_squares
 from advisor.gap.noise import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
 from advisor.gap.probes import KNOTS_S, disturbance_course
 from advisor.gap.problem import Problem
-from advisor.gap.score import Judged
+from advisor.gap.score import LEAST_BELIEF, Judged
 from advisor.oem.innovations import CHANNELS
 from advisor.oem.turbulence import find_turbulence
 
@@ -56,7 +56,12 @@ class Air:
     """What its course takes up, mean over channels of the mean square beside the instruments' noise."""
 
     def may_be(self, effect: Judged) -> bool:
-        """Whether an effect is no more than the shape of the air, which is known to low order only."""
+        """Whether an effect is no more than the shape of the air, which is known to low order only.
+
+        What brings the derivatives back to the aircraft file's is more.
+        """
+        if effect.belief >= LEAST_BELIEF:
+            return False
         if self.gust:
             return effect.gain < _OF_GUST * self.gain
         return effect.gain < _OF_AIR * self.gain and effect.removed < _OF_POWER * self.power
