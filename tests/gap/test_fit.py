@@ -1,0 +1,35 @@
+"""The fit flies no more than it must: a step is worth a flight only for what it promises."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.baseline import fit_baseline
+from advisor.gap.data import prepare
+from advisor.gap.fit import fit
+from tests.gap.generator import Setup, fly
+
+
+@pytest.fixture(scope="module")
+def settled():
+    flights = prepare(fly(Setup(maneuvers=3, seed=41)), Aircraft())
+    return fit_baseline(flights, Aircraft())
+
+
+def test_a_fit_begun_at_its_optimum_is_flown_once_and_stays_there(settled):
+    problem, fitted = settled
+    again = fit(problem, fitted.point, fitted.noise)
+    assert again.iterations == 1
+    assert again.cost == pytest.approx(fitted.cost, abs=0.1)
+
+
+def test_a_fit_begun_nearby_comes_back(settled):
+    problem, fitted = settled
+    shifted = fitted.point.derivatives * np.array([1.05, 1.0, 1.0, 0.95, 1.1, 1.03])
+    again = fit(problem, replace(fitted.point, derivatives=shifted), fitted.noise)
+    assert again.cost == pytest.approx(fitted.cost, abs=1.0)
+    assert again.iterations <= 5
+    strong = [0, 3, 4, 5]
+    assert again.point.derivatives[strong] == pytest.approx(fitted.point.derivatives[strong], rel=0.01)
