@@ -24,9 +24,7 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
     def at(name: str) -> FloatArray:
         return np.interp(grid, found[name].t - start_s, found[name].y)
 
-    alpha = at("alpha")
-    rate = at("a_x") * np.cos(alpha) + at("a_z") * np.sin(alpha) - GRAVITY_M_S2 * np.sin(at("theta") - alpha)
-    shape = np.concatenate(([0.0], np.cumsum(np.diff(grid) * (rate[1:] + rate[:-1]) / 2.0)))
+    shape = integrated(grid, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha")))
     inside = (t >= grid[0]) & (t <= grid[-1])
     if np.count_nonzero(inside) < 6:
         return _smoothed(grid, t, y)
@@ -35,6 +33,16 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
     apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
     # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
     return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else _smoothed(grid, t, y)
+
+
+def speed_rate(a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray) -> FloatArray:
+    """Rate of the speed, m/s², that the accelerometers know of: in air that moves steadily."""
+    return a_x * np.cos(alpha) + a_z * np.sin(alpha) - GRAVITY_M_S2 * np.sin(theta - alpha)
+
+
+def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:
+    """Trapezoidal running integral, 0 at the first sample."""
+    return np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
 
 
 def along_the_path(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:

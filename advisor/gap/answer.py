@@ -103,6 +103,9 @@ def _notes(e: Evidence, aircraft: Aircraft) -> tuple[str, ...]:
     )  # fmt: skip
     if not flights.speed_measured:
         notes.append("No air speed in the log: derivatives are taken as constant.")
+    if e.shear is not None:
+        per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
+        notes.append(f"The wind changed with height, by {per_metre} a metre.")
     missing = [c for c in ("a_z", "theta") if c not in flights.channels]
     if missing:
         notes.append(f"Without {' and '.join(missing)} several instrument effects cannot be seen.")

@@ -20,13 +20,14 @@ from advisor.gap.fit import Fitted, solve_blocks
 from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.layout import DERIVATIVES
-from advisor.gap.leftover import left_over
+from advisor.gap.leftover import left_over, of_the_wind
 from advisor.gap.linear import linearise
 from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
 from advisor.gap.result import Diagnosis
 from advisor.gap.score import worth
 from advisor.gap.waterfall import Progress, build_up, reduced_to
+from advisor.gap.wind import wind_shear
 from advisor.problems import UnusableInputError
 
 
@@ -67,6 +68,10 @@ def diagnose(
         flights = prepare([_without_offset(m, kinematics.bias_rad) for m in maneuvers], aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
     evidence = _explain(problem, baseline, aircraft, progress)
+    numbers = {flight.number for flight in flights.flights}
+    shear = wind_shear([m for m in maneuvers if m.number in numbers])
+    if shear is not None:
+        evidence = replace(evidence, shear=shear, leftover=of_the_wind(evidence.leftover))
     progress("measuring the gap", 0.9)
     return answer(evidence, aircraft, kinematics, holdout)
 

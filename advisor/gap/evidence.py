@@ -8,6 +8,7 @@ from advisor.gap.holdout import HeldOut
 from advisor.gap.leftover import Leftover
 from advisor.gap.problem import Problem
 from advisor.gap.waterfall import Stage
+from advisor.gap.wind import Shear
 
 VISIBLE = 0.05
 """Gap above the floor from which on there is something to explain."""
@@ -29,3 +30,5 @@ class Evidence:
     """The final model without the change of air speed."""
     stated: FloatArray
     """Shape (channels,): tolerance of channels filtered before they were recorded, else 0."""
+    shear: Shear | None = None
+    """Wind that changes with height: it has no name in the catalogue."""

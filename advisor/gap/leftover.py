@@ -47,6 +47,12 @@ class Leftover:
     """Block and score, 1 for the likeliest."""
 
 
+def of_the_wind(found: Leftover | None) -> Leftover:
+    """What is left where the wind is known to change with height: whatever it looks like, it is the air's."""
+    ranking = () if found is None else tuple(pair for pair in found.ranking if pair[0] != "air")
+    return Leftover("air", 1.0 if found is None else found.share, (("air", 1.0), *ranking))
+
+
 def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) -> Leftover | None:
     """What the last model leaves, if it is more than noise.
 

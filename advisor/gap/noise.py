@@ -70,7 +70,8 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
     """Coloured instruments or moving air, where nothing was flown; None where white noise describes it."""
     if not {"alpha", "q"} <= set(problem.channels):
         return None
-    rows = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, i, fitted.left[i])]
+    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, i, fitted.left[i])]
+    rows = _without_offsets(parts)
     if sum(r.t[-1] - r.t[0] for r in rows) < _LEAST_QUIET_S:
         return None
     white = instrument_noise(problem)
@@ -180,6 +181,16 @@ def _quiet_parts(problem: Problem, i: int, left: FloatArray) -> list[Rows]:
         for inside in (quiet & before, quiet & ~before)
         if np.count_nonzero(inside) > 10 * len(problem.channels)
     ]
+
+
+def _without_offsets(rows: Sequence[Rows]) -> list[Rows]:
+    """The same less what a channel has in every stretch: an offset is an effect, no noise with a memory."""
+    offset = np.zeros(len(CHANNELS))
+    for c in range(len(CHANNELS)):
+        picked = [r.left[r.channel == c] for r in rows]
+        if sum(len(p) for p in picked):
+            offset[c] = float(np.mean(np.concatenate(picked)))
+    return [replace(r, left=r.left - offset[r.channel]) for r in rows]
 
 
 def _spread(rows: Sequence[Rows]) -> FloatArray:

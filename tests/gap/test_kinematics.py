@@ -5,7 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import check_alpha, coloured_covariance, combine
+from advisor.gap.diagnose import diagnose
+from advisor.gap.wind import wind_shear
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 
@@ -74,3 +77,20 @@ def test_errors_of_a_coloured_fit_are_wider_than_those_of_a_white_one():
     jacobian = np.column_stack([np.ones(400), np.linspace(-1, 1, 400)])
     plain = np.linalg.inv(jacobian.T @ jacobian) * float(slow @ slow) / 398
     assert np.all(np.diag(coloured_covariance(jacobian, slow)) > 4 * np.diag(plain))
+
+
+def test_wind_that_changes_with_height_shows_in_the_air_speed_and_nowhere_else():
+    still = fly(Setup(maneuvers=5, seed=51))
+    assert wind_shear(still) is None
+    sheared = []
+    for maneuver in still:
+        speed, climb = maneuver.channels["airspeed"], maneuver.channels["climb_rate"]
+        height = np.concatenate(([0.0], np.cumsum(np.diff(climb.t) * (climb.y[1:] + climb.y[:-1]) / 2.0)))
+        blown = replace(speed, y=speed.y + 0.2 * np.interp(speed.t, climb.t, height))
+        sheared.append(replace(maneuver, channels={**maneuver.channels, "airspeed": blown}))
+    found = wind_shear(sheared)
+    assert found is not None
+    assert found.gradient_per_s == pytest.approx(0.2, abs=4.0 * found.std)
+    diagnosis = diagnose(sheared, Aircraft())
+    assert diagnosis.verdict == "unknown"
+    assert diagnosis.where.block == "air"

@@ -8,6 +8,7 @@ import pytest
 from advisor.aircraft import Aircraft
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.data import prepare
+from advisor.gap.diagnose import diagnose
 from advisor.gap.stamps import rates_of, stamp_jitter
 from advisor.gap.whitening import Filters
 from advisor.oem.innovations import AirModel, gains_of
@@ -96,3 +97,9 @@ def test_noise_without_a_filter_is_given_in_the_units_of_the_channels_whatever_w
     problem, fitted = fit_baseline(prepare(flown, Aircraft()), Aircraft())
     assert not problem.knows_the_noise
     assert np.all(fitted.noise < 2.0 * problem.instruments)
+
+
+def test_what_a_gyro_adds_in_every_manoeuvre_is_an_offset_and_no_slow_noise():
+    found = diagnose(fly(Setup(maneuvers=6, q_bias=0.02, noise=0.004, seed=61)), Aircraft())
+    assert found.causes[0].effect == "pitch_rate_bias"
+    assert found.causes[0].parameters["bias_rad_s"].value == pytest.approx(0.02, rel=0.1)
