@@ -19,9 +19,10 @@ PROPELLER = Variant(
     spread=(5.0, 0.5, 3.0),
     always=True,
 )
-"""Part of every model where the speed is measured: the thrust's share of the trim does not grow with V², nor
-does the power of an elevator as far as it lies in the propeller's wash (momentum theory: its dynamic pressure
-is higher by thrust over disk area, up to twice the weight's share for a light single)."""
+"""Part of every model where the speed is measured. The thrust's share of the trim does not grow with V². An
+elevator in the propeller's wake meets more than the stream's dynamic pressure, by thrust over disk area (Glauert's
+momentum theory); thrust is drag, which grows with V², plus what the accelerations show along the path. For a
+light single the wake's share of the elevator's power is about a fifth, for a small UAV up to a half."""
 
 
 def variants(flights: Flights) -> list[Variant]:
