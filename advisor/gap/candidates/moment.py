@@ -20,9 +20,9 @@ PROPELLER = Variant(
     always=True,
 )
 """Part of every model where the speed is measured. The thrust's share of the trim does not grow with V². An
-elevator in the propeller's wake meets more than the stream's dynamic pressure, by thrust over disk area (Glauert's
-momentum theory); thrust is drag, which grows with V², plus what the accelerations show along the path. For a
-light single the wake's share of the elevator's power is about a fifth, for a small UAV up to a half."""
+elevator in the propeller's wake meets more than the stream's dynamic pressure, by thrust over disk area
+(Glauert's momentum theory); thrust is drag, which grows with V², plus what the accelerations show along the
+path. For a light single the wake's share of the elevator's power is about a fifth."""
 
 
 def variants(flights: Flights) -> list[Variant]:
