@@ -37,6 +37,9 @@ _AT_ONCE_S = 0.001
 _BREATH_S, _QUIET_S = 0.02, 0.5
 """What would hold up a key is done so long after the answer to one, and when none has come for so long."""
 
+_ANSWER_S = 0.03
+"""Reports wait so long behind a key, so that its answer is painted before all that they change."""
+
 
 class AdvisorApp(replay_actions.ReplayActions, App[None]):
     """Shows what a campaign says of a link, a log or a demonstration, until the user leaves.
@@ -92,6 +95,8 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
         self.failure: BaseException | None = None
         """What the caller must answer for: why the thread broke off, or why the input could not be used."""
         self._leaving_s = self._pressed_s = -inf
+        self._report: Report | None = None
+        """The newest one, while it waits."""
         self._garbage = Garbage()
         self._sheets = Sheets(THEMES)
         for theme in THEMES:
@@ -134,8 +139,18 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
             self._garbage.collect_if_due()
 
     def on_advisor_app_told(self, event: Told) -> None:
-        """Show the newest report."""
-        report = event.report
+        """Show the newest report, after the answer to a key if one is due."""
+        waiting, self._report = self._report is not None, event.report
+        due_s = self._pressed_s + _ANSWER_S - monotonic()
+        if due_s <= 0.0:
+            self._show_report()
+        elif not waiting:
+            self.set_timer(due_s, self._show_report)
+
+    def _show_report(self) -> None:
+        report, self._report = self._report, None
+        if report is None:
+            return
         view = replace(
             self.view,
             state=report.state,

@@ -6,14 +6,17 @@ from pathlib import Path
 
 import pytest
 from textual.css import stylesheet
+from textual.events import Key
 from textual.widget import Widget
 
 from advisor.tui import app as application
+from advisor.tui.conducting import Report
 from advisor.tui.garbage import Garbage
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
 from advisor.tui.sheets import Sheets
 from advisor.tui.themes import NAMES, THEMES
+from advisor.tui.view import View
 from benchmarks.keys import says
 from benchmarks.terminal import terminal
 from tests.tui import flights
@@ -177,3 +180,24 @@ async def test_the_application_leaves_the_collector_as_it_was():
         assert not gc.isenabled()
         assert here.app.is_running
     assert (gc.isenabled(), gc.get_threshold(), gc.get_freeze_count()) == before
+
+
+async def test_reports_behind_a_key_wait_for_its_answer_and_then_the_newest_is_shown(
+    monkeypatch: pytest.MonkeyPatch,
+):
+    async with stage(flights.state(3)) as here:
+        app, states = here.app, []
+        show = app.show
+
+        def watched(view: View) -> None:
+            states.append(view.state)
+            show(view)
+
+        monkeypatch.setattr(app, "show", watched)
+        reports = [Report(flights.state(n), app.view.health, app.view.playback, app.view.log) for n in (4, 5)]
+        await app.on_event(Key("1", "1"))
+        for report in reports:
+            app.on_advisor_app_told(app.Told(report))
+        assert states == []
+        await here.until(lambda: reports[1].state in states)
+        assert reports[0].state not in states
