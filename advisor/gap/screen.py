@@ -12,7 +12,7 @@ from advisor.gap.normal import solved
 from advisor.gap.problem import Point, Problem, counts, row_weights
 from advisor.gap.variant import Variant
 
-HARDLY = 6.0
+_HARDLY = 6.0
 """Decrease of the cost (twice the log likelihood) below which a description is not followed any further."""
 
 
@@ -100,7 +100,7 @@ class Screen:
         lower, upper = bounds_of(point)
         for n in range(iterations):
             step, promised = self._step(here)
-            if self.fitted.cost - here.cost + promised < HARDLY:
+            if self.fitted.cost - here.cost + promised < _HARDLY:
                 # Not worth a flight: what the model says of the step is answer enough.
                 shared = np.clip(here.point.shared + step, lower, upper)
                 return Screened(

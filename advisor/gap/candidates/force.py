@@ -38,28 +38,20 @@ def variants(flights: Flights) -> list[Variant]:
         *_stall(flights),
         *ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES)),
         *_icing(flights),
-        # Near the ground all lift grows by a share; a trim that is merely another adds the same at any lift.
-        Variant(
-            "ground_effect",
-            BLOCK,
-            ("lift_h", "M_h", "scale_m"),
-            ((0.0, 0.0, 1.0), (0.0, 0.0, 5.0)),
-            (0.02, 0.2, 0.1),
-            ((-0.9, 3.0), (-500.0, 500.0), (0.1, 50.0)),
-            0.0,
-            entries=("lift_h", "M_h", "scale_m"),
-            needs=frozenset({"height"}),
-        ),
-        Variant(
-            "ground_effect",
-            BLOCK,
-            ("Z_h", "M_h", "scale_m"),
-            ((0.0, 0.0, 1.0), (0.0, 0.0, 5.0)),
-            (0.02, 0.2, 0.1),
-            ((-50.0, 50.0), (-500.0, 500.0), (0.1, 50.0)),
-            0.0,
-            entries=("Z_h", "M_h", "scale_m"),
-            needs=frozenset({"height"}),
+        # Near the ground all lift grows by a share of it, or the trim alone changes.
+        *(
+            Variant(
+                "ground_effect",
+                BLOCK,
+                (lift, "M_h", "scale_m"),
+                ((0.0, 0.0, 1.0), (0.0, 0.0, 5.0)),
+                (0.02, 0.2, 0.1),
+                (bounds, (-500.0, 500.0), (0.1, 50.0)),
+                0.0,
+                entries=(lift, "M_h", "scale_m"),
+                needs=frozenset({"height"}),
+            )
+            for lift, bounds in (("lift_h", (-0.9, 3.0)), ("Z_h", (-50.0, 50.0)))
         ),
     ]
 
