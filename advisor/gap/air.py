@@ -75,7 +75,7 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     loudest = sorted(range(len(rows)), key=lambda i: -float(np.mean(fitted.left[i] ** 2)))[:AIR_MANEUVERS]
     derived = problem.flights.alpha_is_derived
     found = find_turbulence(
-        [rows[i] for i in loudest], system_of(fitted), instrument_noise(problem), not derived
+        [rows[i] for i in loudest], system_of(problem, fitted), instrument_noise(problem), not derived
     )
     if found.gain < AIR_GAIN or found.gust_angle < LEAST_GUST_ANGLE:
         return None

@@ -36,6 +36,15 @@ def believed_derivatives(aircraft: Aircraft) -> FloatArray | None:
     return np.array([aircraft.model[name] for name in DERIVATIVES])
 
 
+def stated_arms(aircraft: Aircraft) -> frozenset[str]:
+    """Effects whose arm the aircraft file states."""
+    arms = {
+        "alpha_vane_offset": aircraft.alpha.vane_arm_m,
+        "accelerometer_offset": aircraft.accelerometer.arm_m,
+    }
+    return frozenset(effect for effect, arm in arms.items() if arm is not None)
+
+
 def first_guess(flights: Flights, aircraft: Aircraft) -> Point:
     """Derivatives by equation error (regression of the rates), or the aircraft file's own."""
     own = np.zeros((len(flights), 4))
@@ -96,6 +105,7 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
         flights,
         base_entries(aircraft),
         believed=believed_derivatives(aircraft),
+        stated=stated_arms(aircraft),
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )

@@ -13,8 +13,8 @@ NARROW = 0.03
 """Relative error of derivatives that are right: linearised, at a nearby speed."""
 WIDE = 0.3
 """Relative error of derivatives that are not."""
-_CHI_SQUARE_95 = 12.59
-"""Of six degrees of freedom."""
+_CHI_SQUARE_999 = 22.46
+"""Of six degrees of freedom, exceeded once in a thousand times."""
 
 
 def scale_of(believed: FloatArray) -> FloatArray:
@@ -32,9 +32,9 @@ def scale_of(believed: FloatArray) -> FloatArray:
     )
 
 
-def pull_of(believed: FloatArray) -> FloatArray:
-    """Shape (6,): inverse variances of a file that is off, to decide only what data leave open."""
-    return np.asarray(1.0 / (WIDE * scale_of(believed)) ** 2)
+def pull_of(believed: FloatArray, trusted: bool = False) -> FloatArray:
+    """Shape (6,): inverse variances of a file that is off, to decide only what data leave open, or right."""
+    return np.asarray(1.0 / ((NARROW if trusted else WIDE) * scale_of(believed)) ** 2)
 
 
 def log_belief(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray) -> float:
@@ -60,7 +60,7 @@ def is_off(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray
     """Whether the file's derivatives cannot be right within their tolerance; arguments as ``log_belief``."""
     scale = scale_of(believed)
     spread = covariance / np.outer(scale, scale) + NARROW**2 * np.eye(6)
-    return _distance((derivatives - believed) / scale, spread) > _CHI_SQUARE_95
+    return _distance((derivatives - believed) / scale, spread) > _CHI_SQUARE_999
 
 
 def _distance(off: FloatArray, spread: FloatArray) -> float:

@@ -13,7 +13,7 @@ from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.measure import gap_of
 from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.score import LEAST_GAIN, Judged
+from advisor.gap.score import Judged
 from advisor.gap.ties import tied_with
 from advisor.gap.waterfall import Stage
 
@@ -26,6 +26,8 @@ _TIME_DOUBT_S = 0.0006
 """Error of a delay, lag or skew for the simulation's grid and the stamps' resolution."""
 _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
+_SCALED_BY = 0.2
+"""Share of what a scale error makes of the trimmed angle that an offset may depart from it."""
 _BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
 SPEED_CHANGE = 0.03
 """Relative change of air speed from which on it is looked at."""
@@ -33,6 +35,11 @@ OFFSET_SIGMAS = 5.0
 """Standard deviations that an offset of α must have to be named."""
 _SPEED_COSTS = 0.05
 """Gap of a simulator at constant speed from which on it is worth a step of the waterfall."""
+_SPEED_IS_CAUSE = (3.0, 6.0)
+"""Gap of a simulator at constant speed from which on the speed may be the cause, where it was flown at
+speeds that clearly differ, and where it merely wandered."""
+_SPEED_DIFFERS = 0.03
+"""Standard deviation of the manoeuvres' mean speeds, relative, of speeds that clearly differ."""
 _SPEED_WANDERS = 0.015
 """Standard deviation of the manoeuvres' mean speeds, relative, from which on the speed is a cause: within
 a manoeuvre it always swings."""
@@ -70,8 +77,8 @@ def probabilities(considered: Sequence[Judged], unexplained: float) -> dict[str,
     if not considered:
         return {}
     # What is not worth a name is no rival, whatever it gains.
-    gains = [j.gain if j.worth_naming else min(j.gain, 0.0) for j in considered]
-    scores = np.array([*gains, LEAST_GAIN]) / TEMPERATURE
+    gains = [(j.gain if j.worth_naming else min(j.gain, 0.0)) - j.least_gain for j in considered]
+    scores = np.array([*gains, 0.0]) / TEMPERATURE
     weights = np.exp(scores - np.max(scores))
     weights = (1.0 - 0.9 * unexplained) * weights / np.sum(weights)
     return {j.effect: float(w) for j, w in zip(considered, weights, strict=False)}
@@ -164,9 +171,9 @@ def alpha_bias_cause(
     least = max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * check.bias_std_rad)
     trim = float(np.mean([flight.trim[0] for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
-    # The trim was read with the offset taken out already, if it was worth taking out.
-    with_offset = trim + check.bias_rad
-    if abs(check.bias_rad) < least or (scale and abs(check.bias_rad - scale * with_offset) < least):
+    # The trim was read with the offset taken out already: what a scale makes of it is no offset.
+    scaled = scale * trim
+    if abs(check.bias_rad) < least or abs(check.bias_rad - scaled) < max(least, _SCALED_BY * abs(scaled)):
         return None
     return Cause(
         "alpha_bias", "alpha_sensor", 0.9, {"bias_rad": Value(check.bias_rad, check.bias_std_rad)},
@@ -207,10 +214,7 @@ def airspeed_cause(
     problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
 ) -> Cause | None:
     """The change of air speed, when ignoring it would cost."""
-    if (
-        constant is None
-        or float(np.mean((constant.mean_square - last.mean_square) / floor**2)) < _SPEED_COSTS
-    ):
+    if constant is None or speed_costs(constant, last, floor) < _SPEED_COSTS:
         return None
     return Cause(
         "airspeed_variation", "force_equation", 0.9,
@@ -219,7 +223,18 @@ def airspeed_cause(
     )  # fmt: skip
 
 
-def speed_wanders(problem: Problem) -> bool:
-    """Whether the manoeuvres were flown at different speeds."""
+def speed_costs(constant: HeldOut, last: HeldOut, floor: FloatArray) -> float:
+    """What a simulator leaves at constant speed beyond one that knows it, mean square over the floor's."""
+    return float(np.mean((constant.mean_square - last.mean_square) / floor**2))
+
+
+def speed_is_a_cause(problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray) -> bool:
+    """Whether the manoeuvres were flown at different speeds, and it matters.
+
+    A few per cent come with every flight: of those the waterfall tells.
+    """
     means = np.array([float(np.mean(f.slow[0])) for f in problem.flights.flights])
-    return bool(np.std(means) / np.mean(means) > _SPEED_WANDERS)
+    scatter = float(np.std(means) / np.mean(means))
+    if constant is None or scatter < _SPEED_WANDERS:
+        return False
+    return speed_costs(constant, last, floor) > _SPEED_IS_CAUSE[scatter < _SPEED_DIFFERS]

@@ -11,11 +11,16 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.airspeed import airspeed_on, along_the_path
 from advisor.gap.layout import OUTPUTS
 from advisor.gap.simulate import GRAVITY_M_S2, THRUST
+from advisor.gap.smoothness import is_smoothed
 
 STEP_S = 0.005
 LEAST_SAMPLES = 30
 DEPARTED_RAD = 1.0
 """Swing of the angle of attack that no equation about a trim describes any more."""
+_QUIET_AFTER = 0.6
+"""Share of the free response after which the motion has died down."""
+_ESTIMATED_HZ = 22.0
+"""ArduPilot renews its estimate of α 20 times a second at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +64,17 @@ class Flight:
         """Length of the record."""
         return self.n * self.h
 
+    def is_quiet(self, t: FloatArray) -> np.ndarray:
+        """Shape (n,), bool: which times lie before the first step or late in the free response."""
+        free = self.duration_s - self.last_step_s
+        return np.asarray((t < self.first_step_s) | (t > self.last_step_s + _QUIET_AFTER * free))
+
+    def quiet_stretches(self, channel: str) -> list[FloatArray]:
+        """What a channel measured before the first step, and late in the free response."""
+        t, y = self.outputs[channel].t, self.outputs[channel].y
+        quiet, before = self.is_quiet(t), t < self.first_step_s
+        return [y[quiet & before], y[quiet & ~before]]
+
 
 @dataclass(frozen=True, slots=True)
 class Flights:
@@ -73,6 +89,8 @@ class Flights:
     """Largest relative departure of the speed from its mean over all manoeuvres."""
     alpha_is_derived: bool
     """α is an autopilot's estimate from inertial sensors, blind to gusts, not a vane."""
+    alpha_is_smoothed: bool
+    """α was filtered before it was stored, as an estimate is: its roughness is no measure of its errors."""
     has: frozenset[str]
     """Slow channels that were measured: airspeed, a_x, bank, throttle, height."""
 
@@ -104,8 +122,22 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
         for name in ("airspeed", "a_x", "bank", "throttle", "height", "climb_rate")
         if usable and all(name in m.channels and len(m.channels[name]) > 1 for m in usable)
     )
-    derived = any(m.channels["alpha"].provenance == "derived" for m in usable if "alpha" in m.channels)
-    return Flights(flights, channels, measured, reference, moves, derived, has)
+    smoothed = "alpha" in channels and is_smoothed([y for f in flights for y in f.quiet_stretches("alpha")])
+    derived = any(_is_estimate(m, smoothed) for m in usable)
+    return Flights(flights, channels, measured, reference, moves, derived, derived or smoothed, has)
+
+
+def _is_estimate(m: Maneuver, smoothed: bool) -> bool:
+    """Whether α is made from inertial sensors, as it says of itself.
+
+    ArduPilot says so of whatever it sends. What is rough and renewed too fast for its estimator is a vane's.
+    """
+    alpha = m.channels.get("alpha")
+    if alpha is None or alpha.provenance != "derived":
+        return False
+    t, _ = renewed(alpha.t, alpha.y)
+    slow = len(t) < _ESTIMATED_HZ * (alpha.t[-1] - alpha.t[0])
+    return slow or smoothed or not alpha.source.startswith("AOA_SSA")
 
 
 def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:

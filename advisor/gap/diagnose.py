@@ -20,7 +20,7 @@ from advisor.gap.fit import Fitted, solve_blocks
 from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.layout import DERIVATIVES
-from advisor.gap.leftover import left_over, of_the_wind
+from advisor.gap.leftover import left_over, of_the_wind, other_than_air
 from advisor.gap.linear import linearise
 from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
@@ -122,8 +122,8 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     smooth = prefiltered(problem.flights)
     stated = np.array([white[k] if smooth[c] else 0.0 for k, c in enumerate(problem.channels)])
     leftover = left_over(problem, stages[0].fitted, last, stated)
-    if air is not None and leftover is not None and leftover.block == "air":
-        leftover = None
+    if air is not None and (leftover is None or leftover.block == "air"):
+        leftover = other_than_air(problem, stages[0].fitted, last)
     floor = np.minimum(quiet_rms(problem, last), np.sqrt(stages[-1].held_out.mean_square))
     return Evidence(
         problem,

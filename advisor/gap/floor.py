@@ -9,37 +9,23 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flights
+from advisor.gap.smoothness import white_part
 
 TOLERANCE = 0.02
 """Of the channel's peak: what is called noise in a record that was filtered before it was stored."""
-_BINOMIAL = {2: np.array([1.0, -2.0, 1.0]), 4: np.array([1.0, -4.0, 6.0, -4.0, 1.0])}
 
 
 def white_noise(flights: Flights) -> dict[str, float]:
     """Standard deviation of the white part of every channel, robust against edges of the motion."""
-    return {c: _white([f.outputs[c].y for f in flights.flights], 4) for c in flights.channels}
-
-
-def _white(series: list[FloatArray], order: int, stride: int = 1) -> float:
-    weights = _BINOMIAL[order]
-    differences = []
-    for y in series:
-        n = len(y) - (len(weights) - 1) * stride
-        if n > 0:
-            differences.append(sum(w * y[k * stride : k * stride + n] for k, w in enumerate(weights)))
-    if not differences:
-        return 0.0
-    d = np.concatenate(differences)
-    # Median of |d| instead of the mean square: steps of the motion are few and large.
-    return float(np.median(np.abs(d)) / 0.6745 / np.sqrt(np.sum(weights**2)))
+    return {c: white_part([f.outputs[c].y for f in flights.flights]) for c in flights.channels}
 
 
 def prefiltered(flights: Flights) -> dict[str, bool]:
-    """Channels smoother than white noise can be, or made by an autopilot's estimator altogether."""
+    """Channels of a record that was filtered, or that are smoother than white noise can be."""
     found = {}
     for c in flights.channels:
         peak = peak_of(flights, c)
-        found[c] = flights.alpha_is_derived or white_noise(flights)[c] < 1e-3 * peak
+        found[c] = flights.alpha_is_smoothed or white_noise(flights)[c] < 1e-3 * peak
     return found
 
 

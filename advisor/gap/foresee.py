@@ -127,7 +127,7 @@ def _one_each(variants: Sequence[Variant]) -> list[Variant]:
     groups: dict[str, list[Variant]] = {}
     for v in variants:
         groups.setdefault(v.effect, []).append(v)
-    steps = {effect: [v for v in group if v.fixed] for effect, group in groups.items()}
+    steps = {effect: [v for v in group if "at_s" in v.fixed] for effect, group in groups.items()}
     return [
         steps[effect][len(steps[effect]) // 2] if steps[effect] else group[0]
         for effect, group in groups.items()

@@ -11,7 +11,7 @@ from advisor.gap.causes import (
     alpha_bias_cause,
     alpha_lag_cause,
     causes_of,
-    speed_wanders,
+    speed_is_a_cause,
     with_doubt,
 )
 from advisor.gap.evidence import VISIBLE, Evidence
@@ -49,8 +49,8 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     unknown = e.leftover is not None and late is None
     wrong_values = _wrong_values(e)
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
-    if speed is not None and not (apart or named or wrong_values) and speed_wanders(problem):
-        apart = (speed,)
+    if speed is not None and not (apart or named or wrong_values):
+        apart = (speed,) if speed_is_a_cause(problem, e.constant_speed, last, floor) else ()
     unexplained = e.leftover.share if e.leftover is not None else 0.0
     causes = tuple(
         with_doubt(cause, problem) for cause in causes_of(stages, floor, unexplained, problem.channels)
@@ -67,10 +67,11 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     verdict: Verdict = "none"
     if unknown:
         verdict = "unknown"
+    elif wrong_values and not (named or bias or late):
+        # Moving air may be there besides: it comes with the day, wrong numbers stay.
+        verdict = "parameters"
     elif any(c.present for c in causes):
         verdict = "effect"
-    elif wrong_values:
-        verdict = "parameters"
     if verdict in ("none", "parameters"):
         causes = tuple(replace(c, probability=0.05 * c.probability) for c in causes)
     before = e.file_model if e.file_model is not None else first

@@ -5,13 +5,18 @@ trim), and one entry per parameter of every candidate effect. All effect entries
 plain model, so adding an effect means freeing its entries and nothing else.
 """
 
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
 DERIVATIVES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
 NUISANCES = ("alpha_start", "q_start", "Z_trim", "M_trim")
 """Free in every manoeuvre: deviation of α and q at its start, and the trim terms of Eqs. (1)-(2)
 at the trimmed α and δe instead of at zero."""
 EFFECT_ENTRIES = (
     # input
-    "delay_s", "lag_s", "slowness_s_rad", "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad",
+    "delay_s", "lag_s", "lag_damping", "slowness_s_rad",
+    "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad",
     # moment equation
     "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_alpha_dot", "M_h",
     "M_throttle", "M_thrust", "washed_share", "blown_share",
@@ -35,3 +40,13 @@ OUTPUTS = ("alpha", "q", "a_z", "theta")
 """What is simulated and compared, in this order."""
 SKEWS = ("alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s")
 """Entry that shifts the stamps of each output."""
+
+
+def short_period(p: FloatArray) -> FloatArray:
+    """Z_α, Z_q, M_α, M_q of the two equations solved for their rates: M_α̇ α̇ written out by Eq. (1).
+
+    ``p`` has shape (entries,).
+    """
+    z_alpha, z_q, m_alpha, m_q = p[[INDEX[name] for name in ("Z_alpha", "Z_q", "M_alpha", "M_q")]]
+    lagging = p[INDEX["M_alpha_dot"]]
+    return np.array([z_alpha, z_q, m_alpha + lagging * z_alpha, m_q + lagging * (1.0 + z_q)])

@@ -14,7 +14,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import peak_of
-from advisor.gap.noise import is_quiet
+from advisor.gap.noise import unfiltered
 from advisor.gap.origin import stick_or_motion
 from advisor.gap.probes import SENSOR_CHANNELS, Probe, probe_blocks
 from advisor.gap.problem import Problem
@@ -31,9 +31,11 @@ _OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that."""
 _DOUBT = 2.5
 """Where the floor is stated, not measured, an unknown cause must exceed it this many times."""
-_HEAVY_TAILS = 2.5
+_BETTER_THAN_AIR = 1.25
+"""What another block must take up of a residual, beside what the air does; in moving air at most 1.15."""
+_HEAVY_TAILS = 2.2
 """Standard deviation over the one a normal distribution with the same median error has."""
-_ORDINARY_TAILS = 1.6
+_ORDINARY_TAILS = 1.8
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,31 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     return Leftover(block, best.explained, _ranking(probes, block))
 
 
+def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | None:
+    """What passes for moving air, when an unknown disturbance in another block describes it far better.
+
+    A filter that knows of moving air takes up much of any disturbance with a memory, and little of it is left
+    to be seen. So all blocks are asked about the residual as the instruments have it. Arguments as above.
+    """
+    if problem.flights.alpha_is_derived:
+        # An estimate of α sees no gust: what it leaves out looks like a disturbance elsewhere.
+        return None
+    problem, last = unfiltered(problem, last)
+    noise = _instruments(problem)
+    probes = probe_blocks(problem, last, noise)
+    # A gust along the path changes the lift alone: a disturbance of the force is as much the air's.
+    air = max((p for p in probes if p.block in ("air", "force_equation")), key=lambda p: p.gain)
+    best = probes[0]
+    if best.explained < _BETTER_THAN_AIR * air.explained:
+        return None
+    powers = (rms_of(problem, last.left) / noise) ** 2
+    taken = float(np.sum((rms_of(problem, first.left) / noise) ** 2 - powers))
+    if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
+        return None
+    block = stick_or_motion(problem, last, noise, probes) or best.block
+    return Leftover(block, best.explained, _ranking(probes, block))
+
+
 def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Mean squares while the elevator works, and while all is quiet; both shape (channels,)."""
     sums, counts = np.zeros((2, len(problem.channels))), np.zeros((2, len(problem.channels)))
@@ -96,7 +123,7 @@ def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, F
         for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
             t = flight.outputs[name].t
             active = (t >= flight.first_step_s) & (t <= flight.last_step_s + 0.3 * free)
-            for k, inside in enumerate((active, is_quiet(flight, t))):
+            for k, inside in enumerate((active, flight.is_quiet(t))):
                 sums[k, c] += float(np.sum(left[rows][inside] ** 2))
                 counts[k, c] += np.count_nonzero(inside)
     active_power, quiet_power = sums / np.maximum(counts, 1.0)

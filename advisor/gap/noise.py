@@ -11,20 +11,18 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flight
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import stated_floor, white_noise
 from advisor.gap.holdout import mean_squares
+from advisor.gap.layout import DERIVATIVES, short_period
 from advisor.gap.linear import as_measured
 from advisor.gap.probes import probe_blocks
-from advisor.gap.problem import Problem, row_weights
+from advisor.gap.problem import Point, Problem, row_weights
 from advisor.gap.stamps import stamp_variance
 from advisor.gap.whitening import Weighting, Whitening, filters_for, rows_in_time
 from advisor.oem.innovations import CHANNELS, AirModel
 from advisor.oem.turbulence import Rows, cost_of, find_turbulence
 
-QUIET_AFTER = 0.6
-"""Share of the free response after which the motion has died down."""
 _LEAST_SAMPLES = 50
 _LEAST_QUIET_S = 4.0
 """Over all manoeuvres; less tells nothing of slow air."""
@@ -38,12 +36,6 @@ _NO_LESS = 0.98
 """Weight of a sample from which on it is as good as any."""
 _LEAST_GAIN = 15.0
 """Log likelihood by which colour or air must beat white noise before a filter is worth it."""
-
-
-def is_quiet(flight: Flight, t: FloatArray) -> np.ndarray:
-    """Shape (n,), bool: which times lie before the first step or late in the free response."""
-    free = flight.duration_s - flight.last_step_s
-    return np.asarray((t < flight.first_step_s) | (t > flight.last_step_s + QUIET_AFTER * free))
 
 
 def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> Whitening | None:
@@ -75,7 +67,7 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
     if sum(r.t[-1] - r.t[0] for r in rows) < _LEAST_QUIET_S:
         return None
     white = instrument_noise(problem)
-    system = system_of(fitted)
+    system = system_of(problem, fitted)
     # A gust that happens to fall into a quiet stretch is not what the flight's noise is like.
     loud = np.array([float(np.mean((r.left / white[r.channel]) ** 2)) for r in rows])
     rows = [r for r, power in zip(rows, loud, strict=True) if power <= _LONE * np.median(loud)]
@@ -110,17 +102,26 @@ def _is_of_the_air(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) 
 
 def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
     """The same fit, seen through one of its manoeuvres."""
+    problem, fitted = unfiltered(problem, fitted)
     flights = replace(problem.flights, flights=(problem.flights.flights[i],))
+    # Effects between manoeuvres need them all: what they amount to in this one becomes part of its base.
+    p = problem.driving(fitted.point)[i]
     return (
-        replace(problem, flights=flights, whitening=None),
+        replace(problem, flights=flights, base=p),
         replace(
             fitted,
-            point=replace(fitted.point, own=fitted.point.own[i : i + 1]),
+            point=Point(p[: len(DERIVATIVES)], fitted.point.own[i : i + 1]),
             innovations=(fitted.left[i],),
             left=(fitted.left[i],),
-            linear=(as_measured(fitted.linear[i]),),
+            linear=(fitted.linear[i],),
         ),
     )
+
+
+def unfiltered(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+    """The same fit with its residual as the instruments have it."""
+    linear = tuple(as_measured(block) for block in fitted.linear)
+    return replace(problem, whitening=None), replace(fitted, innovations=fitted.left, linear=linear)
 
 
 def _seen(problem: Problem) -> float:
@@ -145,7 +146,7 @@ def quiet_rms(problem: Problem, fitted: Fitted) -> FloatArray:
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
     for flight, left in zip(problem.flights.flights, fitted.left, strict=True):
         for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
-            inside = is_quiet(flight, flight.outputs[name].t)
+            inside = flight.is_quiet(flight.outputs[name].t)
             power[c] += float(np.sum(left[rows][inside] ** 2))
             count[c] += np.count_nonzero(inside)
     whole = rms_of(problem, fitted.left)
@@ -159,9 +160,9 @@ def instrument_noise(problem: Problem) -> FloatArray:
     return np.array([white.get(c, 1.0) for c in CHANNELS])
 
 
-def system_of(fitted: Fitted) -> FloatArray:
-    """Z_α, Z_q, M_α, M_q."""
-    return np.asarray(fitted.point.derivatives[[0, 1, 3, 4]])
+def system_of(problem: Problem, fitted: Fitted) -> FloatArray:
+    """Z_α, Z_q, M_α, M_q by which the aircraft answers the air."""
+    return short_period(problem.driving(fitted.point)[0])
 
 
 def rows_of(problem: Problem, i: int, left: FloatArray) -> Rows:
@@ -174,7 +175,7 @@ def _quiet_parts(problem: Problem, i: int, left: FloatArray) -> list[Rows]:
     """The quiet stretches before and after, each a record of its own."""
     flight = problem.flights.flights[i]
     whole = rows_of(problem, i, left)
-    quiet = is_quiet(flight, whole.t)
+    quiet = flight.is_quiet(whole.t)
     before = whole.t < flight.first_step_s
     return [
         Rows(whole.t[inside], whole.channel[inside], whole.left[inside], whole.speed)

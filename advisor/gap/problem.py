@@ -71,6 +71,8 @@ class Problem:
     """Shape (channels,): noise of the innovations is never taken to be below this."""
     believed: FloatArray | None = None
     """Shape (6,): derivatives of the aircraft file, when it has all."""
+    stated: frozenset[str] = frozenset()
+    """Effects whose size the aircraft file states: arms of the vane and the accelerometer."""
     jitter_s: float = 0.0
     """Standard deviation of the stamps, the command's like all others."""
     whitening: Whitening | None = None
@@ -92,8 +94,10 @@ class Problem:
         Both shape (k,). The derivatives are drawn to the file's, what is part of every model to nothing; far
         more weakly than by any data that say something: it decides only what the data leave open.
         """
-        inverse = [np.zeros(len(DERIVATIVES)) if self.believed is None else pull_of(self.believed)]
-        expected = [point.derivatives if self.believed is None else self.believed]
+        inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
+        if self.believed is not None:
+            trusted = any(effect.trusts for effect in point.effects)
+            inverse, expected = [pull_of(self.believed, trusted)], [self.believed]
         for effect, values in zip(point.effects, point.values, strict=True):
             inverse.append(1.0 / np.array(effect.spread) ** 2 if effect.spread else np.zeros(len(values)))
             expected.append(np.zeros(len(values)))

@@ -35,6 +35,8 @@ _RIVAL = 0.3
 """Share of the best promise below which a candidate is no rival."""
 LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
+_STATED = -4.0
+"""Log odds of an arm that the aircraft file states, against its twin that the file leaves open."""
 _BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
 """Log odds of an arm that points backwards. The two are one and the same in the data; but a vane
 behind the centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""
@@ -68,10 +70,15 @@ class Judged:
     @property
     def worth_naming(self) -> bool:
         """Better on unseen manoeuvres, by more than noise, and not smaller than matters."""
-        if self.gain < LEAST_GAIN or (self.removed < self.least and self.belief < LEAST_BELIEF):
+        if self.gain < self.least_gain or (self.removed < self.least and self.belief < LEAST_BELIEF):
             return False
         size = float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
         return size > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
+
+    @property
+    def least_gain(self) -> float:
+        """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
+        return 0.0 if self.variant.trusts and self.belief >= LEAST_BELIEF else LEAST_GAIN
 
     @property
     def at_its_bounds(self) -> bool:
@@ -144,16 +151,24 @@ def addition(
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
-    backward = _BACKWARD.get(variant.effect, 0.0) if value[0] < 0.0 else 0.0
+    odds = _odds_of_arm(problem, variant.effect, float(value[0]))
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
-        gain=likelihood - price + belief + backward,
+        gain=likelihood - price + belief + odds,
         removed=_difference(problem, held_before, held),
         least=least_change(problem),
         smallest=variant.smallest + (_JITTERS * problem.jitter_s if variant.names[0] in _TIMES else 0.0),
         belief=belief, value=value,
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
+
+
+def _odds_of_arm(problem: Problem, effect: str, arm_m: float) -> float:
+    """Log odds beforehand between the two arms that are one and the same in the data; 0 for other effects."""
+    if effect not in _BACKWARD:
+        return 0.0
+    only_one_stated = len(problem.stated) == 1 and effect in problem.stated
+    return (_BACKWARD[effect] if arm_m < 0.0 else 0.0) + (_STATED if only_one_stated else 0.0)
 
 
 def least_change(problem: Problem) -> float:

@@ -23,7 +23,7 @@ GRAVITY_M_S2 = 9.80665
 _I = tuple(INDEX[name] for name in INDEX)
 (
     Z_ALPHA, Z_Q, Z_DELTA, M_ALPHA, M_Q, M_DELTA, ALPHA_START, Q_START, Z_TRIM, M_TRIM,
-    DELAY, LAG, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL,
+    DELAY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL,
     M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, M_THRUST, WASHED, BLOWN,
     Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, Z_H, LIFT_H, SCALE_H,
     STEP_AT, STEP_Z_ALPHA, STEP_Z_DELTA, STEP_M_ALPHA, STEP_M_DELTA,
@@ -51,6 +51,13 @@ def surface(
     late = p[DELAY] + p[LATENCY]
     tau, slow, play, dead = p[LAG], p[SLOWNESS], max(p[PLAY], 0.0), max(p[DEADBAND], 0.0)
     decay = np.exp(-h / tau) if tau > 1e-6 else 0.0
+    # A servo of second order that trails a ramp by τ = 2 ζ/ω, solved exactly for what it is told in a step.
+    zeta = p[LAG_DAMPING] if tau > 1e-3 else 0.0
+    omega = 2.0 * zeta / max(tau, 1e-3)
+    damped = np.sqrt(max(1.0 - zeta * zeta, 1e-6))
+    fade = np.exp(-zeta * omega * h)
+    swing_cos, swing_sin = np.cos(omega * damped * h), np.sin(omega * damped * h) / damped
+    rate = 0.0
     servo = np.nan
     link = 0.0
     last = len(u) - 1
@@ -79,7 +86,12 @@ def surface(
         if np.isnan(servo):
             servo = want
             link = want + p[PLAY_SIDE] * play
-        if tau > 1e-6:
+        if omega > 0.0:
+            off, before_rate = servo - want, rate
+            to = want + fade * ((swing_cos + zeta * swing_sin) * off + swing_sin * rate / omega)
+            rate = fade * ((swing_cos - zeta * swing_sin) * rate - omega * swing_sin * off)
+            mean = 0.5 * (servo + to) + h * (before_rate - rate) / 12.0
+        elif tau > 1e-6:
             to = decay * servo + (1.0 - decay) * want
             mean = want + (servo - want) * (tau / h) * (1.0 - decay)
         else:

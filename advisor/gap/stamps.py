@@ -16,16 +16,15 @@ from advisor.gap.layout import OUTPUTS
 from advisor.gap.problem import Problem
 from advisor.gap.simulate import read_off
 
-_CHANNEL = "q"
-"""The pitch rate: smooth but quick, and measured by the best instrument on board."""
+_LEAST = {"q": 0.3, "a_z": 0.45}
+"""Channels that move quickly and are measured well; for each, from which error through its stamps on, beside
+its noise, that error counts. The accelerometer is rough at every step of the command, stamps or not."""
 _THIRD = np.array([1.0, -3.0, 3.0, -1.0])
 _BINS = 12
 _MEDIAN = 0.455
 """Of the square of a standard normal number."""
 _FAR = 2.0
 """Standard deviations of a stamp within which a sample may have been taken on the other side of a step."""
-_LEAST = 0.3
-"""Error of the pitch rate through its stamps, over its noise, from which on it counts."""
 
 
 def stamp_variance(problem: Problem, fitted: Fitted) -> list[FloatArray]:
@@ -70,8 +69,20 @@ def _flown(problem: Problem, fitted: Fitted) -> list[FloatArray]:
 
 
 def stamp_jitter(problem: Problem, fitted: Fitted, rates: list[FloatArray]) -> float:
-    """Standard deviation of the stamps in s; 0 where the residual is no rougher when the channel moves."""
-    c = problem.channels.index(_CHANNEL)
+    """Standard deviation of the stamps in s; 0 where no residual is rougher when its channel moves.
+
+    Of several channels the one counts that is disturbed most beside its noise.
+    """
+    found = [_jitter_in(problem, fitted, rates, c) for c in _LEAST if c in problem.channels]
+    exceeded, jitter_s = max(found)
+    return jitter_s if exceeded > 1.0 else 0.0
+
+
+def _jitter_in(
+    problem: Problem, fitted: Fitted, rates: list[FloatArray], channel: str
+) -> tuple[float, float]:
+    """Power of what uncertain stamps do to a channel over the least that counts, and their deviation in s."""
+    c = problem.channels.index(channel)
     power = float(np.sum(_THIRD**2))
     rough, moving = [], []
     for i, flight in enumerate(problem.flights.flights):
@@ -83,9 +94,9 @@ def stamp_jitter(problem: Problem, fitted: Fitted, rates: list[FloatArray]) -> f
     bins = np.array_split(np.argsort(x), _BINS)
     level = np.array([np.median(y[k]) for k in bins]) / _MEDIAN
     X = np.column_stack([np.ones(_BINS), [np.mean(x[k]) for k in bins]]) / level[:, None]
-    variance = float(np.linalg.lstsq(X, np.ones(_BINS), rcond=None)[0][1])
-    noise = white_noise(problem.flights)[_CHANNEL]
-    return float(np.sqrt(variance)) if variance * float(np.mean(x)) > (_LEAST * noise) ** 2 else 0.0
+    variance = max(float(np.linalg.lstsq(X, np.ones(_BINS), rcond=None)[0][1]), 0.0)
+    least = _LEAST[channel] * white_noise(problem.flights)[channel]
+    return variance * float(np.mean(x)) / least**2, float(np.sqrt(variance))
 
 
 def _read(problem: Problem, i: int, series: list[FloatArray]) -> FloatArray:

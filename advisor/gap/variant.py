@@ -43,6 +43,8 @@ class Variant:
     """Standard deviation about zero that each parameter has beforehand; none: anything goes."""
     always: bool = False
     """Part of every model and never named: nobody's fault."""
+    trusts: bool = False
+    """Fitted with the derivatives of the aircraft file trusted: for what derivatives imitate exactly."""
     inverted: bool = False
     """The aircraft file has the reciprocal of the first parameter (a rate limit, searched as slowness)."""
 

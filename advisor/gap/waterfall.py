@@ -90,13 +90,18 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
         }
         weakest = min(names, key=lambda name: missed[name].gain)
         if missed[weakest].worth_naming:
-            names.sort(key=lambda name: -missed[name].gain)
+            names.sort(key=lambda name: (_may_be_known(problem, name), -missed[name].gain))
             break
         names.remove(weakest)
         full = without[weakest]
     if names == [s.added.effect for s in stages if s.added is not None]:
         return stages
     return _rebuilt(problem, stages[0], names, full, considered, stages[-1].considered)
+
+
+def _may_be_known(problem: Problem, effect: str) -> bool:
+    """An accelerometer's place that the file leaves open: something to measure rather, so it comes last."""
+    return effect == "accelerometer_offset" and effect not in problem.stated
 
 
 def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:

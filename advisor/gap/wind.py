@@ -16,8 +16,8 @@ from advisor.gap.airspeed import integrated, speed_rate
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
-_LEAST_PER_S = 0.06
-"""Change of the wind, m/s per metre, from which on it is felt: a knot in ten metres."""
+_LEAST_PER_S = 0.1
+"""Change of the wind, m/s per metre, from which on it is felt: a knot in five metres."""
 _SIGMAS = 4.0
 
 

@@ -15,7 +15,7 @@ from sim.effects.changes import EngineSurge, FieldChange, Onset
 from sim.effects.instruments import BendingMode, Lagging, Scaled, VaneAhead
 from sim.effects.kit import Kind, Kit, Sizes
 from sim.fittings import Turbulent
-from sim.servo import FirstOrderServo, TransportDelay
+from sim.servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
 
 
 def _delay(kit: Kit, sizes: Sizes) -> None:
@@ -23,7 +23,13 @@ def _delay(kit: Kit, sizes: Sizes) -> None:
 
 
 def _lag(kit: Kit, sizes: Sizes) -> None:
-    kit.fittings.mechanisms.append(FirstOrderServo(sizes["lag_s"]))
+    lag_s, damping = sizes["lag_s"], sizes["damping"]
+    if damping > 0.0 and lag_s > 0.0:
+        # Both trail a ramp by the same time.
+        servo: Mechanism = SecondOrderServo(damping / (math.pi * lag_s), damping)
+    else:
+        servo = FirstOrderServo(lag_s)
+    kit.fittings.mechanisms.append(servo)
 
 
 def _rate_limit(kit: Kit, sizes: Sizes) -> None:
@@ -124,7 +130,7 @@ def _skew(*channels: str) -> Kind:
 _ONSET = {"at_s": math.nan, "ramp_s": 0.0}
 
 CATALOGUE: dict[str, Kind] = {
-    "actuator_lag": Kind("input", {"lag_s": 0.06}, _lag),
+    "actuator_lag": Kind("input", {"lag_s": 0.06, "damping": 0.0}, _lag),
     "actuator_rate_limit": Kind("input", {"rate_rad_s": 0.7}, _rate_limit),
     "actuator_backlash": Kind("input", {"half_width_rad": 0.007}, _backlash),
     "actuator_deadband": Kind("input", {"half_width_rad": 0.007, "neutral_rad": 0.0}, _deadband),

@@ -51,12 +51,12 @@ SWITCHES = {
     "ice_t": 1e9, "ice": 0.0, "height": 1e9, "ground": 0.0,
     "vane_lag": 0.0, "vane_arm": 0.0, "mode_gain": 0.0, "mode_hz": 5.0, "acc_arm": 0.0,
     "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
-    "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0,
+    "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0, "before_lag": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
- KINK, KWIDTH, WASH) = range(len(SWITCHES))  # fmt: skip
+ KINK, KWIDTH, WASH, BEFORE) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -69,7 +69,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, out):
     cm0 = -cma * a0
     trim_thrust = qs * (cd0 + induced * (mass * G / qs) ** 2)
     u, w, q, th = speed * np.cos(a0), speed * np.sin(a0), 0.0, a0
-    de, link, lag_state = 0.0, 0.0, 0.0
+    de, link, lag_state, valve = 0.0, 0.0, 0.0, 0.0
     x_lift, vane = a0, a0
     eta, deta = 0.0, 0.0
     alphadot, height = 0.0, sw[HEIGHT]
@@ -80,7 +80,9 @@ def _integrate(n, command, gust, thrust_wave, body, sw, out):
         want = command[max(k - shift, 0)]
         if sw[DEAD] > 0.0:
             want = np.sign(want) * max(abs(want) - sw[DEAD], 0.0)
-        speed_wanted = (want - lag_state) / max(sw[LAG], H)
+        # A servo of second order, critically damped where both lags are alike.
+        valve += H * (want - valve) / max(sw[BEFORE], H)
+        speed_wanted = ((valve if sw[BEFORE] > 0.0 else want) - lag_state) / max(sw[LAG], H)
         lag_state += H * min(max(speed_wanted, -sw[RATE]), sw[RATE])
         if lag_state - link > sw[PLAY]:
             link = lag_state - sw[PLAY]
@@ -159,6 +161,8 @@ class Setup:
     q_scale: float = 0.0
     skew: dict[str, float] = field(default_factory=dict)
     thrust_amplitude: float = 0.0
+    surge: float = 0.0
+    """Thrust that comes and goes at 0.6 Hz of itself, relative; no throttle shows it."""
     heights_m: tuple[float, ...] = ()
     """Height of each manoeuvre above ground, in turn, and logged; none: far above it."""
     gust_std: float = 0.0
@@ -220,6 +224,7 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
             if setup.thrust_amplitude
             else 0 * t
         )
+        wave = wave + setup.surge * np.sin(2 * np.pi * 0.6 * t + i)
         gust = _dryden(rng, n, setup.gust_std, body[4])
         if setup.gust_pulse and i % 3 == 1:
             at = start + rng.uniform(0.5, 5.0)

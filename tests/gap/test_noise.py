@@ -7,8 +7,10 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.baseline import fit_baseline
+from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
+from advisor.gap.noise import only
 from advisor.gap.stamps import rates_of, stamp_jitter
 from advisor.gap.whitening import Filters
 from advisor.oem.innovations import AirModel, gains_of
@@ -62,14 +64,16 @@ def test_air_that_moves_as_assumed_leaves_white_innovations():
         assert abs(one[1:] @ one[:-1] / (one @ one)) < 0.08
 
 
-@pytest.mark.parametrize("jitter", [0.0, 0.004])
-def test_wrong_stamps_are_read_from_the_roughness_of_the_residual_and_uneven_ones_are_not_wrong(jitter):
+@pytest.mark.parametrize(("jitter", "channel"), [(0.0, "q"), (0.004, "q"), (0.004, "a_z")])
+def test_wrong_stamps_are_read_from_the_roughness_of_a_residual_and_uneven_ones_are_not_wrong(
+    jitter, channel
+):
     rng = np.random.default_rng(11)
     maneuvers = []
     for maneuver in fly(Setup(maneuvers=4, jitter=0.004, noise=0.005, seed=11)):
-        q = maneuver.channels["q"]
-        wrong = replace(q, t=np.sort(q.t + rng.uniform(-jitter, jitter, len(q))))
-        maneuvers.append(replace(maneuver, channels={**maneuver.channels, "q": wrong}))
+        whole = maneuver.channels[channel]
+        wrong = replace(whole, t=np.sort(whole.t + rng.uniform(-jitter, jitter, len(whole))))
+        maneuvers.append(replace(maneuver, channels={**maneuver.channels, channel: wrong}))
     problem, fitted = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
     found = stamp_jitter(problem, fitted, rates_of(problem, fitted))
     # Uniform over ±jitter: its standard deviation is jitter/√3.
@@ -103,3 +107,12 @@ def test_what_a_gyro_adds_in_every_manoeuvre_is_an_offset_and_no_slow_noise():
     found = diagnose(fly(Setup(maneuvers=6, q_bias=0.02, noise=0.004, seed=61)), Aircraft())
     assert found.causes[0].effect == "pitch_rate_bias"
     assert found.causes[0].parameters["bias_rad_s"].value == pytest.approx(0.02, rel=0.1)
+
+
+def test_one_manoeuvre_seen_alone_keeps_what_changes_between_manoeuvres():
+    problem, fitted = fit_baseline(prepare(fly(Setup(maneuvers=4, seed=62)), Aircraft()), Aircraft())
+    drift = next(v for v in variants_for(problem.flights) if v.effect == "cg_shift")
+    point = fitted.point.with_effect(drift, (0.004,))
+    whole = problem.fly(problem.flights.flights[3], problem.driving(point)[3])
+    alone, seen = only(problem, replace(fitted, point=point), 3)
+    assert alone.fly(alone.flights.flights[0], alone.driving(seen.point)[0]) == pytest.approx(whole)

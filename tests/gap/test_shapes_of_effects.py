@@ -1,9 +1,12 @@
-"""Effects whose shape no parabola and no constant has: a kink of the lift, lift that grows by a share."""
+"""Effects of another shape than the simplest: lift that kinks or grows by a share, a servo with inertia."""
 
+import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
+from advisor.gap.layout import ENTRIES, INDEX
+from advisor.gap.simulate import surface
 from tests.gap.generator import Setup, fly
 
 
@@ -28,3 +31,19 @@ def test_a_manoeuvre_in_which_the_aircraft_departed_is_left_out_and_the_rest_is_
     assert max(float(abs(m.channels["alpha"].y).max()) for m in flown) > 2.0
     found = diagnose(flown, Aircraft())
     assert len(found.gap.by_maneuver) == 4
+
+
+def test_a_servo_of_second_order_trails_a_ramp_by_its_lag_and_overshoots_as_its_damping_says():
+    p = np.zeros(len(ENTRIES))
+    p[INDEX["lag_s"]], p[INDEX["lag_damping"]] = 0.1, 0.7
+    h, n = 0.001, 2000
+    ramp = surface(h, n, np.array([0.0, 10.0]), np.array([0.0, 10.0]), False, 0.0, p)
+    assert ramp[-1] == pytest.approx((n - 0.5) * h - 0.1, abs=1e-3)
+    step = surface(h, n, np.array([0.0, 0.1, 0.100001, 10.0]), np.array([0.0, 0.0, 1.0, 1.0]), False, 0.0, p)
+    assert step.max() - 1.0 == pytest.approx(np.exp(-np.pi * 0.7 / np.sqrt(1.0 - 0.7**2)), rel=0.02)
+
+
+def test_a_servo_that_begins_to_move_gently_is_called_late_by_its_lag_and_no_delay():
+    found = diagnose(fly(Setup(maneuvers=6, switches={"lag": 0.04, "before_lag": 0.04}, seed=14)), Aircraft())
+    assert found.causes[0].effect == "actuator_lag"
+    assert found.causes[0].parameters["lag_s"].value == pytest.approx(0.08, rel=0.15)

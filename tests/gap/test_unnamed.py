@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft import PARAMETERS, Aircraft, Alpha
+from advisor.gap.baseline import fit_baseline
 from advisor.gap.belief import log_belief
 from advisor.gap.candidates.between import shift_moments
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
 from advisor.gap.layout import ENTRIES, INDEX
+from advisor.gap.leftover import other_than_air
 from advisor.gap.origin import followed
 from advisor.gap.probes import KNOTS_S
 from advisor.gap.simulate import surface
@@ -65,11 +67,16 @@ def test_two_effects_are_both_named_the_larger_one_first():
     assert present == ["transport_delay", "alpha_scale"]
 
 
-def test_the_files_derivatives_tell_a_moment_of_the_angles_rate_from_three_other_derivatives():
-    """In still air at constant speed the two are the same motion."""
+@pytest.fixture(scope="module")
+def still_file():
+    """An aircraft file whose derivatives are right."""
     still = diagnose(fly(Setup(maneuvers=6, seed=24)), Aircraft())
-    file = Aircraft(model={name: still.model[name].value for name in PARAMETERS})
-    found = diagnose(fly(Setup(maneuvers=6, switches={"cm_alphadot": -8.0}, seed=25)), file)
+    return Aircraft(model={name: still.model[name].value for name in PARAMETERS})
+
+
+def test_the_files_derivatives_tell_a_moment_of_the_angles_rate_from_three_other_derivatives(still_file):
+    """In still air at constant speed the two are the same motion."""
+    found = diagnose(fly(Setup(maneuvers=6, switches={"cm_alphadot": -8.0}, seed=25)), still_file)
     assert found.causes[0].effect == "alpha_dot"
 
 
@@ -105,3 +112,54 @@ def test_a_wandering_centre_of_gravity_gives_every_force_the_same_further_arm():
     forces = BELIEVED[[0, 1, 2]]
     assert changes[0] == pytest.approx(-0.2 * BELIEVED[3])
     assert changes / forces == pytest.approx(np.full(3, changes[0] / forces[0]))
+
+
+def test_moving_air_is_believed_only_where_no_other_place_describes_the_residual_far_better():
+    gusty = fly(Setup(maneuvers=6, gust_std=0.5, seed=3))
+    problem, plain = fit_baseline(prepare(gusty, Aircraft()), Aircraft())
+    assert other_than_air(problem, plain, plain) is None
+    surging = fly(Setup(maneuvers=6, switches={"thrust_arm": 0.05}, surge=1.0, seed=3))
+    problem, plain = fit_baseline(prepare(surging, Aircraft()), Aircraft())
+    found = other_than_air(problem, plain, plain)
+    assert found is not None
+    assert found.block == "moment_equation"
+
+
+def test_a_moment_of_the_angles_rate_is_told_from_three_other_derivatives_in_moving_air_too(still_file):
+    moving = Setup(maneuvers=6, switches={"cm_alphadot": -8.0}, gust_std=0.3, seed=27)
+    found = diagnose(fly(moving), still_file)
+    assert found.causes[0].effect == "alpha_dot"
+    # M_α̇ = Cm_α̇ q̄ S c²/(2 V I_yy)
+    true = -8.0 * 0.5 * 1.225 * 22.0 * 0.62 * 0.30**2 / (2.0 * 1.1)
+    size = found.causes[0].parameters["M_alpha_dot"]
+    assert abs(size.value - true) < 3.0 * size.std
+
+
+def test_three_wrong_derivatives_of_the_file_are_no_moment_of_the_angles_rate(still_file):
+    off = {**still_file.model, "M_alpha": 1.3 * still_file.model["M_alpha"]}
+    off |= {"M_q": 0.7 * off["M_q"], "M_delta_e": 1.2 * off["M_delta_e"]}
+    assert diagnose(fly(Setup(maneuvers=6, seed=28)), Aircraft(model=off)).verdict == "parameters"
+
+
+def test_numbers_of_the_file_that_are_off_come_before_the_air_of_the_day(still_file):
+    off = Aircraft(model={**still_file.model, "M_alpha": 1.4 * still_file.model["M_alpha"]})
+    found = diagnose(fly(Setup(maneuvers=6, gust_std=0.3, seed=29)), off)
+    assert found.verdict == "parameters"
+
+
+def test_of_two_arms_alike_in_the_data_the_one_that_the_file_leaves_open_is_named():
+    flown = fly(Setup(maneuvers=6, switches={"acc_arm": 0.4}, seed=30))
+    vane_known = Aircraft(alpha=Alpha(vane_arm_m=0.0))
+    assert diagnose(flown, vane_known).causes[0].effect == "accelerometer_offset"
+
+
+def test_an_angle_renewed_faster_than_an_autopilot_estimates_it_comes_from_an_instrument():
+    def called_derived(maneuver, every: int):
+        alpha = maneuver.channels["alpha"]
+        held = alpha.y[np.arange(len(alpha)) // every * every]
+        channel = replace(alpha, y=held, source="AOA_SSA.AOA", provenance="derived")
+        return replace(maneuver, channels={**maneuver.channels, "alpha": channel})
+
+    flown = fly(Setup(maneuvers=3, seed=31))
+    assert not prepare([called_derived(m, 1) for m in flown], Aircraft()).alpha_is_derived
+    assert prepare([called_derived(m, 3) for m in flown], Aircraft()).alpha_is_derived

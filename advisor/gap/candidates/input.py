@@ -9,6 +9,8 @@ from advisor.gap.variant import Values, Variant
 
 BLOCK = "input"
 _SMALL_ANGLE = 0.00175  # 0.1 deg
+_DAMPING = 0.7
+"""Of a servo of second order: that of position loops tuned to be quick without overshoot."""
 
 
 LATENCY = Variant(
@@ -31,6 +33,12 @@ def _delay(p: FloatArray, values: Values, _: Flights) -> None:
     p[:, INDEX["latency_s"]] = 0.0
 
 
+def _second_order(p: FloatArray, values: Values, _: Flights) -> None:
+    """Trails a ramp as the lag of first order does, but begins to move more gently."""
+    p[:, INDEX["lag_s"]] += values[0]
+    p[:, INDEX["lag_damping"]] = _DAMPING
+
+
 def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
     """A band about one neutral deflection of the aircraft, wherever each manoeuvre was trimmed.
 
@@ -42,7 +50,7 @@ def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
 
 
 def variants() -> list[Variant]:
-    """Effects of the block, one first-order description each."""
+    """Effects of the block, described to first order, and the lag to second order, too."""
     return [
         Variant(
             "transport_delay",
@@ -63,6 +71,17 @@ def variants() -> list[Variant]:
             ((0.0, 1.0),),
             0.004,
             entries=("lag_s",),
+        ),
+        Variant(
+            "actuator_lag",
+            BLOCK,
+            ("lag_s",),
+            ((0.03,), (0.1,)),
+            (1e-3,),
+            ((0.0, 1.0),),
+            0.004,
+            apply_with=_second_order,
+            fixed={"damping": _DAMPING},
         ),
         # Searched as slowness 1/ρ: zero is "no limit", and the cost is smooth there.
         Variant(

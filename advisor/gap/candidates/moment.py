@@ -68,6 +68,7 @@ def variants(flights: Flights) -> list[Variant]:
             ((-20.0, 0.0),),
             0.0,
             entries=("M_alpha_dot",),
+            trusts=True,
         ),
         *ramps_and_steps("cg_shift", BLOCK, flights, shift_moments),
     ]

@@ -1,0 +1,38 @@
+"""Is noise white, or was a record filtered before it was stored? Told by differences of raw samples.
+
+Where nothing is flown, differences of white noise are as large over two samples as over one. Moving air is a
+process of first order at short times, whose differences grow by at most √2; what a filter or an
+autopilot's estimator has smoothed grows by more.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+_WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
+SMOOTHED = 2.0
+"""Growth of differences over two samples from which on a record was filtered."""
+
+
+def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:
+    """Standard deviation of the white noise in stretches of one channel, from fourth differences.
+
+    The median of |d| instead of the mean square: steps of the motion are few and large.
+    """
+    differences = []
+    for y in series:
+        n = len(y) - (len(_WEIGHTS) - 1) * stride
+        if n > 0:
+            differences.append(sum(w * y[k * stride : k * stride + n] for k, w in enumerate(_WEIGHTS)))
+    if not differences:
+        return 0.0
+    d = np.concatenate(differences)
+    return float(np.median(np.abs(d)) / 0.6745 / np.sqrt(np.sum(_WEIGHTS**2)))
+
+
+def is_smoothed(quiet: Sequence[FloatArray]) -> bool:
+    """Whether stretches in which nothing was flown are smoother than instruments and air can be."""
+    white = white_part(quiet)
+    return white > 0.0 and white_part(quiet, stride=2) > SMOOTHED * white
