@@ -187,6 +187,9 @@ async def test_reports_behind_a_key_wait_for_its_answer_and_then_the_newest_is_s
 ):
     async with stage(flights.state(3)) as here:
         app, states = here.app, []
+        # The campaign has nothing more to say: a report of its own would be a newer one.
+        app.conductor.stop()
+        await here.until(lambda: all(worker.is_finished for worker in app.workers))
         show = app.show
 
         def watched(view: View) -> None:
