@@ -19,7 +19,9 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     The choice is made with a delay and a lag in the model, else a held command would pass for a
     delay of half a sample, or a delay for a held command.
     """
-    delay, lag, _ = (v for v in input.variants() if v.effect in ("transport_delay", "actuator_lag"))
+    delay, lag = (
+        next(v for v in input.variants() if v.effect == name) for name in ("transport_delay", "actuator_lag")
+    )
     screen = Screen(linear, fitted)
     best = min(
         (s for s in map(screen.try_one, (delay, lag)) if s is not None), key=lambda s: s.cost, default=None

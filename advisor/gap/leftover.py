@@ -94,7 +94,8 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
     """What passes for moving air, when an unknown disturbance in another block describes it far better.
 
     A filter that knows of moving air takes up much of any disturbance with a memory, and little of it is left
-    to be seen. So all blocks are asked about the residual as the instruments have it. Arguments as above.
+    to be seen. So all blocks are asked about the residual as the instruments have it. Arguments as in
+    ``left_over``.
     """
     if problem.flights.alpha_is_derived:
         # An estimate of α sees no gust: what it leaves out looks like a disturbance elsewhere.

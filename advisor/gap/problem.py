@@ -96,7 +96,7 @@ class Problem:
         """
         inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
         if self.believed is not None:
-            trusted = any(effect.trusts for effect in point.effects)
+            trusted = any(effect.twin is not None for effect in point.effects)
             inverse, expected = [pull_of(self.believed, trusted)], [self.believed]
         for effect, values in zip(point.effects, point.values, strict=True):
             inverse.append(1.0 / np.array(effect.spread) ** 2 if effect.spread else np.zeros(len(values)))

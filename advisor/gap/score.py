@@ -78,7 +78,7 @@ class Judged:
     @property
     def least_gain(self) -> float:
         """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
-        return 0.0 if self.variant.trusts and self.belief >= LEAST_BELIEF else LEAST_GAIN
+        return 0.0 if self.variant.twin is not None and self.belief >= LEAST_BELIEF else LEAST_GAIN
 
     @property
     def at_its_bounds(self) -> bool:

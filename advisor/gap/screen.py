@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.belief import scale_of
 from advisor.gap.fit import Fitted, bounds_of, factor, noise_of
 from advisor.gap.linear import shared_steps
 from advisor.gap.normal import solved
@@ -92,6 +93,8 @@ class Screen:
         problem = self.problem
         sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
         point = self.fitted.point.with_effect(variant, start, sides)
+        if variant.twin is not None and problem.believed is not None:
+            point = self._at_the_files(variant.twin, variant)
         if sides is not None:
             point = self.choose_sides(point, variant)
         here = self.at(point)
@@ -121,6 +124,16 @@ class Screen:
             if gained < max(0.5, 1e-3 * (self.fitted.cost - here.cost)):
                 break
         return Screened(here.point.effects[-1], here.point, here.cost, here.noise)
+
+    def _at_the_files(self, twin: Callable[[FloatArray], FloatArray], variant: Variant) -> Point:
+        """The same motion with the effect in it, as near to the file's derivatives as it comes."""
+        assert self.problem.believed is not None
+        derivatives = self.fitted.point.derivatives
+        scale = scale_of(self.problem.believed)
+        change, missed = twin(derivatives) / scale, (self.problem.believed - derivatives) / scale
+        value = float(np.clip(change @ missed / (change @ change), *variant.bounds[0]))
+        shared = replace(self.fitted.point, derivatives=derivatives + value * twin(derivatives))
+        return shared.with_effect(variant, (value,))
 
     def at(self, point: Point) -> "Place | None":
         """Fly there, the manoeuvres' own numbers refitted with the baseline's sensitivities."""

@@ -43,8 +43,9 @@ class Variant:
     """Standard deviation about zero that each parameter has beforehand; none: anything goes."""
     always: bool = False
     """Part of every model and never named: nobody's fault."""
-    trusts: bool = False
-    """Fitted with the derivatives of the aircraft file trusted: for what derivatives imitate exactly."""
+    twin: Callable[[FloatArray], FloatArray] | None = None
+    """For what derivatives imitate exactly: how they change per unit of the parameter while the motion stays
+    the same, from shape (6,) to shape (6,). It is fitted with the aircraft file's derivatives trusted."""
     inverted: bool = False
     """The aircraft file has the reciprocal of the first parameter (a rate limit, searched as slowness)."""
 

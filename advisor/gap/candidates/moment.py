@@ -1,5 +1,8 @@
 """The moment equation: curved moments, thrust line, rate of α, a wandering centre of gravity."""
 
+import numpy as np
+
+from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import ramps_and_steps, shift_moments
 from advisor.gap.data import Flights
 from advisor.gap.variant import Variant
@@ -23,6 +26,12 @@ PROPELLER = Variant(
 elevator in the propeller's wake meets more than the stream's dynamic pressure, by thrust over disk area
 (Glauert's momentum theory); thrust is drag, which grows with V², plus what the accelerations show along the
 path. For a light single the wake's share of the elevator's power is about a fifth."""
+
+
+def _without_rate_of_alpha(derivatives: FloatArray) -> FloatArray:
+    """M_α̇ α̇ written out by Eq. (1): what M_α, M_q and M_δe lose for each unit of M_α̇."""
+    z_alpha, z_q, z_delta = derivatives[:3]
+    return np.array([0.0, 0.0, 0.0, -z_alpha, -(1.0 + z_q), -z_delta])
 
 
 def variants(flights: Flights) -> list[Variant]:
@@ -68,7 +77,7 @@ def variants(flights: Flights) -> list[Variant]:
             ((-20.0, 0.0),),
             0.0,
             entries=("M_alpha_dot",),
-            trusts=True,
+            twin=_without_rate_of_alpha,
         ),
         *ramps_and_steps("cg_shift", BLOCK, flights, shift_moments),
     ]
