@@ -94,7 +94,7 @@ class Screen:
         sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
         point = self.fitted.point.with_effect(variant, start, sides)
         if variant.twin is not None and problem.believed is not None:
-            point = self._at_the_files(variant.twin, variant)
+            point = self._at_the_files(variant)
         if sides is not None:
             point = self.choose_sides(point, variant)
         here = self.at(point)
@@ -125,15 +125,16 @@ class Screen:
                 break
         return Screened(here.point.effects[-1], here.point, here.cost, here.noise)
 
-    def _at_the_files(self, twin: Callable[[FloatArray], FloatArray], variant: Variant) -> Point:
+    def _at_the_files(self, variant: Variant) -> Point:
         """The same motion with the effect in it, as near to the file's derivatives as it comes."""
-        assert self.problem.believed is not None
-        derivatives = self.fitted.point.derivatives
-        scale = scale_of(self.problem.believed)
-        change, missed = twin(derivatives) / scale, (self.problem.believed - derivatives) / scale
+        plain, believed = self.fitted.point, self.problem.believed
+        assert variant.twin is not None
+        assert believed is not None
+        per_unit = variant.twin(plain.derivatives, plain.effects, self.problem.flights.reference_m_s)
+        scale = scale_of(believed)
+        change, missed = per_unit[: len(believed)] / scale, (believed - plain.derivatives) / scale
         value = float(np.clip(change @ missed / (change @ change), *variant.bounds[0]))
-        shared = replace(self.fitted.point, derivatives=derivatives + value * twin(derivatives))
-        return shared.with_effect(variant, (value,))
+        return plain.moved(plain.shared + value * per_unit, plain.own).with_effect(variant, (value,))
 
     def at(self, point: Point) -> "Place | None":
         """Fly there, the manoeuvres' own numbers refitted with the baseline's sensitivities."""

@@ -43,9 +43,10 @@ class Variant:
     """Standard deviation about zero that each parameter has beforehand; none: anything goes."""
     always: bool = False
     """Part of every model and never named: nobody's fault."""
-    twin: Callable[[FloatArray], FloatArray] | None = None
-    """For what derivatives imitate exactly: how they change per unit of the parameter while the motion stays
-    the same, from shape (6,) to shape (6,). It is fitted with the aircraft file's derivatives trusted."""
+    twin: Callable[[FloatArray, Sequence["Variant"], float], FloatArray] | None = None
+    """For what derivatives imitate exactly: how all shared numbers, shape (k,), change per unit of the size
+    while the motion stays the same, given the derivatives, the effects in the model and the reference speed.
+    It is fitted with the aircraft file's derivatives trusted."""
     inverted: bool = False
     """The aircraft file has the reciprocal of the first parameter (a rate limit, searched as slowness)."""
 

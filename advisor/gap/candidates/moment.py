@@ -1,10 +1,13 @@
 """The moment equation: curved moments, thrust line, rate of α, a wandering centre of gravity."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import ramps_and_steps, shift_moments
 from advisor.gap.data import Flights
+from advisor.gap.simulate import GRAVITY_M_S2
 from advisor.gap.variant import Variant
 
 BLOCK = "moment_equation"
@@ -28,10 +31,18 @@ elevator in the propeller's wake meets more than the stream's dynamic pressure, 
 path. For a light single the wake's share of the elevator's power is about a fifth."""
 
 
-def _without_rate_of_alpha(derivatives: FloatArray) -> FloatArray:
-    """M_α̇ α̇ written out by Eq. (1): what M_α, M_q and M_δe lose for each unit of M_α̇."""
+def _without_rate_of_alpha(
+    derivatives: FloatArray, effects: Sequence[Variant], speed_m_s: float
+) -> FloatArray:
+    """M_α̇ α̇ written out by Eq. (1): what M_α, M_q, M_δe and the thrust's moment lose for each unit of M_α̇.
+
+    The weight's part of α̇ goes with 1/V, the trimmed lift's with V: together with 1 − V², as the thrust's.
+    """
     z_alpha, z_q, z_delta = derivatives[:3]
-    return np.array([0.0, 0.0, 0.0, -z_alpha, -(1.0 + z_q), -z_delta])
+    change = [0.0, 0.0, 0.0, -z_alpha, -(1.0 + z_q), -z_delta]
+    for effect in effects:
+        change += [-GRAVITY_M_S2 / speed_m_s if name == "M_thrust" else 0.0 for name in effect.names]
+    return np.array(change)
 
 
 def variants(flights: Flights) -> list[Variant]:
