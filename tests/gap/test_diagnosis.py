@@ -46,10 +46,11 @@ def test_effects_of_every_kind_are_named_in_noise_with_memory_and_jitter(effect,
     assert found.verdict == "effect"
 
 
-def test_a_scale_error_of_the_vane_is_not_taken_for_an_offset():
-    found = diagnose(fly(Setup(maneuvers=6, alpha_scale=0.12, seed=5)), Aircraft())
+@pytest.mark.parametrize("scale", [0.12, -0.28])
+def test_a_scale_error_of_the_vane_is_not_taken_for_an_offset(scale):
+    found = diagnose(fly(Setup(maneuvers=6, alpha_scale=scale, seed=5)), Aircraft())
     assert found.causes[0].effect == "alpha_scale"
-    assert found.causes[0].parameters["scale"].value == pytest.approx(0.12, abs=0.01)
+    assert found.causes[0].parameters["scale"].value == pytest.approx(scale, abs=0.01)
     assert not any(c.effect == "alpha_bias" for c in found.causes)
 
 

@@ -153,6 +153,13 @@ def test_of_two_arms_alike_in_the_data_the_one_that_the_file_leaves_open_is_name
     assert diagnose(flown, vane_known).causes[0].effect == "accelerometer_offset"
 
 
+def test_a_place_of_the_accelerometer_that_the_file_leaves_open_is_named_after_any_other_effect():
+    flown = fly(Setup(maneuvers=6, switches={"acc_arm": 0.8, "delay": 0.02}, seed=32))
+    vane_known = Aircraft(alpha=Alpha(vane_arm_m=0.0))
+    present = [cause.effect for cause in diagnose(flown, vane_known).causes if cause.present]
+    assert present == ["transport_delay", "accelerometer_offset"]
+
+
 def test_an_angle_renewed_faster_than_an_autopilot_estimates_it_comes_from_an_instrument():
     def called_derived(maneuver, every: int):
         alpha = maneuver.channels["alpha"]
