@@ -41,8 +41,7 @@ speeds that clearly differ, and where it merely wandered."""
 _SPEED_DIFFERS = 0.03
 """Standard deviation of the manoeuvres' mean speeds, relative, of speeds that clearly differ."""
 _SPEED_WANDERS = 0.015
-"""Standard deviation of the manoeuvres' mean speeds, relative, from which on the speed is a cause: within
-a manoeuvre it always swings."""
+"""The same, from which on the speed may be a cause at all: within a manoeuvre it always swings."""
 
 
 def causes_of(

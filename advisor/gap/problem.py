@@ -92,7 +92,8 @@ class Problem:
         """Inverse variances with which shared numbers are drawn to what is expected, and what they lack.
 
         Both shape (k,). The derivatives are drawn to the file's, what is part of every model to nothing; far
-        more weakly than by any data that say something: it decides only what the data leave open.
+        more weakly than by any data that say something: it decides only what the data leave open. With an
+        effect in the model that derivatives imitate exactly, the file's count as right within their tolerance.
         """
         inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
         if self.believed is not None:

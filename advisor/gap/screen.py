@@ -92,9 +92,10 @@ class Screen:
     def _descend(self, variant: Variant, start: tuple[float, ...], iterations: int) -> Screened | None:
         problem = self.problem
         sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
-        point = self.fitted.point.with_effect(variant, start, sides)
         if variant.twin is not None and problem.believed is not None:
             point = self._at_the_files(variant)
+        else:
+            point = self.fitted.point.with_effect(variant, start, sides)
         if sides is not None:
             point = self.choose_sides(point, variant)
         here = self.at(point)
