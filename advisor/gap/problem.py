@@ -93,7 +93,7 @@ class Problem:
 
         Both shape (k,). The derivatives are drawn to the file's, what is part of every model to nothing; far
         more weakly than by any data that say something: it decides only what the data leave open. With an
-        effect in the model that derivatives imitate exactly, the file's count as right within their tolerance.
+        effect in the model that derivatives imitate exactly, the file's are right within their tolerance.
         """
         inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
         if self.believed is not None:
