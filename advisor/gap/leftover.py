@@ -73,11 +73,13 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     best = probes[0]
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     active, quiet = unrest(problem, last.innovations)
-    loud = rms_of(problem, last.left) > _DOUBT * stated
+    # An autopilot's estimate of α is off by what its filter makes of the motion: no cause shows in it alone.
+    telling = np.array([c != "alpha" or not problem.flights.alpha_is_derived for c in problem.channels])
+    loud = telling & (rms_of(problem, last.left) > _DOUBT * stated)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - _instruments(problem) ** 2, 0.0))
     peaks = np.array([peak_of(problem.flights, c) for c in problem.channels])
-    if not np.any(beyond > _OF_PEAK * peaks):
+    if not np.any(telling & (beyond > _OF_PEAK * peaks)):
         return None
     disturbed = best.gain >= _LEAST_GAIN and best.explained >= _LEAST_SHARE and bool(np.any(loud))
     if not disturbed and np.max(louder) < _RESTLESS:

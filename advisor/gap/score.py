@@ -1,4 +1,4 @@
-"""Which: full fits of the few candidates worth it, each judged on manoeuvres it has not seen."""
+"""What an effect adds to a model, judged on manoeuvres that the fit has not seen."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,16 +7,12 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.belief import NARROW, is_off, log_belief, scale_of
-from advisor.gap.fit import Fitted, fit, rms_of
+from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import independent_samples, peak_of, prefiltered
 from advisor.gap.holdout import HeldOut, hold_out
-from advisor.gap.layout import DERIVATIVES
-from advisor.gap.problem import Point, Problem, counts
-from advisor.gap.screen import Screen, Screened
+from advisor.gap.problem import Problem, counts
 from advisor.gap.variant import Variant
 
-FULL_FITS = 5
-"""Candidates that get a full fit after the screening."""
 LEAST_GAIN = 6.0
 """Log likelihood, on held-out manoeuvres and after the price of its numbers, that an effect must bring."""
 LEAST_GAP = 0.05
@@ -29,14 +25,11 @@ _DOUBT = 2.5
 _TIMES = {"delay_s", "lag_s", "skew_s"}
 _JITTERS = 3.0
 """Standard deviations of the stamps by which a time must exceed its physical minimum."""
-_PROMISE = 0.7
-"""Share of the least that the screening must promise before a full fit is spent on a candidate."""
-_RIVAL = 0.3
-"""Share of the best promise below which a candidate is no rival."""
 LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
 _STATED = -4.0
-"""Log odds of an arm that the aircraft file states, against its twin that the file leaves open."""
+"""Log odds of an arm that the aircraft file states, against its twin that the file leaves open; and of a
+vane's where the angle of attack is an estimate."""
 _BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
 """Log odds of an arm that points backwards. The two are one and the same in the data; but a vane
 behind the centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""
@@ -90,10 +83,15 @@ class Judged:
     @property
     def large_enough(self) -> bool:
         """At or above the physical minimum."""
-        if self.effect == "icing":
-            # The lift slope and the stability; the elevator's share of the lift is hardly ever known.
-            return bool(np.max(np.abs(self.value[[0, 2]])) >= self.smallest)
-        return bool(abs(self.value[0]) >= self.smallest)
+        return size_of(self.variant, self.value) >= self.smallest
+
+
+def size_of(variant: Variant, value: FloatArray) -> float:
+    """The number of an effect that its physical minimum is about."""
+    if variant.effect == "icing":
+        # The lift slope and the stability; the elevator's share of the lift is hardly ever known.
+        return float(np.max(np.abs(value[[0, 2]])))
+    return float(abs(value[0]))
 
 
 def worth(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
@@ -105,29 +103,9 @@ def worth(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
     return total
 
 
-def judge(
-    problem: Problem, before: Fitted, held_before: HeldOut, candidates: Sequence[Screened]
-) -> list[Judged]:
-    """Full fits of the best variant of the best effects; the best judgement first."""
-    chosen: dict[str, Screened] = {}
-    promises = [0.5 * (before.cost - c.cost) + c.belief for c in candidates]
-    for candidate, promise in zip(candidates, promises, strict=True):
-        if promise < _RIVAL * max(promises):
-            continue
-        promised = 0.5 * (before.cost - candidate.cost)
-        if promised < _PROMISE * LEAST_GAIN and candidate.belief < _PROMISE * LEAST_BELIEF:
-            continue
-        if candidate.variant.effect not in chosen and len(chosen) < FULL_FITS:
-            chosen[candidate.variant.effect] = candidate
-    fits = [fit(problem, s.point, s.noise, iterations=8, tolerance=0.5) for s in chosen.values()]
-    if not fits:
-        return []
-    best = min(fits, key=lambda f: f.cost)
-    independent = worth(problem, best.innovations)
-    judged = [
-        addition(problem, before, held_before, f, f.point.effects[-1].effect, independent) for f in fits
-    ]
-    return sorted(judged, key=lambda j: -j.gain)
+def smallest_of(problem: Problem, variant: Variant) -> float:
+    """Size of an effect's first parameter below which it is not worth a name, the stamps as they are."""
+    return variant.smallest + (_JITTERS * problem.jitter_s if variant.names[0] in _TIMES else 0.0)
 
 
 def addition(
@@ -157,7 +135,7 @@ def addition(
         gain=likelihood - price + belief + odds,
         removed=_difference(problem, held_before, held),
         least=least_change(problem),
-        smallest=variant.smallest + (_JITTERS * problem.jitter_s if variant.names[0] in _TIMES else 0.0),
+        smallest=smallest_of(problem, variant),
         belief=belief, value=value,
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
@@ -168,7 +146,8 @@ def _odds_of_arm(problem: Problem, effect: str, arm_m: float) -> float:
     if effect not in _BACKWARD:
         return 0.0
     only_one_stated = len(problem.stated) == 1 and effect in problem.stated
-    return (_BACKWARD[effect] if arm_m < 0.0 else 0.0) + (_STATED if only_one_stated else 0.0)
+    no_vane = effect == "alpha_vane_offset" and problem.flights.alpha_is_derived
+    return (_BACKWARD[effect] if arm_m < 0.0 else 0.0) + (_STATED if only_one_stated or no_vane else 0.0)
 
 
 def least_change(problem: Problem) -> float:
@@ -232,18 +211,3 @@ def covariance(
     scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
     normal = information / np.outer(scale, scale)
     return np.asarray(np.linalg.pinv(normal, rcond=1e-12, hermitian=True) / np.outer(scale, scale))
-
-
-def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]) -> list[Screened]:
-    """The screening, without the effects the model has already."""
-    present = {e.effect for e in fitted.point.effects}
-    independent = counts(problem)
-    known = covariance(problem, fitted, independent)[: len(DERIVATIVES), : len(DERIVATIVES)]
-    plain = belief_in(problem, fitted, independent)
-
-    def believed(point: Point) -> float:
-        if problem.believed is None:
-            return 0.0
-        return log_belief(point.derivatives, known, problem.believed) - plain
-
-    return Screen(problem, fitted).try_all([v for v in variants if v.effect not in present], believed)

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.problem import Problem
-from advisor.gap.score import Judged, addition, candidates_for, judge, worth
+from advisor.gap.ranking import candidates_for, judge
+from advisor.gap.score import Judged, addition, worth
 from advisor.gap.variant import Variant
 
 MOST_EFFECTS = 3

@@ -32,6 +32,9 @@ _CHANNEL_OF = {
 def everywhere(point: Point, flights: Flights, latency_s: float = 0.0) -> Point:
     """The point with what is part of every model."""
     late = point.with_effect(input.LATENCY, (latency_s,))
+    if flights.alpha_is_derived:
+        filters = timing.filters(flights)
+        late = late.with_effect(filters, (0.0,) * len(filters.names))
     return late.with_effect(moment.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 
 

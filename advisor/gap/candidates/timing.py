@@ -1,13 +1,43 @@
 """The stamps: one stream earlier or later than the others."""
 
-from advisor.gap.variant import Variant
+from functools import partial
 
+from advisor.flight.messages import FloatArray
+from advisor.gap.data import Flights
+from advisor.gap.layout import INDEX, OUTPUTS, SKEWS
+from advisor.gap.variant import Values, Variant
+
+BLOCK = "timing"
 _STREAMS = (
     ("alpha_skew", "alpha"),
     ("pitch_rate_skew", "q"),
     ("accelerometer_skew", "a_z"),
     ("attitude_skew", "theta"),
 )
+_FILTERS_S = {"alpha": 0.02, "a_z": 0.01, "theta": 0.01}
+"""By what an autopilot's filters make its channels later than its pitch rate, give or take."""
+
+
+def filters(flights: Flights) -> Variant:
+    """What an autopilot's filters delay, beside its pitch rate; part of every model of such a flight."""
+    channels = [c for c in flights.channels if c in _FILTERS_S]
+    return Variant(
+        "filters",
+        BLOCK,
+        tuple(f"{c}_late_s" for c in channels),
+        ((0.0,) * len(channels),),
+        (1e-3,) * len(channels),
+        tuple((-2.0 * _FILTERS_S[c], 2.0 * _FILTERS_S[c]) for c in channels),
+        0.0,
+        entries=tuple(SKEWS[OUTPUTS.index(c)] for c in channels),
+        spread=tuple(_FILTERS_S[c] for c in channels),
+        always=True,
+    )
+
+
+def _whole_skew(entry: str, p: FloatArray, values: Values, _: Flights) -> None:
+    """All that a stream is late by, what a filter does included."""
+    p[:, INDEX[entry]] = values[0]
 
 
 def variants(least_s: float) -> list[Variant]:
@@ -15,13 +45,13 @@ def variants(least_s: float) -> list[Variant]:
     return [
         Variant(
             effect,
-            "timing",
+            BLOCK,
             ("skew_s",),
             ((0.02,), (-0.02,), (0.1,), (-0.1,)),
             (1e-3,),
             ((-0.4, 0.4),),
             least_s,
-            entries=(f"{channel}_skew_s",),
+            apply_with=partial(_whole_skew, SKEWS[OUTPUTS.index(channel)]),
         )
         for effect, channel in _STREAMS
     ]

@@ -1,0 +1,95 @@
+"""Which: every effect is screened, the few worth it are fitted fully, and the best judgement comes first."""
+
+from collections.abc import Sequence
+
+from advisor.gap.belief import log_belief
+from advisor.gap.fit import Fitted, fit
+from advisor.gap.holdout import HeldOut
+from advisor.gap.layout import DERIVATIVES
+from advisor.gap.problem import Point, Problem, counts
+from advisor.gap.score import (
+    LEAST_BELIEF,
+    LEAST_GAIN,
+    Judged,
+    addition,
+    belief_in,
+    covariance,
+    size_of,
+    smallest_of,
+    worth,
+)
+from advisor.gap.screen import Screen, Screened
+from advisor.gap.variant import Variant
+
+_PROMISE = 0.7
+"""Share of the least that the screening must promise before a full fit is spent on a candidate."""
+_FITS = 5
+"""Candidates that get a full fit after the screening."""
+_RIVAL = 0.3
+"""Share of the best promise below which a candidate is no rival."""
+_GROSS = 300.0
+"""Log likelihood promised by the best from which on the right model is far from where the screening looks."""
+_GROSS_FITS = 8
+_GROSS_RIVAL = 0.05
+
+
+def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]) -> list[Screened]:
+    """The screening, without the effects the model has already."""
+    present = {e.effect for e in fitted.point.effects}
+    independent = counts(problem)
+    known = covariance(problem, fitted, independent)[: len(DERIVATIVES), : len(DERIVATIVES)]
+    plain = belief_in(problem, fitted, independent)
+
+    def believed(point: Point) -> float:
+        if problem.believed is None:
+            return 0.0
+        return log_belief(point.derivatives, known, problem.believed) - plain
+
+    return Screen(problem, fitted).try_all([v for v in variants if v.effect not in present], believed)
+
+
+def judge(
+    problem: Problem, before: Fitted, held_before: HeldOut, candidates: Sequence[Screened]
+) -> list[Judged]:
+    """Full fits of the best variants of the best effects; the best judgement first."""
+    fits = [
+        fit(problem, s.point, s.noise, iterations=8, tolerance=0.5)
+        for s in shortlist(problem, before, candidates)
+    ]
+    if not fits:
+        return []
+    independent = worth(problem, min(fits, key=lambda f: f.cost).innovations)
+    likeliest: dict[str, Fitted] = {}
+    for fitted in sorted(fits, key=lambda f: f.cost):
+        likeliest.setdefault(fitted.point.effects[-1].effect, fitted)
+    judged = [addition(problem, before, held_before, f, e, independent) for e, f in likeliest.items()]
+    return sorted(judged, key=lambda j: -j.gain)
+
+
+def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) -> list[Screened]:
+    """Candidates worth a full fit; ``candidates`` come best first.
+
+    One too small to be named is no rival of the others. Where the gap is gross the order and the sizes that
+    the screening finds are worth less: more effects are fitted then, and two variants of each.
+    """
+
+    def promise(c: Screened) -> float:
+        return 0.5 * (before.cost - c.cost)
+
+    def best_of(some: Sequence[Screened]) -> float:
+        return max((promise(c) + c.belief for c in some), default=0.0)
+
+    gross = best_of(candidates) > _GROSS
+    if not gross:
+        candidates = [
+            c for c in candidates
+            if size_of(c.variant, c.point.values[-1]) >= smallest_of(problem, c.variant)
+        ]  # fmt: skip
+    least = (_GROSS_RIVAL if gross else _RIVAL) * best_of(candidates)
+    chosen: list[Screened] = []
+    for c in candidates:
+        worth_it = promise(c) >= _PROMISE * LEAST_GAIN or c.belief >= _PROMISE * LEAST_BELIEF
+        same = sum(c.variant.effect == other.variant.effect for other in chosen)
+        if worth_it and promise(c) + c.belief >= least and same < (2 if gross else 1):
+            chosen.append(c)
+    return chosen[: _GROSS_FITS if gross else _FITS]

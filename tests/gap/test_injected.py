@@ -1,0 +1,70 @@
+"""An effect put into a flight that ArduPlane recorded is found there: real rates, filters and stamps."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft, Elevator
+from advisor.gap.diagnose import diagnose
+from advisor.report.gap import maneuvers_of
+
+LOG = Path(__file__).parents[2] / "logs" / "arduplane-calm.tlog"
+SERVO = Elevator(calibration=((1000.0, 25.0), (1500.0, 0.0), (2000.0, -25.0)), lag_s=0.14)
+
+
+@cache
+def flown():
+    return maneuvers_of([LOG], Aircraft(elevator=SERVO))
+
+
+def diagnosed(channel, change):
+    """The diagnosis of the flight with one of its channels changed."""
+    maneuvers = [replace(m, channels={**m.channels, channel: change(m.channels[channel])}) for m in flown()]
+    return diagnose(maneuvers, Aircraft(elevator=SERVO))
+
+
+def scaled(by):
+    return lambda c: replace(c, y=by * c.y)
+
+
+def shifted(by):
+    return lambda c: replace(c, y=c.y + by)
+
+
+def later(by):
+    return lambda c: replace(c, t=c.t + by)
+
+
+@pytest.mark.parametrize(
+    ("channel", "change", "effect", "parameter", "size"),
+    [
+        ("elevator", later(-0.06), "transport_delay", "delay_s", 0.06),
+        ("q", scaled(0.85), "pitch_rate_scale", "scale", -0.15),
+        ("q", shifted(np.radians(1.2)), "pitch_rate_bias", "bias_rad_s", np.radians(1.2)),
+        ("a_z", later(0.08), "accelerometer_skew", "skew_s", 0.08),
+        ("alpha", later(0.08), "alpha_skew", "skew_s", 0.09),
+        ("alpha", shifted(np.radians(1.5)), "alpha_bias", "bias_rad", np.radians(1.5)),
+    ],
+)
+def test_an_effect_put_into_a_recorded_flight_is_named_with_its_size(
+    channel, change, effect, parameter, size
+):
+    found = diagnosed(channel, change)
+    assert found.verdict == "effect"
+    assert found.causes[0].effect == effect
+    assert found.causes[0].parameters[parameter].value == pytest.approx(size, rel=0.15)
+
+
+def test_as_it_was_flown_only_the_late_estimate_of_the_angle_of_attack_is_named():
+    found = diagnose(list(flown()), Aircraft(elevator=SERVO))
+    assert [c.effect for c in found.causes if c.present] == ["alpha_lag"]
+
+
+def test_the_servos_lag_is_found_when_the_file_does_not_have_it():
+    unknown = replace(SERVO, lag_s=None)
+    found = diagnose(list(flown()), Aircraft(elevator=unknown))
+    assert found.causes[0].effect == "actuator_lag"
+    assert found.causes[0].parameters["lag_s"].value == pytest.approx(0.12, abs=0.03)
