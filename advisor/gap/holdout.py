@@ -22,6 +22,8 @@ _INDIFFERENT = 3e-4
 them leaves the range in which the model is linear."""
 _ANCHOR = 1e-3
 """Weight of "no effect" beside what all manoeuvres say of an effect's parameter."""
+_LONE = 0.9
+"""Share of the information on a number from which on a single manoeuvre tells of it."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,13 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
             innovations[i] = fitted.linear[i].after(step, own)
             lefts[i] = fitted.linear[i].measured.after(step, own)
     return held_out(problem, lefts, innovations)
+
+
+def has_lone_witness(problem: Problem, fitted: Fitted, index: int) -> bool:
+    """Whether one manoeuvre alone tells of a shared number: what it says no other can confirm."""
+    weights = 1.0 / fitted.noise
+    told = [_reduced(problem, i, block, weights)[0][index, index] for i, block in enumerate(fitted.linear)]
+    return bool(max(told) > _LONE * sum(told))
 
 
 def held_out(

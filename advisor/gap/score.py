@@ -9,12 +9,14 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.belief import NARROW, is_off, log_belief, scale_of
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import independent_samples, peak_of, prefiltered
-from advisor.gap.holdout import HeldOut, hold_out
+from advisor.gap.holdout import HeldOut, has_lone_witness, hold_out
 from advisor.gap.problem import Problem, counts
 from advisor.gap.variant import Variant
 
 LEAST_GAIN = 6.0
 """Log likelihood, on held-out manoeuvres and after the price of its numbers, that an effect must bring."""
+_UNCONFIRMED = 20.0
+"""The same of what a single manoeuvre tells, which no other can confirm."""
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
 LEAST_SIGMA = 3.0
@@ -54,6 +56,8 @@ class Judged:
     """Log probability gained because the derivatives it leaves agree better with the file's."""
     value: FloatArray
     std: FloatArray
+    unconfirmed: bool = False
+    """A single manoeuvre tells of it: ``gain`` and ``removed`` are the fit's own."""
 
     @property
     def effect(self) -> str:
@@ -71,6 +75,8 @@ class Judged:
     @property
     def least_gain(self) -> float:
         """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
+        if self.unconfirmed:
+            return _UNCONFIRMED
         return 0.0 if self.variant.twin is not None and self.belief >= LEAST_BELIEF else LEAST_GAIN
 
     @property
@@ -122,10 +128,14 @@ def addition(
     variant, value = point.effects[k], point.values[k]
     at = len(point.derivatives) + sum(len(v) for v in point.values[:k])
     held = hold_out(problem, fitted)
+    # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
+    unconfirmed = bool(variant.needs) and has_lone_witness(problem, fitted, at)
+    seen_before, seen_after = (before, fitted) if unconfirmed else (held_before, held)
     # What was gained on manoeuvres kept out, but by luck not more than in the fit itself.
     ratio = np.log(held_before.innovations / held.innovations)
     fitted_ratio = np.log((before.noise / fitted.noise) ** 2)
-    likelihood = min(float(np.sum(independent / 2.0 * r)) for r in (ratio, fitted_ratio))
+    ratios = (fitted_ratio,) if unconfirmed else (ratio, fitted_ratio)
+    likelihood = min(float(np.sum(independent / 2.0 * r)) for r in ratios)
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
@@ -133,10 +143,10 @@ def addition(
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
         gain=likelihood - price + belief + odds,
-        removed=_difference(problem, held_before, held),
+        removed=_difference(problem, seen_before, seen_after),
         least=least_change(problem),
         smallest=smallest_of(problem, variant),
-        belief=belief, value=value,
+        belief=belief, value=value, unconfirmed=unconfirmed,
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
 
@@ -163,7 +173,7 @@ def least_change(problem: Problem) -> float:
     return max(least, float(_OF_PEAK**2 / np.mean((problem.instruments / peaks) ** 2)))
 
 
-def _difference(problem: Problem, before: HeldOut, after: HeldOut) -> float:
+def _difference(problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted) -> float:
     """Mean over channels of the squared change of the prediction, beside the instruments' noise."""
     changed = rms_of(problem, [a - b for a, b in zip(before.left, after.left, strict=True)])
     noise = 1.0 if problem.instruments is None else problem.instruments

@@ -30,6 +30,8 @@ def cost_of(rows: Sequence[Rows], system: FloatArray, air: AirModel) -> float:
     return sum(gains_of(r.t, r.channel, np.append(system, r.speed), air).cost(r.left) for r in rows)
 
 
+_STEPS = (0.7, 0.35, 0.15)
+"""Of the search in the logarithms of the noise figures: from a factor of two to one of 1.16."""
 _MEMORY_GAIN = 5.0
 """Log likelihood that noise with a memory must bring over white noise before moving air is looked for."""
 
@@ -73,18 +75,13 @@ def find_turbulence(
     if 0.5 * (cost_of(rows, system, plain) - still[1]) < _MEMORY_GAIN:
         # Air that moves has a memory; where no channel shows any, there is nothing to tell apart.
         return Turbulence(0.0, 0.0, still[0])
-    moving = min(
-        (
-            _descend(
-                rows,
-                system,
-                replace(still[0], coloured=0.3 * still[0].coloured, gust=size, gust_memory_s=1.0),
-                True,
-            )
-            for size in (max(0.7 * rms[ALPHA], 1e-4), max(0.2 * rms[ALPHA], 1e-4))
-        ),
-        key=lambda found: found[1],
-    )
+    quieter = replace(still[0], coloured=0.3 * still[0].coloured, gust_memory_s=1.0)
+    begun = [
+        _descend(rows, system, replace(quieter, gust=max(share * rms[ALPHA], 1e-4)), True, _STEPS[:1])
+        for share in (0.7, 0.2)
+    ]
+    nearest = min(begun, key=lambda found: found[1])[0]
+    moving = _descend(rows, system, nearest, True, _STEPS[1:])
     gain = 0.5 * (still[1] - moving[1])
     return Turbulence(gain, moving[0].gust if gain > 0.0 else 0.0, moving[0] if gain > 0.0 else still[0])
 
@@ -95,9 +92,13 @@ def _rms(rows: Sequence[Rows], channel: int) -> float:
 
 
 def _descend(
-    rows: Sequence[Rows], system: FloatArray, start: AirModel, moving: bool
+    rows: Sequence[Rows],
+    system: FloatArray,
+    start: AirModel,
+    moving: bool,
+    steps: Sequence[float] = _STEPS,
 ) -> tuple[AirModel, float]:
-    """Coordinate search in the logarithms of the noise figures, steps halved from a factor of two."""
+    """Coordinate search in the logarithms of the noise figures, by ever smaller steps."""
     figures = [*start.white, *start.coloured, start.memory_s, start.gust, start.gust_memory_s]
     x = np.log(np.maximum(figures, 1e-12))
     free = [*range(9), 9, 10] if moving else [*range(9)]
@@ -110,7 +111,7 @@ def _descend(
                         float(np.clip(v[10], 0.05, 20.0)), start.seen_by_alpha)  # fmt: skip
 
     best = cost_of(rows, system, model(x))
-    for step in (0.7, 0.35, 0.15):
+    for step in steps:
         for i in free:
             for direction in (step, -step):
                 moved = x.copy()

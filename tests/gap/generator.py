@@ -161,6 +161,8 @@ class Setup:
     q_scale: float = 0.0
     skew: dict[str, float] = field(default_factory=dict)
     thrust_amplitude: float = 0.0
+    thrust_moves_in: tuple[int, ...] = tuple(range(9))
+    """Manoeuvres, counted from 0, in which the throttle moves."""
     surge: float = 0.0
     """Thrust that comes and goes at 0.6 Hz of itself, relative; no throttle shows it."""
     heights_m: tuple[float, ...] = ()
@@ -193,6 +195,12 @@ def command_of(kind: int, unit: float, amplitude: float, t: np.ndarray, start: f
     return y
 
 
+def throttle_wave(setup: Setup, i: int, t: np.ndarray, start: float) -> np.ndarray:
+    """Relative change of the throttle in a manoeuvre: opened for a second and a half."""
+    moved = setup.thrust_amplitude if i in setup.thrust_moves_in else 0.0
+    return moved * ((t > start + 1.5) & (t < start + 3.0))
+
+
 def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
     """Fly the manoeuvres and return them as the segmenter would."""
     rng = np.random.default_rng(setup.seed)
@@ -219,12 +227,7 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
             frame.cl_q, frame.cl_de, frame.cd0, frame.induced, cm_alpha, frame.cm_q, frame.cm_de,
             frame.cm_alphadot,
         )  # fmt: skip
-        wave = (
-            setup.thrust_amplitude * ((t > start + 1.5) & (t < start + 3.0))
-            if setup.thrust_amplitude
-            else 0 * t
-        )
-        wave = wave + setup.surge * np.sin(2 * np.pi * 0.6 * t + i)
+        wave = throttle_wave(setup, i, t, start) + setup.surge * np.sin(2 * np.pi * 0.6 * t + i)
         gust = _dryden(rng, n, setup.gust_std, body[4])
         if setup.gust_pulse and i % 3 == 1:
             at = start + rng.uniform(0.5, 5.0)
@@ -304,7 +307,6 @@ def _measure(setup, rng, i, t, command, out, start) -> Maneuver:
         height = setup.heights_m[i % len(setup.heights_m)] + np.cumsum(out[6]) * H
         add("height", height, 10.0, 0.02)
     if setup.thrust_amplitude:
-        wave = setup.thrust_amplitude * ((t > start + 1.5) & (t < start + 3.0))
-        add("throttle", 0.4 * (1 + wave), rate, 0.0)
+        add("throttle", 0.4 * (1 + throttle_wave(setup, i, t, start)), rate, 0.0)
     span = Span(boot, boot + start, boot + start + 2.4, boot + t[-1] - 0.2, "3-2-1-1", (), "quiet")
     return Maneuver(i + 1, 0, span, channels, "MANUAL")

@@ -26,6 +26,21 @@ def test_a_lift_slope_that_grows_near_the_ground_is_the_ground():
     assert found.verdict == "effect"
 
 
+@pytest.mark.parametrize("moves_in", [(0, 1, 2, 3, 4, 5), (2,)])
+def test_thrust_off_the_centre_of_gravity_is_named_even_if_the_throttle_moved_once_only(moves_in):
+    setup = Setup(
+        maneuvers=6, thrust_amplitude=0.5, thrust_moves_in=moves_in, switches={"thrust_arm": 0.05}, seed=4
+    )
+    found = diagnose(fly(setup), Aircraft())
+    assert found.verdict == "effect"
+    assert found.causes[0].effect == "thrust_moment"
+
+
+def test_a_throttle_that_moved_once_without_a_moment_names_nothing():
+    found = diagnose(fly(Setup(maneuvers=6, thrust_amplitude=0.5, thrust_moves_in=(2,), seed=5)), Aircraft())
+    assert found.verdict == "none"
+
+
 def test_a_manoeuvre_in_which_the_aircraft_departed_is_left_out_and_the_rest_is_judged():
     flown = fly(Setup(maneuvers=6, heights_m=(6.0, 60.0, 60.0), switches={"ground": 1.0}, seed=13))
     assert max(float(abs(m.channels["alpha"].y).max()) for m in flown) > 2.0
