@@ -29,7 +29,7 @@ def test_a_lift_slope_that_grows_near_the_ground_is_the_ground():
 @pytest.mark.parametrize("moves_in", [(0, 1, 2, 3, 4, 5), (2,)])
 def test_thrust_off_the_centre_of_gravity_is_named_even_if_the_throttle_moved_once_only(moves_in):
     setup = Setup(
-        maneuvers=6, thrust_amplitude=0.5, thrust_moves_in=moves_in, switches={"thrust_arm": 0.05}, seed=4
+        maneuvers=6, thrust_amplitude=0.5, thrust_moves_in=moves_in, switches={"thrust_arm": 0.02}, seed=4
     )
     found = diagnose(fly(setup), Aircraft())
     assert found.verdict == "effect"
