@@ -8,8 +8,6 @@ import numpy as np
 from advisor.flight.kinematics import SMALLEST_BIAS_RAD, KinematicCheck
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import BLOCK_OF
-from advisor.gap.fit import Fitted, fit
-from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.measure import gap_of
 from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Value
@@ -29,19 +27,8 @@ _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 _SCALED_BY = 0.2
 """Share of what a scale error makes of the trimmed angle that an offset may depart from it."""
 _BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
-SPEED_CHANGE = 0.03
-"""Relative change of air speed from which on it is looked at."""
 OFFSET_SIGMAS = 5.0
 """Standard deviations that an offset of α must have to be named."""
-_SPEED_COSTS = 0.05
-"""Gap of a simulator at constant speed from which on it is worth a step of the waterfall."""
-_SPEED_IS_CAUSE = (3.0, 6.0)
-"""Gap of a simulator at constant speed from which on the speed may be the cause, where it was flown at
-speeds that clearly differ, and where it merely wandered."""
-_SPEED_DIFFERS = 0.03
-"""Standard deviation of the manoeuvres' mean speeds, relative, of speeds that clearly differ."""
-_SPEED_WANDERS = 0.015
-"""The same, from which on the speed may be a cause at all: within a manoeuvre it always swings."""
 
 
 def causes_of(
@@ -192,48 +179,3 @@ def alpha_lag_cause(
         "alpha_lag", "alpha_sensor", 0.9, {"lag_s": Value(check.lag_s, check.lag_std_s)},
         ("alpha_skew", "alpha_vane_offset"), _BREAK_ALPHA_LAG, left, True,
     )  # fmt: skip
-
-
-def at_constant_speed(problem: Problem, fitted: Fitted) -> HeldOut | None:
-    """What the model leaves when derivatives do not move with the air speed, everything refitted.
-
-    None where the speed hardly moves, or is not measured.
-    """
-    flights = problem.flights
-    if not flights.speed_measured or flights.speed_moves < SPEED_CHANGE:
-        return None
-    constant = tuple(
-        replace(f, trim=np.array([f.trim[0], f.trim[1], f.trim[2], 0.0])) for f in flights.flights
-    )
-    frozen = replace(problem, flights=replace(flights, flights=constant))
-    return hold_out(frozen, fit(frozen, fitted.point, fitted.noise, iterations=4))
-
-
-def airspeed_cause(
-    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
-) -> Cause | None:
-    """The change of air speed, when ignoring it would cost."""
-    if constant is None or speed_costs(constant, last, floor) < _SPEED_COSTS:
-        return None
-    return Cause(
-        "airspeed_variation", "force_equation", 0.9,
-        {"change": Value(problem.flights.speed_moves, 0.01)}, (), "",
-        float(np.mean(gap_of(last.mean_square, floor))), True,
-    )  # fmt: skip
-
-
-def speed_costs(constant: HeldOut, last: HeldOut, floor: FloatArray) -> float:
-    """What a simulator leaves at constant speed beyond one that knows it, mean square over the floor's."""
-    return float(np.mean((constant.mean_square - last.mean_square) / floor**2))
-
-
-def speed_is_a_cause(problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray) -> bool:
-    """Whether the manoeuvres were flown at different speeds, and it matters.
-
-    A few per cent come with every flight: of those the waterfall tells.
-    """
-    means = np.array([float(np.mean(f.slow[0])) for f in problem.flights.flights])
-    scatter = float(np.std(means) / np.mean(means))
-    if constant is None or scatter < _SPEED_WANDERS:
-        return False
-    return speed_costs(constant, last, floor) > _SPEED_IS_CAUSE[scatter < _SPEED_DIFFERS]

@@ -13,7 +13,7 @@ from advisor.gap.air import moving_air
 from advisor.gap.answer import answer
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.causes import OFFSET_SIGMAS, at_constant_speed
+from advisor.gap.causes import OFFSET_SIGMAS
 from advisor.gap.data import Flights, prepare
 from advisor.gap.evidence import Evidence
 from advisor.gap.fit import Fitted, solve_blocks
@@ -26,6 +26,7 @@ from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
 from advisor.gap.result import Diagnosis
 from advisor.gap.score import worth
+from advisor.gap.speed import at_constant_speed
 from advisor.gap.waterfall import Progress, build_up, reduced_to
 from advisor.gap.wind import wind_shear
 from advisor.problems import UnusableInputError

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.causes import SPEED_CHANGE
 from advisor.gap.fit import Fitted
 from advisor.gap.layout import INDEX
 from advisor.gap.marks import Marks
@@ -18,6 +17,7 @@ from advisor.gap.needs import NEEDS, OTHERWISE, hidden_from
 from advisor.gap.problem import Problem
 from advisor.gap.result import Unseen
 from advisor.gap.score import LEAST_GAIN, least_change
+from advisor.gap.speed import SPEED_CHANGE
 from advisor.gap.ties import breaking
 from advisor.gap.variant import Variant
 

@@ -17,7 +17,7 @@ import numpy as np
 from advisor.flight.kinematics import SMALLEST_BIAS_RAD
 from advisor.flight.messages import FloatArray
 from advisor.gap.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
-from advisor.gap.causes import OFFSET_SIGMAS, SPEED_CHANGE
+from advisor.gap.causes import OFFSET_SIGMAS
 from advisor.gap.data import Flight
 from advisor.gap.fit import Fitted
 from advisor.gap.foresee import Foreseen, Mark
@@ -27,6 +27,7 @@ from advisor.gap.needs import NEEDS
 from advisor.gap.probes import disturbance_columns
 from advisor.gap.problem import Problem
 from advisor.gap.simulate import DISTURB_AIR
+from advisor.gap.speed import SPEED_CHANGE
 from advisor.gap.ties import breaking
 
 CLIMB_RATE_STD_M_S = 0.1

@@ -6,19 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.kinematics import KinematicCheck
-from advisor.gap.causes import (
-    airspeed_cause,
-    alpha_bias_cause,
-    alpha_lag_cause,
-    causes_of,
-    speed_is_a_cause,
-    with_doubt,
-)
+from advisor.gap.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
 from advisor.gap.evidence import VISIBLE, Evidence
 from advisor.gap.holdout import HeldOut
 from advisor.gap.measure import gap_of
 from advisor.gap.result import Cause, Value, Verdict
 from advisor.gap.score import file_is_off
+from advisor.gap.speed import airspeed_cause, speed_is_a_cause
 
 
 @dataclass(frozen=True)
@@ -49,8 +43,10 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     unknown = e.leftover is not None and late is None
     wrong_values = _wrong_values(e)
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
-    if speed is not None and not (apart or named or wrong_values):
-        apart = (speed,) if speed_is_a_cause(problem, e.constant_speed, last, floor) else ()
+    explained = bool(named or bias or late or wrong_values)
+    if speed is not None and not explained:
+        worked = speed_is_a_cause(problem, e.constant_speed, last, floor, e.air)
+        apart = (speed, *apart) if worked else apart
     unexplained = e.leftover.share if e.leftover is not None else 0.0
     causes = tuple(
         with_doubt(cause, problem) for cause in causes_of(stages, floor, unexplained, problem.channels)

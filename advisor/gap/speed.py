@@ -1,0 +1,90 @@
+"""The change of air speed: what ignoring it costs, and when it is the cause of a gap.
+
+The air speed swings in every flight, for a manoeuvre exchanges it for height. A simulator that is given the
+measured speed knows that; so it is a cause only where work was done on the aircraft, by an engine or
+by wind along the path, and its energy V²/2 + g h moved as much as its speed.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.air import Air
+from advisor.gap.data import Flights
+from advisor.gap.fit import Fitted, fit
+from advisor.gap.holdout import HeldOut, hold_out
+from advisor.gap.measure import gap_of
+from advisor.gap.problem import Problem
+from advisor.gap.result import Cause, Value
+from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED
+
+SPEED_CHANGE = 0.03
+"""Relative change of air speed from which on it is looked at."""
+_COSTS = 0.05
+"""Gap of a simulator at constant speed from which on it is worth a step of the waterfall ..."""
+_IS_CAUSE = 1.0
+"""... and from which on it may be the cause."""
+_WORK = 0.015
+"""Standard deviation of the speed that the energy alone would make, relative, that is work ..."""
+_EXCHANGED = 0.9
+"""... if it is at least this share of the speed's own: else most was exchanged for height ..."""
+_GUSTS = 2.0
+"""... and both exceed this many times the air's own motion, which an air speed indicator reads, too."""
+
+
+def at_constant_speed(problem: Problem, fitted: Fitted) -> HeldOut | None:
+    """What the model leaves when derivatives do not move with the air speed, everything refitted.
+
+    None where the speed hardly moves, or is not measured.
+    """
+    flights = problem.flights
+    if not flights.speed_measured or flights.speed_moves < SPEED_CHANGE:
+        return None
+    constant = tuple(
+        replace(f, trim=np.array([f.trim[0], f.trim[1], f.trim[2], 0.0])) for f in flights.flights
+    )
+    frozen = replace(problem, flights=replace(flights, flights=constant))
+    return hold_out(frozen, fit(frozen, fitted.point, fitted.noise, iterations=4))
+
+
+def airspeed_cause(
+    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
+) -> Cause | None:
+    """The change of air speed, when ignoring it would cost."""
+    if constant is None or speed_costs(constant, last, floor) < _COSTS:
+        return None
+    return Cause(
+        "airspeed_variation", "force_equation", 0.9,
+        {"change": Value(problem.flights.speed_moves, 0.01)}, (), "",
+        float(np.mean(gap_of(last.mean_square, floor))), True,
+    )  # fmt: skip
+
+
+def speed_costs(constant: HeldOut, last: HeldOut, floor: FloatArray) -> float:
+    """What a simulator leaves at constant speed beyond one that knows it, mean square over the floor's."""
+    return float(np.mean((constant.mean_square - last.mean_square) / floor**2))
+
+
+def speed_is_a_cause(
+    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: Air | None
+) -> bool:
+    """Whether work was done on the aircraft, beyond what gusts may feign, and it matters."""
+    if constant is None or "height" not in problem.flights.has or (air is not None and air.gust):
+        return False
+    speed, energy = swings(problem.flights)
+    gusts = 0.0 if air is None else air.angle_std
+    worked = energy > max(_WORK, _EXCHANGED * speed) and min(speed, energy) > _GUSTS * gusts
+    return worked and speed_costs(constant, last, floor) > _IS_CAUSE
+
+
+def swings(flights: Flights) -> tuple[float, float]:
+    """How much the speed swings within a manoeuvre, and √(V² + 2 g h), both relative to the mean speed."""
+    speeds, energies = [], []
+    for flight in flights.flights:
+        speed, height = flight.slow[SPEED], flight.slow[HEIGHT]
+        climbed = height - np.mean(height)
+        speeds.append(float(np.std(speed)))
+        energies.append(float(np.std(np.sqrt(np.maximum(speed**2 + 2.0 * GRAVITY_M_S2 * climbed, 0.0)))))
+    mean = float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))
+    return float(np.mean(speeds)) / mean, float(np.mean(energies)) / mean
