@@ -50,12 +50,19 @@ READINGS = (
     Reading("airspeed", "VFR_HUD", "airspeed", _scaled(1.0)),
     Reading("climb_rate", "VFR_HUD", "climb", _scaled(1.0)),
     Reading("throttle", "VFR_HUD", "throttle", _scaled(0.01)),
-    Reading("a_x", "RAW_IMU", "xacc", _scaled(_MILLI_G)),
-    Reading("a_z", "RAW_IMU", "zacc", _scaled(_MILLI_G)),
-    Reading("a_x", "SCALED_IMU", "xacc", _scaled(_MILLI_G)),
-    Reading("a_z", "SCALED_IMU", "zacc", _scaled(_MILLI_G)),
+    *(
+        Reading(channel, message, field, _scaled(_MILLI_G))
+        for message in ("RAW_IMU", "SCALED_IMU")
+        for channel, field in (("a_x", "xacc"), ("a_z", "zacc"))
+    ),
     Reading("a_x", "HIGHRES_IMU", "xacc", _scaled(1.0)),
     Reading("a_z", "HIGHRES_IMU", "zacc", _scaled(1.0)),
+    # The second and third sensors of an autopilot, where the first is not sent.
+    *(
+        Reading(channel, message, field, _scaled(_MILLI_G))
+        for message in ("SCALED_IMU2", "SCALED_IMU3")
+        for channel, field in (("a_x", "xacc"), ("a_z", "zacc"))
+    ),
     Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
 )
 """Best source of a channel first, where several messages carry it."""
@@ -65,6 +72,8 @@ _STAMPS = {
     "AOA_SSA": _USEC,
     "RAW_IMU": _USEC,
     "SCALED_IMU": _BOOT_MS,
+    "SCALED_IMU2": _BOOT_MS,
+    "SCALED_IMU3": _BOOT_MS,
     "HIGHRES_IMU": _USEC,
     "GLOBAL_POSITION_INT": _BOOT_MS,
     "SERVO_OUTPUT_RAW": _USEC,

@@ -137,6 +137,17 @@ def test_channels_carry_units_sources_and_provenance():
     assert set(c) >= {"aileron", "rudder", "theta", "bank", "climb_rate"}
 
 
+@pytest.mark.parametrize("message", ["SCALED_IMU", "SCALED_IMU2", "SCALED_IMU3"])
+def test_the_specific_force_of_a_further_sensor_is_read_where_the_first_is_not_sent(message):
+    wire = Wire()
+    fly(wire, 1000.0, 50.0, ONE, 14.0)
+    for k in range(700):
+        wire.send(message, 1000.01 + k / 50, time_boot_ms=50_000 + 20 * k, xacc=100, zacc=-1000)
+    (maneuver,) = maneuvers(flown(wire)[1])
+    assert maneuver.channels["a_z"].source == f"{message}.zacc"
+    assert maneuver.channels["a_z"].y[0] == pytest.approx(-9.80665)
+
+
 @pytest.mark.parametrize("boot_s", [round(WRAP_S - 7.0), round(3 * WRAP_S - 5.0), round(2**32 / 1e3 - 6.0)])
 def test_counters_that_wrap_during_a_manoeuvre_leave_no_trace(boot_s):
     wire, plain = Wire(), Wire()
