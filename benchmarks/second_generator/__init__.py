@@ -1,0 +1,1 @@
+"""A second generator of flights, written from the contract alone, to check the diagnosis with."""

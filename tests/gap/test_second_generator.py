@@ -1,0 +1,304 @@
+"""The second generator of flights: its physics, its records, and that no file gives an answer away."""
+
+import json
+import os
+import struct
+from dataclasses import replace
+from pathlib import Path
+
+os.environ.setdefault("MAVLINK20", "1")
+
+import numpy as np
+import pytest
+import yaml
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+import benchmarks.second_generator
+from benchmarks.second_generator.aircraft import FLEET, Aircraft
+from benchmarks.second_generator.case_files import aircraft_text, draw_set, key_entry, key_file, log_bytes
+from benchmarks.second_generator.catalogue import EFFECTS, NAMED, OUTSIDE
+from benchmarks.second_generator.design import Assignment, assignments
+from benchmarks.second_generator.draw import Case, draw_case, suitable_experiment
+from benchmarks.second_generator.effects import BLOCKS, Experiment
+from benchmarks.second_generator.equipment import draw_noise, draw_wiring
+from benchmarks.second_generator.flight import Truth
+from benchmarks.second_generator.flight_model import plain_model
+from benchmarks.second_generator.kernel import Floats
+from benchmarks.second_generator.motion import (
+    GRAVITY,
+    HEIGHT,
+    STATES,
+    STILL_AIR,
+    THETA,
+    Q,
+    U,
+    W,
+    advance,
+    derivatives,
+)
+from benchmarks.second_generator.planning import Wishes
+from benchmarks.second_generator.score import report, wilson
+from benchmarks.second_generator.telemetry import Noise
+from benchmarks.second_generator.trim import level_state, linearised, trimmed
+from benchmarks.second_generator.visibility import (
+    NAMED_RATIO,
+    OUTSIDE_RATIO,
+    Flown,
+    fly_experiment,
+    flyable,
+    ratios,
+    sized,
+)
+
+HEIGHT_M = 100.0
+SOURCES = sorted(Path(benchmarks.second_generator.__file__).parent.glob("*.py"))
+STEP_S = 0.002
+
+
+def test_it_imports_nothing_of_the_diagnosis_and_nothing_of_the_simulator():
+    lines = [line for path in SOURCES for line in path.read_text(encoding="utf-8").splitlines()]
+    imported = [line.split()[1] for line in lines if line.startswith(("import ", "from "))]
+    assert len(imported) > 50
+    assert not [name for name in imported if name.split(".")[0] in ("advisor", "sim")]
+
+
+@pytest.fixture(scope="module")
+def quiet_case() -> Case:
+    """A case with nothing there, in still air."""
+    for index in range(1, 20):
+        case = draw_case(Assignment("none"), 3, index)
+        if not case.troubles and case.recorder.low_pass is None:
+            return case
+    raise AssertionError("no clean case in twenty")
+
+
+@pytest.fixture(scope="module")
+def busy_flight() -> tuple[Experiment, Flown, Noise]:
+    """A low flight in which speed and power change, so that every effect has what it needs."""
+    rng = np.random.default_rng(4)
+    wishes = Wishes(speed_share=0.15, power_share=0.4, low=True)
+    case = suitable_experiment(wishes, True, draw_wiring(rng), seed=2)
+    return case, fly_experiment(case, 1), draw_noise(rng, coloured=False)
+
+
+@pytest.mark.parametrize("aircraft", FLEET, ids=lambda aircraft: aircraft.name)
+def test_trim_is_an_equilibrium(aircraft: Aircraft) -> None:
+    model = trimmed(plain_model(aircraft), HEIGHT_M)
+    slope = np.zeros(STATES)
+    state = level_state(model, model.airspeed, model.alpha, HEIGHT_M)
+    derivatives(state, 0.0, model.elevator, model.thrust, STILL_AIR, 0.0, model, slope)
+    assert np.max(np.abs(slope[[U, W, Q, THETA, HEIGHT]])) < 1e-6
+    assert abs(np.degrees(model.alpha)) < 8.0
+    assert abs(np.degrees(model.elevator)) < 8.0
+
+
+def pulse_response(aircraft: Aircraft) -> tuple[Floats, Floats, Floats, Floats]:
+    """Alpha and q off trim after a small pulse, by the nonlinear motion and by the linear model."""
+    model = trimmed(plain_model(aircraft), HEIGHT_M)
+    linear = linearised(model, HEIGHT_M)
+    # Later the speed has changed, which the short period's linear model leaves out.
+    count = round(3.0 / linear.natural_frequency / STEP_S)
+    pulse = np.zeros(count)
+    pulse[: count // 2] = np.radians(0.2)
+    state = level_state(model, model.airspeed, model.alpha, HEIGHT_M)
+    slopes, flown = np.zeros((4, STATES)), np.zeros((2, count))
+    for k in range(count):
+        flown[:, k] = np.arctan2(state[W], state[U]) - model.alpha, state[Q]
+        elevator = model.elevator + pulse[k]
+        advance(state, 0.0, STEP_S, (elevator, elevator), model.thrust, STILL_AIR, 0.0, model, slopes)
+    return (*flown, *linear.response(pulse, STEP_S))
+
+
+@pytest.mark.parametrize("aircraft", FLEET, ids=lambda aircraft: aircraft.name)
+def test_linear_model_predicts_a_small_pulse(aircraft: Aircraft) -> None:
+    alpha, rate, linear_alpha, linear_rate = pulse_response(aircraft)
+    assert np.max(np.abs(alpha - linear_alpha)) < 0.03 * np.max(np.abs(alpha))
+    assert np.max(np.abs(rate - linear_rate)) < 0.03 * np.max(np.abs(rate))
+
+
+def test_kinematics_hold_in_still_air(quiet_case: Case) -> None:
+    truth: Truth = quiet_case.flown.truth
+    step = quiet_case.experiment.plan.step
+    expected = (
+        truth.q
+        + (
+            truth.a_z * np.cos(truth.alpha)
+            - truth.a_x * np.sin(truth.alpha)
+            + GRAVITY * np.cos(truth.theta - truth.alpha)
+        )
+        / truth.airspeed
+    )
+    # A step of the elevator changes the accelerations at once: a central difference straddles it.
+    error = np.abs(np.gradient(truth.alpha, step) - expected)
+    assert np.percentile(error, 99.0) < 0.01 * np.max(np.abs(expected))
+
+
+def test_a_case_is_the_same_to_the_byte_when_drawn_twice() -> None:
+    assignment = Assignment("outside", (EFFECTS["vane_spikes"],))
+    first, second = (draw_case(assignment, 5, 2) for _ in range(2))
+    assert log_bytes(first) == log_bytes(second)
+    assert aircraft_text(first) == aircraft_text(second)
+    assert json.dumps(key_entry(first)) == json.dumps(key_entry(second))
+
+
+def test_stored_ratio_is_the_difference_with_and_without_the_effect() -> None:
+    case = draw_case(Assignment("one", (EFFECTS["pitch_rate_scale"],)), 6, 1)
+    stored = case.effects[0]
+    gyro = replace(case.experiment.instruments.gyro, scale=0.0)
+    without = replace(case.experiment, instruments=replace(case.experiment.instruments, gyro=gyro))
+    plain = fly_experiment(without, case.record_seed)
+    measured = ratios(without, case.flown, plain, case.noise, without_means=True)
+    assert measured == pytest.approx(stored.dynamic_ratios)
+    # This effect's ratio is also known in closed form: its scale times the true pitch rate.
+    parts = [case.flown.truth.q[part] for part in case.experiment.plan.during_maneuvers()]
+    spread = np.sqrt(np.mean(np.concatenate([part - np.mean(part) for part in parts]) ** 2))
+    expected = abs(float(stored.parameters["scale"])) * spread / case.noise.q
+    assert stored.dynamic_ratios["q"] == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_every_effect_flies_and_is_seen(name: str, busy_flight: tuple[Experiment, Flown, Noise]) -> None:
+    effect, (plain, flown, noise) = EFFECTS[name], busy_flight
+    assert effect.block in BLOCKS
+    wanted = NAMED_RATIO if effect in NAMED else OUTSIDE_RATIO
+    changed, fitted = sized(plain, flown, effect, noise, wanted, seed=7, sensor_seed=1)
+    assert flyable(changed, fly_experiment(changed, 1))
+    assert not effect.dynamic or fitted.largest_dynamic_ratio >= wanted
+
+
+def test_catalogue_is_complete() -> None:
+    assert len({effect.name for effect in NAMED}) == 30
+    assert len({effect.name for effect in OUTSIDE}) >= 22
+    assert {effect.block for effect in OUTSIDE} == set(BLOCKS)
+
+
+def test_set_has_its_quotas() -> None:
+    kinds = [assignment.kind for assignment in assignments(200, 1)]
+    assert {kind: kinds.count(kind) for kind in set(kinds)} == {
+        "none": 40,
+        "one": 90,
+        "two": 16,
+        "parameters": 14,
+        "outside": 40,
+    }
+    named = [a.effects[0].name for a in assignments(200, 1) if a.kind == "one"]
+    assert {named.count(effect.name) for effect in NAMED} == {3}
+
+
+def messages_of(log: bytes) -> list[mavlink.MAVLink_message]:
+    """The messages of a tlog of unsigned MAVLink 2 frames; every frame has to be valid, and in order."""
+    link = mavlink.MAVLink(None)
+    found, at, before = [], 0, 0
+    while at < len(log):
+        (stamp,) = struct.unpack(">Q", log[at : at + 8])
+        length = 12 + log[at + 9]
+        found.append(link.decode(bytearray(log[at + 8 : at + 8 + length])))
+        assert stamp >= before
+        before, at = stamp, at + 8 + length
+    return found
+
+
+def test_log_holds_every_message(quiet_case: Case) -> None:
+    expected = {"HEARTBEAT", "PARAM_VALUE", "AOA_SSA", "ATTITUDE", "SERVO_OUTPUT_RAW", "VFR_HUD"}
+    expected |= {"GLOBAL_POSITION_INT", quiet_case.wiring.imu}
+    assert {message.get_type() for message in messages_of(log_bytes(quiet_case))} == expected
+
+
+def test_log_and_calibration_tell_the_command(quiet_case: Case) -> None:
+    case = quiet_case
+    assert case.recorder.low_pass is None
+    field = f"servo{case.wiring.elevator_output}_raw"
+    servo = [m for m in messages_of(log_bytes(case)) if m.get_type() == "SERVO_OUTPUT_RAW"]
+    stamps = np.array([m.time_usec for m in servo]) * 1e-6 - case.wiring.boot_s
+    widths, degrees = np.array(yaml.safe_load(aircraft_text(case))["elevator"]["calibration"]).T
+    told = np.radians(np.interp([getattr(m, field) for m in servo], widths, degrees))
+    true = np.interp(stamps, case.experiment.time, case.flown.truth.command)
+    # Stamps of a clean case wander by 0.3 ms, which shows where the command jumps.
+    assert np.percentile(np.abs(told - true), 98.0) < 1.01 * case.experiment.link.resolution
+
+
+def test_files_give_nothing_away(tmp_path: Path) -> None:
+    folder = tmp_path / "set"
+    draw_set(folder, 4, 9)
+    assert key_file(folder).parent == tmp_path
+    places = sorted(folder.iterdir())
+    assert [place.name for place in places] == [f"{index:04d}" for index in range(1, 5)]
+    structures = set()
+    for place in places:
+        assert sorted(file.name for file in place.iterdir()) == ["aircraft.yaml", "flight.tlog"]
+        document = yaml.safe_load((place / "aircraft.yaml").read_text())
+        document.pop("model", None)
+        assert document["name"] == "test aircraft"
+        structures.add(tuple(document))
+        words = (place / "aircraft.yaml").read_text() + (place / "flight.tlog").read_bytes().decode("latin-1")
+        assert not any(name in words for name in EFFECTS)
+    assert len(structures) == 1
+
+
+def test_size_of_a_log_does_not_depend_on_the_effect() -> None:
+    sizes = [
+        len(log_bytes(draw_case(Assignment(kind, effects), 8, 4)))
+        for kind, effects in (
+            ("none", ()),
+            ("one", (EFFECTS["alpha_bias"],)),
+            ("one", (EFFECTS["cg_shift"],)),
+        )
+    ]
+    # MAVLink 2 leaves out zeros at the end of a message, which a few bytes of noise decide.
+    assert np.ptp(sizes) < 0.002 * sizes[0]
+
+
+def test_wilson_interval() -> None:
+    low, high = wilson(8, 10)
+    assert (low, high) == pytest.approx((0.490, 0.943), abs=1e-3)
+
+
+def test_score_counts_a_perfect_set_of_answers(tmp_path: Path) -> None:
+    verdicts = {
+        "none": "none",
+        "one": "effect",
+        "two": "effect",
+        "parameters": "parameters",
+        "outside": "unknown",
+    }
+    cases, lines = {}, []
+    for number, kind in enumerate(verdicts, start=1):
+        effects = {"one": ["alpha_skew"], "two": ["alpha_lag", "icing"], "outside": ["wake_crossings"]}.get(
+            kind, []
+        )
+        entries = [
+            {
+                "effect": name,
+                "block": EFFECTS[name].block,
+                "dynamic": True,
+                "largest_dynamic_ratio": 2.0,
+                "parameters": {"skew_s": -0.05},
+            }
+            for name in effects
+        ]
+        name = f"{number:04d}"
+        cases[name] = {
+            "class": kind,
+            "effects": entries,
+            "condition": {"name": "clean", "troubles": [], "pre_filtered_hz": None},
+            "aircraft": {"name": "any"},
+        }
+        answer = {
+            "usable": True,
+            "verdict": verdicts[kind],
+            "where": {"block": entries[0]["block"]} if entries else {},
+            "causes": [
+                {"effect": entry["effect"], "parameters": {"skew_s": {"value": 0.051, "std": 0.001}}}
+                for entry in entries
+            ],
+        }
+        lines.append(json.dumps({"case": name, "answer": answer, "cpu_s": 1.0}))
+    folder = tmp_path / "set"
+    key_file(folder).write_text(json.dumps({"cases": cases}))
+    answers = tmp_path / "answers.jsonl"
+    answers.write_text("\n".join(lines))
+    table = report(folder, answers, details=True)
+    assert "0 of 1" in table.split("false alarm")[1]
+    assert table.count("0 of 1") == 2  # both rows of false alarms, nothing else missed
+    answers.write_text("")
+    assert "usable" in report(folder, answers)
