@@ -43,7 +43,9 @@ def _cautions(maneuver: Maneuver, aircraft: Aircraft) -> list[str]:
     alpha = maneuver.channels.get("alpha")
     if alpha is not None:
         cautions.append(f"angle of attack: {alpha.provenance}, from {alpha.source}")
-    check = check_alpha(maneuver, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m)
+    check = check_alpha(
+        maneuver, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
+    )
     if check.finding != "consistent":
         cautions.append(check.sentence)
     return cautions

@@ -63,7 +63,10 @@ class KinematicCheck:
 
 
 def check_alpha(
-    maneuver: Maneuver, airspeed_m_s: float | None = None, accelerometer_arm_m: float | None = None
+    maneuver: Maneuver,
+    airspeed_m_s: float | None = None,
+    accelerometer_arm_m: float | None = None,
+    vane_arm_m: float | None = None,
 ) -> KinematicCheck:
     """Compare α with what α̇ = q + (a_z cos α − a_x sin α + g cos(θ − α))/V integrates to.
 
@@ -74,9 +77,9 @@ def check_alpha(
         and ``climb_rate`` are used when present.
     airspeed_m_s
         Speed to use when the log has none.
-    accelerometer_arm_m
-        Distance of the accelerometer ahead of the centre of gravity, removed when known.
-        An arm that is there and not given reads as a small negative lag.
+    accelerometer_arm_m, vane_arm_m
+        Distances of the accelerometer and the vane ahead of the centre of gravity, removed when known.
+        An accelerometer's arm that is there and not given reads as a small negative lag, a vane's as a lag.
     """
     found = maneuver.channels
     missing = [name for name in NEEDED if name not in found or len(found[name]) < 20]
@@ -101,6 +104,8 @@ def check_alpha(
     q, theta, a_z = found["q"].y, at("theta"), at("a_z")
     if accelerometer_arm_m:
         a_z = a_z + accelerometer_arm_m * np.gradient(q, t)
+    if vane_arm_m:
+        alpha = alpha + vane_arm_m * np.interp(t_alpha, t, q / speed)
     a_x = at("a_x") if "a_x" in found and len(found["a_x"]) > 1 else GRAVITY_M_S2 * np.sin(theta)
     alpha_now = np.interp(t, t_alpha, alpha)
     rate = (

@@ -59,18 +59,17 @@ def diagnose(
     progress("checking the angle of attack against the motion", 0.0)
     flights = prepare(maneuvers, aircraft)
     _refuse(flights)
-    kinematics = combine(
-        [check_alpha(m, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m) for m in maneuvers if m.number in
-         {f.number for f in flights.flights}]
-    )  # fmt: skip
+    arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
+    numbers = {flight.number for flight in flights.flights}
+    flown = [m for m in maneuvers if m.number in numbers]
+    kinematics = combine([check_alpha(m, aircraft.airspeed_m_s, *arms) for m in flown])
     progress("fitting the simulator's model", 0.1)
     if abs(kinematics.bias_rad) > max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * kinematics.bias_std_rad):
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
         flights = prepare([_without_offset(m, kinematics.bias_rad) for m in maneuvers], aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
     evidence = _explain(problem, baseline, aircraft, progress)
-    numbers = {flight.number for flight in flights.flights}
-    shear = wind_shear([m for m in maneuvers if m.number in numbers])
+    shear = wind_shear(flown)
     if shear is not None:
         evidence = replace(evidence, shear=shear, leftover=of_the_wind(evidence.leftover))
     progress("measuring the gap", 0.9)

@@ -53,6 +53,14 @@ def test_a_known_accelerometer_arm_is_removed_and_an_unknown_one_is_not():
     assert abs(known.lag_s) < 0.003 < abs(unknown.lag_s)
 
 
+def test_a_known_place_of_the_vane_is_no_delay_and_an_unknown_one_is():
+    maneuvers = flown(switches={"vane_arm": 0.4})
+    known = combine([check_alpha(m, vane_arm_m=0.4) for m in maneuvers])
+    unknown = combine([check_alpha(m) for m in maneuvers])
+    assert known.finding == "consistent"
+    assert unknown.lag_s == pytest.approx(0.4 / 22.0, rel=0.2)
+
+
 def test_a_repeated_alpha_is_used_at_its_true_rate():
     maneuver = flown()[0]
     channel = maneuver.channels["alpha"]
