@@ -11,7 +11,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.airspeed import airspeed_on, along_the_path
 from advisor.gap.layout import OUTPUTS
 from advisor.gap.simulate import GRAVITY_M_S2, THRUST
-from advisor.gap.smoothness import is_smoothed
+from advisor.gap.smoothness import is_filtered, is_smoothed
 
 STEP_S = 0.005
 LEAST_SAMPLES = 30
@@ -122,8 +122,13 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
         for name in ("airspeed", "a_x", "bank", "throttle", "height", "climb_rate")
         if usable and all(name in m.channels and len(m.channels[name]) > 1 for m in usable)
     )
-    smoothed = "alpha" in channels and is_smoothed([y for f in flights for y in f.quiet_stretches("alpha")])
-    derived = any(_is_estimate(m, smoothed) for m in usable)
+
+    def quiet(channel: str) -> list[FloatArray]:
+        return [y for f in flights for y in f.quiet_stretches(channel)]
+
+    smoothed = "alpha" in channels and is_smoothed(quiet("alpha"))
+    # Where a whole record went through a filter on the ground, a smooth α is no sign of an estimator.
+    derived = any(_is_estimate(m, smoothed and not is_filtered(quiet("q"))) for m in usable)
     return Flights(flights, channels, measured, reference, moves, derived, derived or smoothed, has)
 
 

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.course import is_of_the_air
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import peak_of
 from advisor.gap.noise import unfiltered
 from advisor.gap.origin import stick_or_motion
-from advisor.gap.probes import SENSOR_CHANNELS, Probe, probe_blocks
+from advisor.gap.probes import SENSOR_CHANNELS, Probe, disturbance_course, probe_blocks
 from advisor.gap.problem import Problem
 
 _LEAST_GAIN = 100.0
@@ -82,6 +83,8 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     if not np.any(telling & (beyond > _OF_PEAK * peaks)):
         return None
     disturbed = best.gain >= _LEAST_GAIN and best.explained >= _LEAST_SHARE and bool(np.any(loud))
+    # What a low-pass leaves of noise is like no noise with a memory: there only the stick can tell.
+    disturbed = disturbed and not problem.flights.alpha_is_smoothed
     if not disturbed and np.max(louder) < _RESTLESS:
         return None
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
@@ -114,6 +117,10 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
     taken = float(np.sum((rms_of(problem, first.left) / noise) ** 2 - powers))
     if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
         return None
+    if best.block in ("input", "moment_equation"):
+        courses, _ = disturbance_course(problem, last, noise, best.block, best.size)
+        if is_of_the_air(problem.flights.flights, courses):
+            return None
     block = stick_or_motion(problem, last, noise, probes) or best.block
     return Leftover(block, best.explained, _ranking(probes, block))
 

@@ -23,6 +23,8 @@ from advisor.gap.variant import Variant
 
 _PROMISE = 0.7
 """Share of the least that the screening must promise before a full fit is spent on a candidate."""
+_ITERATIONS = 8
+_TO_THE_END = 25
 _FITS = 5
 """Candidates that get a full fit after the screening."""
 _RIVAL = 0.3
@@ -53,7 +55,7 @@ def judge(
 ) -> list[Judged]:
     """Full fits of the best variants of the best effects; the best judgement first."""
     fits = [
-        fit(problem, s.point, s.noise, iterations=8, tolerance=0.5)
+        fit(problem, s.point, s.noise, iterations=_ITERATIONS, tolerance=0.5)
         for s in shortlist(problem, before, candidates)
     ]
     if not fits:
@@ -63,7 +65,12 @@ def judge(
     for fitted in sorted(fits, key=lambda f: f.cost):
         likeliest.setdefault(fitted.point.effects[-1].effect, fitted)
     judged = [addition(problem, before, held_before, f, e, independent) for e, f in likeliest.items()]
-    return sorted(judged, key=lambda j: -j.gain)
+    first, *rest = sorted(judged, key=lambda j: -j.gain)
+    if first.fitted.iterations == _ITERATIONS:
+        # Far from the plain model the search is long; only what comes out first is followed to its end.
+        ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)
+        first = addition(problem, before, held_before, ended, first.effect, independent)
+    return [first, *rest]
 
 
 def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) -> list[Screened]:

@@ -12,8 +12,10 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
-SMOOTHED = 2.0
-"""Growth of differences over two samples from which on a record was filtered."""
+_SMOOTHED = 2.0
+"""Growth of differences over two samples from which on something has been filtered ..."""
+_FILTERED = 6.0
+"""... and from which on next to nothing is left above its edge: no estimator on board is so thorough."""
 
 
 def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:
@@ -34,5 +36,15 @@ def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:
 
 def is_smoothed(quiet: Sequence[FloatArray]) -> bool:
     """Whether stretches in which nothing was flown are smoother than instruments and air can be."""
+    return _growth(quiet) > _SMOOTHED
+
+
+def is_filtered(quiet: Sequence[FloatArray]) -> bool:
+    """Whether they are as smooth as a low-pass on the ground leaves them, before a record is stored."""
+    return _growth(quiet) > _FILTERED
+
+
+def _growth(quiet: Sequence[FloatArray]) -> float:
+    """By how much differences grow with the stride; 0 where nothing moves at all."""
     white = white_part(quiet)
-    return white > 0.0 and white_part(quiet, stride=2) > SMOOTHED * white
+    return white_part(quiet, stride=2) / white if white > 0.0 else 0.0

@@ -1,0 +1,55 @@
+"""The air speed is a cause where work was done on the aircraft, not where it was exchanged for height."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.data import prepare
+from advisor.gap.diagnose import diagnose
+from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED
+from advisor.gap.speed import swings
+from tests.gap.generator import Setup, fly
+
+HEIGHTS = (80.0, 90.0, 85.0)
+
+
+def flights_with(speed_of, height_of):
+    """Three manoeuvres whose speed and height follow given courses of time."""
+    found = prepare(fly(Setup(maneuvers=3, heights_m=HEIGHTS)), Aircraft())
+    flights = []
+    for flight in found.flights:
+        t = (np.arange(flight.n) + 0.5) * flight.h
+        slow = flight.slow.copy()
+        slow[SPEED], slow[HEIGHT] = speed_of(t), height_of(t)
+        flights.append(replace(flight, slow=slow))
+    return replace(found, flights=tuple(flights))
+
+
+def phugoid(t):
+    return 22.0 + 2.0 * np.sin(0.6 * t)
+
+
+def test_a_speed_exchanged_for_height_is_no_work():
+    exchanged = flights_with(phugoid, lambda t: 80.0 - (phugoid(t) ** 2 - 22.0**2) / (2.0 * GRAVITY_M_S2))
+    speed, energy = swings(exchanged)
+    assert speed > 0.04
+    assert energy < 1e-3
+
+
+def test_a_speed_that_an_engine_changes_in_level_flight_is_all_work():
+    speed, energy = swings(flights_with(phugoid, lambda t: np.full_like(t, 80.0)))
+    assert energy == pytest.approx(speed, rel=1e-3)
+
+
+def test_manoeuvres_flown_at_different_speeds_are_no_cause_where_the_speed_is_measured():
+    found = diagnose(fly(Setup(maneuvers=6, speed_change=0.08, heights_m=HEIGHTS, seed=8)), Aircraft())
+    assert found.verdict == "none"
+    assert "airspeed_variation" in dict(found.waterfall)
+
+
+def test_an_engine_that_drives_the_speed_up_and_down_makes_it_the_cause():
+    setup = Setup(maneuvers=6, thrust_amplitude=4.0, heights_m=HEIGHTS, seed=8)
+    found = diagnose(fly(setup), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
