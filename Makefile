@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change accuracy robustness study-quality pictures clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change accuracy robustness study-quality study-second pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -73,6 +73,13 @@ study-advice: .venv/.developed ## what following the advice saves
 
 study-change: .venv/.developed ## how soon a change of the aircraft is told
 	$(BIN)/advisor study --change --campaigns 400
+
+SEED ?= 360127
+study-second: .venv/.developed ## the diagnosis on 240 flights of the second generator (SEED=...; about fifteen minutes)
+	rm -rf build/second build/second.key.json build/second.jsonl
+	$(BIN)/python -m benchmarks.second_generator draw --cases 240 --seed $(SEED) --out build/second
+	$(BIN)/python -m benchmarks.answer_sealed build/second build/second.jsonl
+	$(BIN)/python -m benchmarks.second_generator score build/second build/second.jsonl --details
 
 accuracy: .venv/.developed ## the estimator against the Cramér-Rao bound, intervals against the truth
 	$(BIN)/python -m benchmarks.accuracy --write docs/accuracy.md

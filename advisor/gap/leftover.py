@@ -30,6 +30,8 @@ _LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
 _OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that."""
+_PLAIN = 0.1
+"""Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
 _DOUBT = 2.5
 """Where the floor is stated, not measured, an unknown cause must exceed it this many times."""
 _BETTER_THAN_AIR = 1.25
@@ -87,9 +89,10 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     disturbed = disturbed and not problem.flights.alpha_is_smoothed
     if not disturbed and np.max(louder) < _RESTLESS:
         return None
+    plain = bool(np.any(telling & (louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
-    if unexplained < _LEAST_OF_GAP * taken:
+    if unexplained < _LEAST_OF_GAP * taken and not plain:
         return None
     block = stick_or_motion(problem, last, _instruments(problem), probes) or best.block
     return Leftover(block, best.explained, _ranking(probes, block))

@@ -25,11 +25,11 @@ _COSTS = 0.05
 """Gap of a simulator at constant speed from which on it is worth a step of the waterfall ..."""
 _IS_CAUSE = 1.0
 """... and from which on it may be the cause."""
-_WORK = 0.015
+_WORK = 0.02
 """Standard deviation of the speed that the energy alone would make, relative, that is work ..."""
 _EXCHANGED = 0.9
 """... if it is at least this share of the speed's own: else most was exchanged for height ..."""
-_GUSTS = 2.0
+_GUSTS = 4.0
 """... and both exceed this many times the air's own motion, which an air speed indicator reads, too."""
 
 
