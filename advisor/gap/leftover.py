@@ -89,7 +89,7 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     disturbed = disturbed and not problem.flights.alpha_is_smoothed
     if not disturbed and np.max(louder) < _RESTLESS:
         return None
-    plain = bool(np.any(telling & (louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
+    plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
     if unexplained < _LEAST_OF_GAP * taken and not plain:
