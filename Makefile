@@ -18,9 +18,9 @@ $(STAMP): pyproject.toml constraints.txt
 	touch $@
 
 # A compiled kernel outlives a change of the function that it calls: compile all of them anew when one changes.
-KERNELS := $(shell grep -rl --include='*.py' njit advisor sim)
+KERNELS := $(shell grep -rlE --include='*.py' 'njit|@kernel' advisor sim benchmarks)
 .venv/.compiled: $(STAMP) $(KERNELS)
-	find advisor sim -name '*.nb[ic]' -delete
+	find advisor sim benchmarks -name '*.nb[ic]' -delete
 	$(BIN)/python -m advisor.mavlink.warm
 	$(BIN)/python -m advisor.oem.warm
 	$(BIN)/python -m advisor.gap.warm

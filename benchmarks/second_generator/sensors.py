@@ -9,8 +9,6 @@ from .flight import Truth
 from .kernel import Floats, kernel
 from .motion import GRAVITY
 
-OBSERVED = ("alpha", "q", "theta", "a_x", "a_z", "airspeed", "climb", "height")
-
 
 @dataclass(frozen=True)
 class Vane:

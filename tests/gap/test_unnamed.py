@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import butter, lfilter, sosfiltfilt
 
 from advisor.aircraft import PARAMETERS, Aircraft, Alpha
 from advisor.gap.baseline import fit_baseline
@@ -16,6 +17,7 @@ from advisor.gap.leftover import other_than_air
 from advisor.gap.origin import followed
 from advisor.gap.probes import KNOTS_S
 from advisor.gap.simulate import surface
+from advisor.gap.smoothness import is_filtered, is_smoothed
 from tests.gap.generator import Setup, fly
 
 BELIEVED = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0])
@@ -170,3 +172,23 @@ def test_an_angle_renewed_faster_than_an_autopilot_estimates_it_comes_from_an_in
     flown = fly(Setup(maneuvers=3, seed=31))
     assert not prepare([called_derived(m, 1) for m in flown], Aircraft()).alpha_is_derived
     assert prepare([called_derived(m, 3) for m in flown], Aircraft()).alpha_is_derived
+
+
+def test_a_gyro_that_saturates_is_no_gyro_that_reads_low():
+    flown = fly(Setup(maneuvers=6, seed=21))
+    most = 0.3 * max(float(np.max(np.abs(m.channels["q"].y))) for m in flown)
+    rates = [replace(m.channels["q"], y=np.clip(m.channels["q"].y, -most, most)) for m in flown]
+    clipped = [replace(m, channels={**m.channels, "q": q}) for m, q in zip(flown, rates, strict=True)]
+    found = diagnose(clipped, Aircraft())
+    assert found.verdict == "unknown"
+    assert found.where.block == "pitch_rate_sensor"
+
+
+def test_a_record_filtered_on_the_ground_is_told_from_noise_and_from_moving_air():
+    rng = np.random.default_rng(3)
+    noise = rng.standard_normal(2000)
+    low_passed = sosfiltfilt(butter(4, 2.0, fs=50.0, output="sos"), noise)
+    air = lfilter([1.0], [1.0, -0.97], noise)
+    assert is_filtered([low_passed])
+    assert not is_filtered([noise])
+    assert not is_smoothed([air])
