@@ -176,7 +176,7 @@ def test_an_angle_renewed_faster_than_an_autopilot_estimates_it_comes_from_an_in
 
 def test_a_gyro_that_saturates_is_no_gyro_that_reads_low():
     flown = fly(Setup(maneuvers=6, seed=21))
-    most = 0.3 * max(float(np.max(np.abs(m.channels["q"].y))) for m in flown)
+    most = 0.15 * max(float(np.max(np.abs(m.channels["q"].y))) for m in flown)
     rates = [replace(m.channels["q"], y=np.clip(m.channels["q"].y, -most, most)) for m in flown]
     clipped = [replace(m, channels={**m.channels, "q": q}) for m, q in zip(flown, rates, strict=True)]
     found = diagnose(clipped, Aircraft())
