@@ -55,6 +55,8 @@ class LinearTerms:
     ground_scale: float = 1.0
     speed_scaled: float = 0.0
     """1: derivatives move with airspeed and gravity turns with the flight path; 0: constant."""
+    speed_power: float = 0.0
+    """Beyond dynamic pressure: lift and moments that hang on angles go with V to the power of 2 and this."""
     gravity: float = 0.0
     """1: gravity turns with the flight path, (g/V)(cos γ − 1) in α̇."""
 
@@ -81,10 +83,11 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
     lifting = air - m.unsteady_share * (air - late)
     off, off_elevator = air - m.alpha_ref, elevator - m.delta_ref
     gamma = theta - alpha
-    ratio, weight, gravity = 1.0, GRAVITY_M_S2 / m.speed_ref, 0.0
+    ratio, power, weight, gravity = 1.0, 1.0, GRAVITY_M_S2 / m.speed_ref, 0.0
     wing = m.Z_0 - weight + m.Z_alpha * lifting
     if m.speed_scaled > 0.0:
         ratio, weight = speed / m.speed_ref, GRAVITY_M_S2 / speed
+        power = ratio**m.speed_power
     if m.stall_sharpness > 0.0:
         stalled = 0.5 * (1.0 + math.tanh(m.stall_sharpness * (air - m.stall_alpha)))
         wing *= ((1.0 + math.sqrt(1.0 - stalled)) / 2.0) ** 2
@@ -97,6 +100,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
         weight
         + gravity
         + ratio
+        * power
         * (
             (wing + m.Z_delta_e * elevator + m.Z_alpha2 * off**2 + m.Z_alpha3 * off**3)
             * (1.0 + m.lift_h * ground)
@@ -108,6 +112,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
     q_dot = (
         ratio * (m.M_q * q + m.M_alpha_dot * alpha_dot)
         + ratio**2
+        * power
         * (
             m.M_0
             + m.M_alpha * air
@@ -119,8 +124,8 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
             + m.M_h * ground
         )
         + m.M_throttle * (u[1] - m.throttle_ref)
-        + (m.M_thrust + m.washed_share * m.M_delta_e * off_elevator) * (1.0 - ratio**2)
-        + m.blown_share * m.M_delta_e * off_elevator * (u[7] / GRAVITY_M_S2 + math.sin(gamma))
+        + (m.M_thrust + power * m.washed_share * m.M_delta_e * off_elevator) * (1.0 - ratio**2)
+        + power * m.blown_share * m.M_delta_e * off_elevator * (u[7] / GRAVITY_M_S2 + math.sin(gamma))
         + u[6]
     )
     dx[0] = alpha_dot

@@ -90,8 +90,9 @@ def foresee(
     """
     marks = Marks(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
     present = {e.effect for e in fitted.point.effects}
+    apart = present | {mark.effect for mark in others}
     found = [
-        _mark_of(problem, fitted, marks, v, rounds) for v in _one_each(variants) if v.effect not in present
+        _mark_of(problem, fitted, marks, v, rounds) for v in _one_each(variants) if v.effect not in apart
     ]
     found += others
     shares = _shares(problem, fitted)

@@ -39,7 +39,9 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     named = [s.added for s in stages if s.added is not None]
     bias = alpha_bias_cause(kinematics, named, problem, left)
     late = alpha_lag_cause(kinematics, problem, named, left)
-    speed = airspeed_cause(problem, e.constant_speed, last, floor)
+    speed = None
+    if all(judged.effect != "airspeed_variation" for judged in named):
+        speed = airspeed_cause(problem, e.constant_speed, last, floor)
     unknown = e.leftover is not None and late is None
     wrong_values = _wrong_values(e)
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)

@@ -22,7 +22,7 @@ EFFECT_ENTRIES = (
     "M_throttle", "M_thrust", "washed_share", "blown_share",
     # force equation
     "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s",
-    "Z_h", "lift_h", "scale_m",
+    "Z_h", "lift_h", "scale_m", "speed_power",
     # step inside a manoeuvre
     "step_at_s", "step_Z_alpha", "step_Z_delta_e", "step_M_alpha", "step_M_delta_e",
     # sensors

@@ -10,6 +10,7 @@ of the candidate effects are in the same loop, each switched off by a zero (``ad
     q̇ = v² (M_trim + M_α Δα + M_δe Δδ + ...) + v (M_q q + M_α̇ α̇) + M_T ΔT + M_P (1 − v²)
     θ̇ = q cos φ,   a_z cos α = V N + a_x sin α
 
+Where forces do not go with V², lift and all moments of α and δ are multiplied by v^n besides.
 The last is the exact a_z = V cos α (α̇ − q) + V̇ sin α − g cos θ with V̇ replaced by what a_x measures.
 """
 
@@ -25,7 +26,7 @@ _I = tuple(INDEX[name] for name in INDEX)
     Z_ALPHA, Z_Q, Z_DELTA, M_ALPHA, M_Q, M_DELTA, ALPHA_START, Q_START, Z_TRIM, M_TRIM,
     DELAY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL,
     M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, M_THRUST, WASHED, BLOWN,
-    Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, Z_H, LIFT_H, SCALE_H,
+    Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, Z_H, LIFT_H, SCALE_H, SPEED_POWER,
     STEP_AT, STEP_Z_ALPHA, STEP_Z_DELTA, STEP_M_ALPHA, STEP_M_DELTA,
     ALPHA_LAG, ALPHA_SCALE, ALPHA_BIAS, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
@@ -169,6 +170,7 @@ def simulate(
         j = min(i, n - 1)
         V = slow[SPEED, j]
         v = V / reference if scaled else 1.0
+        power = v ** p[SPEED_POWER] if p[SPEED_POWER] != 0.0 else 1.0
         d = delta[j]
         air, force_in, moment_in = 0.0, 0.0, 0.0
         if disturbed:
@@ -187,10 +189,10 @@ def simulate(
         gravity = GRAVITY_M_S2 / V * (ca * ct * cb + sa * st)
         near = np.exp(-slow[HEIGHT, j] / max(p[SCALE_H], 1e-3)) if p[SCALE_H] > 0.0 else 0.0
         z_c = v * p[Z_H] * near + force_in
-        lifting = v * (1.0 + p[LIFT_H] * near)
-        tail = v * v + p[WASHED] * (1.0 - v * v) + p[BLOWN] * slow[THRUST, j]
+        lifting = power * v * (1.0 + p[LIFT_H] * near)
+        tail = power * (v * v + p[WASHED] * (1.0 - v * v) + p[BLOWN] * slow[THRUST, j])
         m_c = (tail * m_d * d
-               + v * v * (p[M_TRIM] + p[M_DELTA2] * d * d + p[M_DELTA3] * d * d * d + p[M_H] * near)
+               + power * v * v * (p[M_TRIM] + p[M_DELTA2] * d * d + p[M_DELTA3] * d * d * d + p[M_H] * near)
                + p[M_THROTTLE] * slow[THROTTLE, j] + p[M_THRUST] * (1.0 - v * v) + moment_in)  # fmt: skip
         a0, q0 = alpha, q
         ka, kq = 0.0, 0.0
@@ -205,7 +207,7 @@ def simulate(
                 wing *= _attached(p[SHARPNESS] * (a_s + air - p[STALL]))
             normal = z_c + lifting * (wing + z_d * d) + p[Z_Q] * q_s
             ka = q_s + gravity + normal
-            kq = (m_c + v * v * (m_a * da + (p[M_ALPHA2] + p[M_ALPHA3] * da) * da * da)
+            kq = (m_c + power * v * v * (m_a * da + (p[M_ALPHA2] + p[M_ALPHA3] * da) * da * da)
                   + v * (p[M_Q] * q_s + p[M_ALPHA_DOT] * ka))  # fmt: skip
             if stage == 0:
                 normal_0, qdot_0 = normal, kq

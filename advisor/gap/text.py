@@ -19,6 +19,8 @@ _WHAT = {
     "mass_change": "The mass changed during the flight",
     "icing": "Lift and control weakened during the flight, as ice does",
     "airspeed_variation": "The air speed moved by up to {change_percent:.0f} % and the derivatives with it",
+    "airspeed_variation exponent": "The real forces do not grow with air speed squared, "
+    "but with its power {exponent_power:.1f}",
     "ground_effect": "The ground was near enough to be felt",
     "turbulence": "The air was not still: gusts of {sigma_w_m_s:.1f} m/s",
     "gust": "A gust of {amplitude_m_s:.1f} m/s passed",
@@ -56,7 +58,9 @@ def what(cause: Cause) -> str:
         sizes[f"{name}_ms"] = 1e3 * value.value
         sizes[f"{name}_deg"] = 57.29578 * value.value
         sizes[f"{name}_percent"] = 100.0 * value.value
-    return _WHAT[cause.effect].format(**sizes)
+        sizes[f"{name}_power"] = 2.0 + value.value
+    particular = f"{cause.effect} {next(iter(cause.parameters), '')}"
+    return _WHAT.get(particular, _WHAT[cause.effect]).format(**sizes)
 
 
 def place(block: str) -> str:

@@ -66,8 +66,8 @@ def _ice(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
 
 
 def _speed(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-    engine.record["speed_scaled"] = 1.0
-    engine.record["gravity"] = 1.0
+    engine.record["speed_scaled"] = engine.record["gravity"] = 1.0
+    engine.record["speed_power"] = sizes.get("exponent", 0.0)
 
 
 def _gust(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
@@ -110,7 +110,7 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
         frozenset({"Z_h", "lift_h", "M_h", "scale_m"}),
         _fields(Z_h="Z_h", lift_h="lift_h", M_h="M_h", scale_m="ground_scale"),
     ),
-    "airspeed_variation": (frozenset(), _speed),
+    "airspeed_variation": (frozenset({"change", "exponent"}), _speed),
     "cg_shift": (frozenset({"rate_per_s", "step", "at_s"}), _between_maneuvers(("M_alpha",), inverse=False)),
     "mass_change": (
         frozenset({"rate_per_s", "step", "at_s"}),

@@ -52,11 +52,12 @@ SWITCHES = {
     "vane_lag": 0.0, "vane_arm": 0.0, "mode_gain": 0.0, "mode_hz": 5.0, "acc_arm": 0.0,
     "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
     "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0, "before_lag": 0.0,
+    "speed_power": 0.0, "power_from": 22.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
- KINK, KWIDTH, WASH, BEFORE) = range(len(SWITCHES))  # fmt: skip
+ KINK, KWIDTH, WASH, BEFORE, POWER, FROM) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -65,7 +66,8 @@ def _integrate(n, command, gust, thrust_wave, body, sw, out):
     rho = 1.225
     # Trim: α for lift = weight at level flight, thrust for drag, elevator taken as zero there.
     qs = 0.5 * rho * speed * speed * area
-    a0 = (mass * G / qs - cl0) / cla
+    # Mach number or bending wings: lift and moments go with another power of the speed than V².
+    a0 = (mass * G / (qs * (speed / sw[FROM]) ** sw[POWER]) - cl0) / cla
     cm0 = -cma * a0
     trim_thrust = qs * (cd0 + induced * (mass * G / qs) ** 2)
     u, w, q, th = speed * np.cos(a0), speed * np.sin(a0), 0.0, a0
@@ -112,8 +114,10 @@ def _integrate(n, command, gust, thrust_wave, body, sw, out):
             + clde * (1 - 0.5 * ice) * de
             - 0.7 * cla * sw[KWIDTH] * np.log1p(np.exp((a - sw[KINK]) / sw[KWIDTH]))
         )
+        beyond = (V / sw[FROM]) ** sw[POWER]
+        cl *= beyond
         cd = cd0 + induced * cl * cl + 3.0 * ice * cd0
-        cm = (
+        cm = beyond * (
             cm0
             + cma * (1.0 - 0.6 * ice) * a
             + sw[CMA2] * (a - a0) ** 2

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from click.testing import CliRunner
@@ -11,6 +12,9 @@ from advisor.cli import advisor
 from advisor.config import load_aircraft
 from sim.compare import distances
 from sim.effects.fitting import flight_of
+from sim.effects.terms import problems_with
+from sim.linear import RESEARCH_JET
+from sim.linear_aircraft import LinearAircraft, rates
 from sim.modelled import modelled_flight
 from sim.record import record
 from sim.scenario import Scenario, scenario_from
@@ -66,3 +70,22 @@ def test_flying_the_recorded_inputs_through_the_improved_simulator_shrinks_the_g
         apart[name] = {d.channel: d.difference / d.signal for d in distances(flight, replay)}
     for channel in ("alpha", "q"):
         assert apart["after"][channel] < 0.4 * apart["before"][channel]
+
+
+def test_what_the_air_speed_does_can_be_written_into_a_file_that_flies() -> None:
+    assert problems_with({"airspeed_variation": {"change": 0.05}}) == []
+    assert problems_with({"airspeed_variation": {"exponent": -0.8}}) == []
+
+
+def test_the_power_of_the_speed_that_a_file_states_is_flown() -> None:
+    faster, record = 1.2, LinearAircraft(RESEARCH_JET, 50.0, 100.0).record.copy()
+    record["speed_scaled"], record["speed_power"] = 1.0, -0.5
+    answers = []
+    for elevator in (0.0, 0.1):
+        x, u, dx = np.zeros(7), np.zeros(8), np.zeros(7)
+        u[0], u[4] = elevator, faster * 50.0
+        rates(x, u, record, dx)
+        answers.append(dx[:2].copy())
+    lift, moment = (answers[1] - answers[0]) / 0.1
+    assert lift == pytest.approx(RESEARCH_JET.Z_delta_e * faster**0.5)
+    assert moment == pytest.approx(RESEARCH_JET.M_delta_e * faster**1.5)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
 from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED
@@ -53,3 +54,20 @@ def test_an_engine_that_drives_the_speed_up_and_down_makes_it_the_cause():
     setup = Setup(maneuvers=6, thrust_amplitude=4.0, heights_m=HEIGHTS, seed=8)
     found = diagnose(fly(setup), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
+
+
+def test_forces_that_do_not_grow_with_the_speed_squared_are_named_with_their_power():
+    setup = Setup(maneuvers=6, speed_change=0.12, switches={"speed_power": -0.8}, seed=8)
+    found = diagnose(fly(setup), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
+    exponent = found.causes[0].parameters["exponent"]
+    assert abs(exponent.value + 0.8) < 2.5 * exponent.std
+    assert "with its power 1.2" in found.sentence
+    assert [effect for effect, _ in found.waterfall] == ["airspeed_variation"]
+
+
+def test_a_power_of_the_speed_is_not_looked_for_where_the_speed_hardly_moved():
+    flown = prepare(fly(Setup(maneuvers=3, speed_change=0.1, seed=8)), Aircraft())
+    still = replace(flown, speed_moves=0.02)
+    assert "airspeed_variation" in {variant.effect for variant in variants_for(flown)}
+    assert "airspeed_variation" not in {variant.effect for variant in variants_for(still)}

@@ -3,6 +3,7 @@
 from advisor.gap.candidates import force, input, moment, sensors, timing
 from advisor.gap.data import Flights
 from advisor.gap.problem import Point
+from advisor.gap.speed import SPEED_CHANGE
 from advisor.gap.variant import Variant
 
 BLOCK_OF = {
@@ -52,6 +53,8 @@ def _possible(v: Variant, flights: Flights) -> bool:
         return False
     if v.effect == "thrust_moment":
         return any(float(f.slow[3].max() - f.slow[3].min()) > 0.02 for f in flights.flights)
+    if v.effect == "airspeed_variation":
+        return flights.speed_moves >= SPEED_CHANGE
     if v.effect == "ground_effect":
         return any(float(f.slow[4].max() - f.slow[4].min()) > 0.2 for f in flights.flights)
     return True

@@ -38,6 +38,18 @@ def variants(flights: Flights) -> list[Variant]:
         *_stall(flights),
         *ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES)),
         *_icing(flights),
+        # Mach number, elastic wings, a slipstream: forces go with another power of the speed than V².
+        Variant(
+            "airspeed_variation",
+            BLOCK,
+            ("exponent",),
+            ((0.0,),),
+            (0.02,),
+            ((-6.0, 6.0),),
+            0.1,
+            entries=("speed_power",),
+            needs=frozenset({"airspeed"}),
+        ),
         # Near the ground all lift grows by a share of it, or the trim alone changes.
         *(
             Variant(
