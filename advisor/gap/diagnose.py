@@ -20,7 +20,7 @@ from advisor.gap.fit import Fitted, solve_blocks
 from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.layout import DERIVATIVES
-from advisor.gap.leftover import left_over, of_the_wind, other_than_air
+from advisor.gap.leftover import Leftover, left_over, of_the_wind, other_than_air
 from advisor.gap.linear import linearise
 from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
@@ -70,7 +70,7 @@ def diagnose(
     problem, baseline = fit_baseline(flights, aircraft)
     evidence = _explain(problem, baseline, aircraft, progress)
     shear = wind_shear(flown)
-    if shear is not None:
+    if shear is not None and not _of_the_attitude(evidence.leftover):
         evidence = replace(evidence, shear=shear, leftover=of_the_wind(evidence.leftover))
     progress("measuring the gap", 0.9)
     return answer(evidence, aircraft, kinematics, holdout)
@@ -135,6 +135,11 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
         at_constant_speed(problem, last),
         stated,
     )
+
+
+def _of_the_attitude(leftover: Leftover | None) -> bool:
+    """An attitude that is wrong feigns wind that changes with height, for the climb is computed from it."""
+    return leftover is not None and leftover.block == "attitude_sensor"
 
 
 def _file_model(problem: Problem, baseline: Fitted, aircraft: Aircraft) -> HeldOut | None:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.clock import is_of_the_clock
 from advisor.gap.course import is_of_the_air
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import peak_of
@@ -22,7 +23,7 @@ from advisor.gap.problem import Problem
 
 _LEAST_GAIN = 100.0
 """Log likelihood a disturbance must bring ..."""
-_LEAST_SHARE = 0.2
+_LEAST_SHARE = 0.05
 """... and share of what is left that it must take up: less is the roughness of any model."""
 _RESTLESS = 2.0
 """Power while the stick moves over that in quiet, from which on it is no noise."""
@@ -72,7 +73,8 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     probes = probe_blocks(problem, last, noise)
     spiky = _spiky_sensor(problem, last)
     if spiky is not None:
-        return Leftover(spiky, 1.0, _ranking(probes, spiky))
+        block = "timing" if is_of_the_clock(problem, last, SENSOR_CHANNELS[spiky]) else spiky
+        return Leftover(block, 1.0, _ranking(probes, block))
     best = probes[0]
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     active, quiet = unrest(problem, last.innovations)
@@ -94,7 +96,7 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
     if unexplained < _LEAST_OF_GAP * taken and not plain:
         return None
-    block = stick_or_motion(problem, last, _instruments(problem), probes) or best.block
+    block = _block(problem, last, _instruments(problem), probes)
     return Leftover(block, best.explained, _ranking(probes, block))
 
 
@@ -124,8 +126,16 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
         courses, _ = disturbance_course(problem, last, noise, best.block, best.size)
         if is_of_the_air(problem.flights.flights, courses):
             return None
-    block = stick_or_motion(problem, last, noise, probes) or best.block
+    block = _block(problem, last, noise, probes)
     return Leftover(block, best.explained, _ranking(probes, block))
+
+
+def _block(problem: Problem, last: Fitted, noise: FloatArray, probes: Sequence[Probe]) -> str:
+    """The likeliest block, where its neighbours do not explain the same residual better by its course."""
+    best = probes[0].block
+    if best in SENSOR_CHANNELS and is_of_the_clock(problem, last, SENSOR_CHANNELS[best]):
+        return "timing"
+    return stick_or_motion(problem, last, noise, probes) or best
 
 
 def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:

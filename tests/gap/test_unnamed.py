@@ -18,6 +18,7 @@ from advisor.gap.origin import followed
 from advisor.gap.probes import KNOTS_S
 from advisor.gap.simulate import surface
 from advisor.gap.smoothness import is_filtered, is_smoothed
+from advisor.gap.wind import wind_shear
 from tests.gap.generator import Setup, fly
 
 BELIEVED = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0])
@@ -192,3 +193,35 @@ def test_a_record_filtered_on_the_ground_is_told_from_noise_and_from_moving_air(
     assert is_filtered([low_passed])
     assert not is_filtered([noise])
     assert not is_smoothed([air])
+
+
+def flown_with(channel, change, **setup):
+    """Manoeuvres of which one channel is changed: a function of manoeuvre number, stamps and values."""
+    flown = fly(Setup(maneuvers=6, **setup))
+    return [
+        replace(m, channels={**m.channels, channel: change(k, m.channels[channel])})
+        for k, m in enumerate(flown)
+    ]
+
+
+def test_a_clock_that_drifts_is_unknown_in_the_time_stamps():
+    flown = flown_with("q", lambda k, q: replace(q, y=np.interp(q.t - 0.012 * k, q.t, q.y)), seed=31)
+    found = diagnose(flown, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "timing")
+
+
+def test_a_scale_that_drifts_is_unknown_in_the_sensor():
+    flown = flown_with("q", lambda k, q: replace(q, y=q.y * (1.0 + 0.06 * k)), seed=31)
+    found = diagnose(flown, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "pitch_rate_sensor")
+
+
+def test_an_attitude_that_leans_with_the_pitch_rate_is_no_wind():
+    def leaning(k, theta):
+        late = lfilter([0.03], [1.0, -0.97], theta.y - theta.y[0])
+        return replace(theta, y=theta.y - 0.4 * late)
+
+    flown = flown_with("theta", leaning, seed=32)
+    assert wind_shear(flown) is not None
+    found = diagnose(flown, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "attitude_sensor")
