@@ -20,7 +20,7 @@ _BETTER = 2.0
 
 
 def is_of_the_clock(problem: Problem, fitted: Fitted, channel: str) -> bool:
-    """Whether what is left of a channel is its rate times a delay that changes from one manoeuvre to the next.
+    """Whether what is left of a channel is its rate times a delay that changes between manoeuvres.
 
     In each manoeuvre the delay may grow or shrink steadily. Where the channel was found to lag, it is the lag
     that changes: a sensor's.

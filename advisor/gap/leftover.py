@@ -29,6 +29,9 @@ _RESTLESS = 2.0
 """Power while the stick moves over that in quiet, from which on it is no noise."""
 _LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
+_PLAIN_SHARE = 0.2
+_FAINT_OF_GAP = 0.25
+"""The same for a disturbance below this share of what is left: no name comes near what is there."""
 _OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that."""
 _PLAIN = 0.1
@@ -94,7 +97,8 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
-    if unexplained < _LEAST_OF_GAP * taken and not plain:
+    least = _LEAST_OF_GAP if best.explained >= _PLAIN_SHARE or not disturbed else _FAINT_OF_GAP
+    if unexplained < least * taken and not plain:
         return None
     block = _block(problem, last, _instruments(problem), probes)
     return Leftover(block, best.explained, _ranking(probes, block))
