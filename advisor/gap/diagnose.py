@@ -121,7 +121,7 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     progress("looking for what has no name", 0.8)
     smooth = prefiltered(problem.flights)
     stated = np.array([white[k] if smooth[c] else 0.0 for k, c in enumerate(problem.channels)])
-    leftover = left_over(problem, stages[0].fitted, last, stated)
+    leftover = left_over(problem, stages[0].fitted, last, stated, moving_air=air is not None)
     if air is not None and (leftover is None or leftover.block == "air"):
         leftover = other_than_air(problem, stages[0].fitted, last)
     floor = np.minimum(quiet_rms(problem, last), np.sqrt(stages[-1].held_out.mean_square))

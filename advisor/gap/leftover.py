@@ -23,15 +23,16 @@ from advisor.gap.problem import Problem
 
 _LEAST_GAIN = 100.0
 """Log likelihood a disturbance must bring ..."""
-_LEAST_SHARE = 0.05
-"""... and share of what is left that it must take up: less is the roughness of any model."""
+_LEAST_SHARE = 0.2
+"""... and share of what is left that it must take up: less is the roughness of any model ..."""
+_FAINT_SHARE = 0.05
+"""... or, in still air, of the noise's filter ..."""
+_FAINT_OF_GAP = 0.25
+"""... unless it is this much beside what the named effects took up: then no name comes near what is there."""
 _RESTLESS = 2.0
 """Power while the stick moves over that in quiet, from which on it is no noise."""
 _LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
-_PLAIN_SHARE = 0.2
-_FAINT_OF_GAP = 0.25
-"""The same for a disturbance below this share of what is left: no name comes near what is there."""
 _OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that."""
 _PLAIN = 0.1
@@ -62,7 +63,9 @@ def of_the_wind(found: Leftover | None) -> Leftover:
     return Leftover("air", 1.0 if found is None else found.share, (("air", 1.0), *ranking))
 
 
-def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) -> Leftover | None:
+def left_over(
+    problem: Problem, first: Fitted, last: Fitted, stated: FloatArray, moving_air: bool = False
+) -> Leftover | None:
     """What the last model leaves, if it is more than noise.
 
     Parameters
@@ -71,6 +74,8 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
         The plain model and the one with every named effect.
     stated
         Shape (channels,): tolerance of channels that were filtered before they were recorded, else 0.
+    moving_air
+        Whether the air was found to move: then the filter that knows of it is known to low order only.
     """
     noise = _noise(problem)
     probes = probe_blocks(problem, last, noise)
@@ -89,7 +94,9 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     peaks = np.array([peak_of(problem.flights, c) for c in problem.channels])
     if not np.any(telling & (beyond > _OF_PEAK * peaks)):
         return None
-    disturbed = best.gain >= _LEAST_GAIN and best.explained >= _LEAST_SHARE and bool(np.any(loud))
+    faint = best.explained < _LEAST_SHARE
+    disturbed = best.gain >= _LEAST_GAIN and bool(np.any(loud))
+    disturbed = disturbed and (not faint or (not moving_air and best.explained >= _FAINT_SHARE))
     # What a low-pass leaves of noise is like no noise with a memory: there only the stick can tell.
     disturbed = disturbed and not problem.flights.alpha_is_smoothed
     if not disturbed and np.max(louder) < _RESTLESS:
@@ -97,7 +104,7 @@ def left_over(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray)
     plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
-    least = _LEAST_OF_GAP if best.explained >= _PLAIN_SHARE or not disturbed else _FAINT_OF_GAP
+    least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else _LEAST_OF_GAP
     if unexplained < least * taken and not plain:
         return None
     block = _block(problem, last, _instruments(problem), probes)
