@@ -6,6 +6,7 @@ import numpy as np
 
 from advisor.gap.candidates import input
 from advisor.gap.fit import Fitted, evidence_of, fit
+from advisor.gap.neighbourhood import Neighbourhood
 from advisor.gap.problem import Problem
 from advisor.gap.screen import Screen
 
@@ -22,10 +23,7 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     delay, lag = (
         next(v for v in input.variants() if v.effect == name) for name in ("transport_delay", "actuator_lag")
     )
-    screen = Screen(linear, fitted)
-    best = min(
-        (s for s in map(screen.try_one, (delay, lag)) if s is not None), key=lambda s: s.cost, default=None
-    )
+    best = min(Screen(linear, fitted).quick_fits((delay, lag)), key=lambda s: s.cost, default=None)
     if best is None:
         return linear, fitted
     other = lag if best.variant is delay else delay
@@ -54,15 +52,13 @@ def with_latency(problem: Problem, fitted: Fitted) -> Fitted:
 
     Within the few milliseconds of its bounds the latency passes stamps, and each may hold a minimum.
     """
-    screen = Screen(problem, fitted)
     lower, upper = input.LATENCY.bounds[0]
-    tried = []
-    for latency in np.arange(lower, upper + 1e-9, 1e-3):
-        values = (np.array([latency]), *fitted.point.values[1:])
-        place = screen.at(replace(fitted.point, values=values))
-        if place is not None:
-            tried.append(place)
-    best = min(tried, key=lambda place: place.cost)
+    points = [
+        replace(fitted.point, values=(np.array([latency]), *fitted.point.values[1:]))
+        for latency in np.arange(lower, upper + 1e-9, 1e-3)
+    ]
+    places = Neighbourhood(problem, fitted).at_all(points)
+    best = min((place for place in places if place is not None), key=lambda place: place.cost)
     if best.cost > fitted.cost - 1.0:
         return fitted
     again = fit(problem, best.point, fitted.noise)

@@ -107,7 +107,11 @@ def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray
 
 def noise_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
     """Shape (channels,): RMS of what is left, not below the smallest noise."""
-    noise = rms_of(problem, lefts)
+    return above_floor(problem, rms_of(problem, lefts))
+
+
+def above_floor(problem: Problem, noise: FloatArray) -> FloatArray:
+    """Noise not below the smallest, shape (channels,) or (k, channels)."""
     return np.maximum(noise, 1e-7 if problem.smallest_noise is None else problem.smallest_noise)
 
 

@@ -121,7 +121,7 @@ def _gust(problem: Problem, flight: Flight, p: FloatArray, length_s: float) -> F
     """Response of all channels, shape (rows,), to a (1 − cos) gust of 1 rad at its peak."""
     n = max(round(length_s / flight.h), 2)
     shape = 0.5 * (1.0 - np.cos(2.0 * np.pi * (np.arange(n) + 0.5) / n))
-    pulse = pulse_response(problem, flight, p, problem.fly(flight, p), DISTURB_AIR)
+    pulse = pulse_response(problem, flight, p, DISTURB_AIR)
     response = np.vstack([np.convolve(row, shape)[: flight.n + 1] * flight.h for row in pulse])
     return problem.read(flight, later(response, flight.last_step_s, flight.h), p)
 

@@ -1,18 +1,21 @@
 """The model about a point: sensitivities to shared numbers and to each manoeuvre's own."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flight
-from advisor.gap.layout import INDEX
+from advisor.gap.layout import INDEX, OUTPUTS
 from advisor.gap.problem import Point, Problem
-from advisor.gap.simulate import DISTURB_INPUT
+from advisor.gap.reading import lane
+from advisor.gap.simulate import DISTURB_INPUT, SPEED
 
 _DERIVATIVE_STEP = 1e-3
-_NUISANCE_STEPS = (1e-4, 1e-4)
+_STARTS = ("alpha_start", "q_start")
+_START_STEP = 1e-4
+_PULSE = 1e-4
+"""Area of the disturbance by which a response to a pulse is found."""
 _EDGE_VARIANCE = 1.0 / 12.0
 """An edge of a linear command lies anywhere between two stamps: uniform over the interval."""
 _HELD_JITTER_S = 0.0015
@@ -57,77 +60,98 @@ def shared_steps(point: Point) -> FloatArray:
     return np.concatenate([_DERIVATIVE_STEP * scale, *[np.array(e.steps) for e in point.effects]])
 
 
-def shared_columns(
-    problem: Problem, point: Point, p: FloatArray, grids: Sequence[FloatArray], which: range
-) -> list[FloatArray]:
-    """Sensitivities of every manoeuvre to some of the shared numbers, by one-sided differences."""
-    steps = shared_steps(point)
-    base = [
-        problem.read(f, g, p[i]) for i, (f, g) in enumerate(zip(problem.flights.flights, grids, strict=True))
-    ]
-    columns = [np.empty((len(b), len(which))) for b in base]
-    for j, index in enumerate(which):
-        shifted = point.shared.copy()
-        shifted[index] += steps[index]
-        q = problem.driving(point.moved(shifted, point.own))
-        for i, flight in enumerate(problem.flights.flights):
-            columns[i][:, j] = (problem.read(flight, problem.fly(flight, q[i]), q[i]) - base[i]) / steps[
-                index
-            ]
-    return columns
+def shifted_points(point: Point, which: range) -> list[Point]:
+    """The point with one of the shared numbers after the other moved by its step."""
+    shifts = np.diag(shared_steps(point))[which]
+    return [point.moved(point.shared + shift, point.own) for shift in shifts]
 
 
-def own_columns(problem: Problem, i: int, p: FloatArray, grid: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Sensitivities of one manoeuvre to its own numbers, and their inverse prior variances.
+def measured_columns(
+    problem: Problem, i: int, p: FloatArray, shifted: FloatArray, steps: FloatArray
+) -> Columns:
+    """Manoeuvre ``i`` in the units of its channels; sensitivities are one-sided differences.
 
-    Two initial-state responses are simulated; trim terms are their running integrals (the model is
-    nearly linear and nearly time-invariant over a manoeuvre), edges are shifted impulse responses.
+    Of its own numbers two initial-state responses are simulated; trim terms are their running integrals
+    (the model is nearly linear and nearly time-invariant over a manoeuvre), edges are shifted impulse
+    responses.
+
+    Parameters
+    ----------
+    p
+        Shape (entries,): where.
+    shifted
+        Shape (k, entries): the same with each of the shared numbers moved by its step ...
+    steps
+        ... shape (k,).
     """
-    flight = problem.flights.flights[i]
-    base = problem.read(flight, grid, p)
-    columns = []
-    on_grid = []
-    for name, step in zip(("alpha_start", "q_start"), _NUISANCE_STEPS, strict=True):
-        q = p.copy()
-        q[INDEX[name]] += step
-        moved = problem.fly(flight, q)
-        on_grid.append((moved - grid) / step)
-        columns.append((problem.read(flight, moved, q) - base) / step)
-    for response, direct in zip(on_grid, (True, False), strict=True):
-        summed = flight.h * (np.cumsum(response, axis=1) - 0.5 * response)
-        if direct:
-            speed = flight.slow[0]
-            summed[2, :-1] += speed
-            summed[2, -1] += speed[-1]
-        columns.append(problem.read(flight, summed, p))
-    rows = problem.rows(flight)
-    for name in ("a_z", "theta"):
-        if name in problem.channels:
-            offset = np.zeros(len(base))
-            offset[rows[problem.channels.index(name)]] = 1.0
-            columns.append(offset)
-    flat = len(columns)
-    if len(flight.edges):
-        pulse = pulse_response(problem, flight, p, grid, DISTURB_INPUT, p[INDEX["lag_s"]])
-        late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
-        for middle, area, interval in flight.edges:
-            at = middle + late + (0.5 * interval if problem.held else 0.0)
-            columns.append(area * problem.read(flight, later(pulse, at, flight.h), p))
-    prior = np.zeros(len(columns))
-    if len(flight.edges):
-        jitter = (np.hypot(_HELD_JITTER_S, problem.jitter_s) / flight.edges[:, 2]) ** 2
-        prior[flat:] = 1.0 / (jitter if problem.held else _EDGE_VARIANCE)
-    own = np.column_stack(columns)
-    return own, prior
+    flight, k = problem.flights.flights[i], len(steps)
+    starts = np.tile(p, (len(_STARTS), 1))
+    starts[range(len(_STARTS)), [INDEX[name] for name in _STARTS]] += _START_STEP
+    rows = np.vstack([p, shifted, starts, p])
+    doses = np.zeros(len(rows))
+    doses[-1] = _PULSE
+    packs = problem.fly_all(flight, rows, unit_pulse(flight, DISTURB_INPUT, p[INDEX["lag_s"]]), doses)
+    read = problem.read_all(flight, packs, rows[:-1])
+    base, moved = read[:, :1], read[:, 1:]
+    grid = lane(packs, 0)
+    alpha, q = ((lane(packs, k + 1 + j) - grid) / _START_STEP for j in range(len(_STARTS)))
+    pulse = (lane(packs, len(rows) - 1) - grid) / _PULSE
+    late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
+    begin = flight.edges[:, 0] + late + (0.5 * flight.edges[:, 2] if problem.held else 0.0)
+    edges = [later(pulse, at, flight.h) for at in begin]
+    responses = problem.read_grids(flight, [_lift_trim(flight, alpha), _summed(flight, q), *edges], p)
+    own = [
+        (moved[:, k:] - base) / _START_STEP,
+        responses[:, :2],
+        _offsets(problem, flight),
+        responses[:, 2:] * flight.edges[:, 1],
+    ]
+    return Columns(problem.measured(flight) - base[:, 0], (moved[:, :k] - base) / steps, np.hstack(own))
 
 
-def pulse_response(
-    problem: Problem, flight: Flight, p: FloatArray, grid: FloatArray, where: int, lag_s: float = 0.0
-) -> FloatArray:
+def _summed(flight: Flight, response: FloatArray) -> FloatArray:
+    """Response to a trim term from that to its initial state, both of shape (4, n + 1)."""
+    return np.asarray(flight.h * (np.cumsum(response, axis=1) - 0.5 * response))
+
+
+def _lift_trim(flight: Flight, response: FloatArray) -> FloatArray:
+    """The same for the trim of the lift, which the accelerometer also feels at once."""
+    summed = _summed(flight, response)
+    speed = flight.slow[SPEED]
+    summed[2] += np.append(speed, speed[-1])
+    return summed
+
+
+def _offsets(problem: Problem, flight: Flight) -> FloatArray:
+    """Shape (rows, offsets): constants of the accelerometer and of the attitude."""
+    return np.column_stack(
+        [flight.output == OUTPUTS.index(c) for c in ("a_z", "theta") if c in problem.channels]
+        or [np.empty((len(flight.stamps), 0))]
+    ).astype(float)
+
+
+def _own_prior(problem: Problem, flight: Flight, own: int) -> FloatArray:
+    """Shape (own,): inverse prior variances of a manoeuvre's own numbers, 0 for flat; its edges come last."""
+    prior = np.zeros(own)
+    intervals = flight.edges[:, 2]
+    jitter = (np.hypot(_HELD_JITTER_S, problem.jitter_s) / intervals) ** 2
+    prior[own - len(intervals) :] = 1.0 / (jitter if problem.held else _EDGE_VARIANCE)
+    return prior
+
+
+def pulse_response(problem: Problem, flight: Flight, p: FloatArray, where: int) -> FloatArray:
     """Response on the grid, shape (4, n + 1), to a disturbance of unit area at the start of the record.
 
-    ``where`` is a row of the disturbances of ``advisor.gap.simulate``; ``lag_s`` passes the pulse
-    through a first-order lag first, as a servo would.
+    ``where`` is a row of the disturbances of ``advisor.gap.simulate``.
+    """
+    packs = problem.fly_all(flight, np.stack([p, p]), unit_pulse(flight, where), np.array([0.0, _PULSE]))
+    return (lane(packs, 1) - lane(packs, 0)) / _PULSE
+
+
+def unit_pulse(flight: Flight, where: int, lag_s: float = 0.0) -> FloatArray:
+    """A disturbance of unit area at the start of the record, shape (4, n).
+
+    ``lag_s`` passes it through a first-order lag first, as a servo would.
     """
     disturbance = np.zeros((4, flight.n))
     if lag_s > 1e-3:
@@ -135,8 +159,7 @@ def pulse_response(
         disturbance[where] = shape / (np.sum(shape) * flight.h)
     else:
         disturbance[where, 0] = 1.0 / flight.h
-    size = 1e-4
-    return np.asarray((problem.fly(flight, p, size * disturbance) - grid) / size)
+    return disturbance
 
 
 def later(pulse: FloatArray, at: float, h: float) -> FloatArray:
@@ -152,17 +175,15 @@ def later(pulse: FloatArray, at: float, h: float) -> FloatArray:
 
 def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:
     """The whole model made linear about a point."""
-    p = problem.driving(point)
-    lefts, grids = zip(*[problem.parts(i, p[i]) for i in range(len(problem.flights))], strict=True)
-    shared = shared_columns(problem, point, p, grids, range(len(point.shared)))
+    p, steps = problem.driving(point), shared_steps(point)
+    shifted = np.stack([problem.driving(moved) for moved in shifted_points(point, range(len(steps)))], axis=1)
     blocks = []
-    for i in range(len(problem.flights)):
-        own, prior = own_columns(problem, i, p[i], grids[i])
-        measured = Columns(lefts[i], shared[i], own)
-        if problem.whitening is None:
-            blocks.append(Linear(measured.left, measured.shared, measured.own, prior, measured))
-            continue
-        e = problem.innovations(i, np.column_stack([lefts[i], shared[i], own]))
-        k = shared[i].shape[1]
-        blocks.append(Linear(e[:, 0], e[:, 1 : k + 1], e[:, k + 1 :], prior, measured))
+    for i, flight in enumerate(problem.flights.flights):
+        measured = measured_columns(problem, i, p[i], shifted[i], steps)
+        left, shared, own = measured.left, measured.shared, measured.own
+        prior = _own_prior(problem, flight, own.shape[1])
+        if problem.whitening is not None:
+            e = problem.innovations(i, np.column_stack([left, shared, own]))
+            left, shared, own = e[:, 0], e[:, 1 : len(steps) + 1], e[:, len(steps) + 1 :]
+        blocks.append(Linear(left, shared, own, prior, measured))
     return tuple(blocks)

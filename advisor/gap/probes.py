@@ -121,16 +121,13 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
         response[OUTPUTS.index(SENSOR_CHANNELS[block]), : len(shape)] = shape
     else:
         where = _DYNAMIC["air" if block.startswith("air") else block]
-        grid = problem.fly(flight, p)
-        pulse = pulse_response(problem, flight, p, grid, where)
+        pulse = pulse_response(problem, flight, p, where)
         for c in range(4):
             response[c] = np.convolve(pulse[c], shape)[:n] * flight.h
         if block == "air unseen":
             response[OUTPUTS.index("alpha"), : len(shape)] -= shape * (1.0 + p[INDEX["alpha_scale"]])
     # The hat's rising side lies before its knot.
-    columns = np.column_stack(
-        [problem.read(flight, later(response, knot - KNOTS_S, flight.h), p) for knot in knots[1:]]
-    )
+    columns = problem.read_grids(flight, [later(response, t, flight.h) for t in knots[1:] - KNOTS_S], p)
     return np.asarray(columns @ _colour(flight))
 
 

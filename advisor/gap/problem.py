@@ -9,11 +9,13 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.belief import pull_of
 from advisor.gap.data import Flight, Flights
 from advisor.gap.layout import DERIVATIVES, INDEX, NUISANCES, SKEWS
-from advisor.gap.simulate import read_rows, simulate, surface
+from advisor.gap.reading import lane, packed, read_rows
+from advisor.gap.simulate import LANES, simulate
+from advisor.gap.surface import surfaces
 from advisor.gap.variant import Variant
 from advisor.gap.whitening import Filters, Whitening
 
-_NO_DISTURBANCE = np.zeros((4, 0))
+NO_DISTURBANCE = np.zeros((4, 0))
 _SKEW_ENTRIES = np.array([INDEX[name] for name in SKEWS])
 
 
@@ -120,14 +122,36 @@ class Problem:
             effect.apply(p, values, self.flights)
         return p
 
-    def fly(self, flight: Flight, p: FloatArray, disturbance: FloatArray = _NO_DISTURBANCE) -> FloatArray:
+    def fly_all(
+        self,
+        flight: Flight,
+        p: FloatArray,
+        disturbance: FloatArray = NO_DISTURBANCE,
+        doses: FloatArray | None = None,
+    ) -> FloatArray:
+        """One manoeuvre simulated with every row of ``p``, shape (k, entries), in packs for ``read_all``.
+
+        The disturbance, shape (4, n), enters each simulation by its dose, shape (k,).
+        """
+        delta = surfaces(flight.h, flight.n, flight.t_u, flight.u, self.held, flight.u_trim, p, LANES)
+        doses = np.zeros(len(p)) if doses is None else doses
+        return simulate(flight.h, delta, flight.slow, disturbance, doses, flight.trim, p)
+
+    def read_all(self, flight: Flight, packs: FloatArray, p: FloatArray) -> FloatArray:
+        """Shape (rows, k): of every simulation all channels at their own stamps, one after another."""
+        return np.asarray(read_rows(packs, flight.h, flight.stamps, flight.output, p[:, _SKEW_ENTRIES]))
+
+    def fly(self, flight: Flight, p: FloatArray) -> FloatArray:
         """Simulated outputs of one manoeuvre on the grid, shape (4, n + 1)."""
-        delta = surface(flight.h, flight.n, flight.t_u, flight.u, self.held, flight.u_trim, p)
-        return simulate(flight.h, delta, flight.slow, disturbance, flight.trim, p)
+        return lane(self.fly_all(flight, p[None]), 0)
+
+    def read_grids(self, flight: Flight, grids: Sequence[FloatArray], p: FloatArray) -> FloatArray:
+        """Shape (rows, k): of series on the grid, each of shape (4, n + 1), the same."""
+        return self.read_all(flight, packed(grids), np.tile(p, (len(grids), 1)))
 
     def read(self, flight: Flight, grid: FloatArray, p: FloatArray) -> FloatArray:
-        """All channels at their own stamps, one after another."""
-        return np.asarray(read_rows(grid, flight.h, flight.stamps, flight.output, p[_SKEW_ENTRIES]))
+        """The same of one series."""
+        return self.read_grids(flight, [grid], p)[:, 0]
 
     def rows(self, flight: Flight) -> list[slice]:
         """Where each channel sits in the stacked vector of one manoeuvre."""
@@ -140,12 +164,6 @@ class Problem:
     def measured(self, flight: Flight) -> FloatArray:
         """All channels of one manoeuvre, stacked."""
         return np.concatenate([flight.outputs[c].y for c in self.channels])
-
-    def parts(self, i: int, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Measured minus simulated of manoeuvre ``i``, shape (rows,), and the simulation on its grid."""
-        flight = self.flights.flights[i]
-        grid = self.fly(flight, p)
-        return self.measured(flight) - self.read(flight, grid, p), grid
 
     def innovations(self, i: int, columns: FloatArray) -> FloatArray:
         """Columns of manoeuvre ``i``, shape (rows, k), freed of what neighbouring rows have in common."""

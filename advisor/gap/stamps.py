@@ -12,9 +12,8 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.data import STEP_S
 from advisor.gap.fit import Fitted
 from advisor.gap.floor import white_noise
-from advisor.gap.layout import OUTPUTS
+from advisor.gap.layout import ENTRIES
 from advisor.gap.problem import Problem
-from advisor.gap.simulate import read_off
 
 _LEAST = {"q": 0.3, "a_z": 0.45}
 """Channels that move quickly and are measured well; for each, from which error through its stamps on, beside
@@ -101,7 +100,4 @@ def _jitter_in(
 
 def _read(problem: Problem, i: int, series: list[FloatArray]) -> FloatArray:
     """Series on the grid, one an output, at the stamps of each channel, stacked."""
-    flight = problem.flights.flights[i]
-    return np.concatenate(
-        [read_off(series[OUTPUTS.index(c)], flight.h, flight.outputs[c].t, 0.0) for c in problem.channels]
-    )
+    return problem.read(problem.flights.flights[i], np.stack(series), np.zeros(len(ENTRIES)))

@@ -106,7 +106,7 @@ def gains_of(
     return Gains(step, keep, gain, root, channel, observed)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def _gains(
     t: FloatArray,
     channel: np.ndarray,
@@ -173,22 +173,26 @@ def _gains(
         else:
             steps[i], keeps[i] = np.eye(4), 1.0
         c = channel[i]
+        Ph[:] = 0.0
+        for s in range(STATES):
+            seen = observed[c, s]
+            if seen != 0.0:
+                for a in range(STATES):
+                    Ph[a] += P[s, a] * seen
         variance = white[i]
-        for a in range(STATES):
-            Ph[a] = 0.0
-            for s in range(STATES):
-                Ph[a] += P[a, s] * observed[c, s]
         for s in range(STATES):
             variance += observed[c, s] * Ph[s]
         roots[i] = np.sqrt(variance)
+        per_variance = 1.0 / variance
         for a in range(STATES):
-            gains[i, a] = Ph[a] / variance
+            gain = Ph[a] * per_variance
+            gains[i, a] = gain
             for b in range(STATES):
-                P[a, b] -= Ph[a] * Ph[b] / variance
+                P[a, b] -= gain * Ph[b]
     return steps, keeps, gains, roots
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def _pass(
     steps: FloatArray,
     keeps: FloatArray,

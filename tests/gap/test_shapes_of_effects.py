@@ -6,7 +6,7 @@ import pytest
 from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.layout import ENTRIES, INDEX
-from advisor.gap.simulate import surface
+from advisor.gap.surface import surface
 from tests.gap.generator import Setup, fly
 
 

@@ -16,8 +16,8 @@ from advisor.gap.layout import ENTRIES, INDEX
 from advisor.gap.leftover import other_than_air
 from advisor.gap.origin import followed
 from advisor.gap.probes import KNOTS_S
-from advisor.gap.simulate import surface
 from advisor.gap.smoothness import is_filtered, is_smoothed
+from advisor.gap.surface import surface
 from advisor.gap.wind import wind_shear
 from tests.gap.generator import Setup, fly
 

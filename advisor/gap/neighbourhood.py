@@ -1,0 +1,198 @@
+"""Around a fitted model: places flown fast, with the fit's own sensitivities, and the way on from each.
+
+Only the sensitivities to the effect that was added last are computed anew. Many places are flown together,
+so that their simulations share packs (``advisor.gap.simulate``) and their columns the filter.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fit import Fitted, above_floor, factor
+from advisor.gap.layout import DERIVATIVES
+from advisor.gap.linear import shared_steps, shifted_points
+from advisor.gap.normal import solved
+from advisor.gap.problem import Point, Problem, counts, row_weights
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point that was flown."""
+
+    point: Point
+    """With the manoeuvres' own numbers refitted."""
+    cost: float
+    noise: FloatArray
+    information: FloatArray
+    """Shape (k, k): of all shared numbers, own numbers eliminated ..."""
+    gradient: FloatArray
+    """... and shape (k,), half the decrease of the cost per unit of each."""
+
+    def step(self) -> tuple[FloatArray, float]:
+        """Step of all shared numbers, and the decrease of the cost that it promises."""
+        scale = np.sqrt(np.maximum(np.diag(self.information), 1e-300))
+        normal = self.information / np.outer(scale, scale) + 1e-9 * np.eye(len(scale))
+        step = np.linalg.lstsq(normal, self.gradient / scale, rcond=1e-12)[0] / scale
+        return step, float(self.gradient @ step)
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """Of one manoeuvre, weighted: what never changes between places."""
+
+    measured: FloatArray
+    weights: FloatArray
+    r: FloatArray
+    """Shape (rows,): what the fit left, own numbers not refitted."""
+    A: FloatArray
+    """Own columns, shape (rows, m) ..."""
+    J: FloatArray
+    """... and shared ones, shape (rows, k)."""
+    chol: FloatArray
+    AJ: FloatArray
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """A point to be flown, and where its columns stand among those of all that are flown with it."""
+
+    point: Point
+    p: FloatArray
+    """Shape (manoeuvres, entries)."""
+    shifted: FloatArray
+    """Shape (numbers, manoeuvres, entries): with each number of its last effect moved by its step."""
+    steps: FloatArray
+    """Shape (numbers,)."""
+    first: int
+    """Column of what is left; those of the numbers come next."""
+
+    @property
+    def columns(self) -> slice:
+        """All of its columns."""
+        return slice(self.first, self.first + 1 + len(self.steps))
+
+
+class Neighbourhood:
+    """A fitted model made ready for many places."""
+
+    def __init__(self, problem: Problem, fitted: Fitted) -> None:
+        self.problem, self.fitted = problem, fitted
+        weights = 1.0 / fitted.noise
+        self.kept = []
+        self.p = problem.driving(fitted.point)
+        self.count = counts(problem)
+        k = len(fitted.point.shared)
+        self.information = np.zeros((k, k))
+        for i, (flight, block) in enumerate(zip(problem.flights.flights, fitted.linear, strict=True)):
+            w = row_weights(problem, i, weights)
+            A, J = block.own * w[:, None], block.shared * w[:, None]
+            chol = factor(problem, i, block.own, block.prior, weights)
+            AJ = A.T @ J
+            self.information += J.T @ J - AJ.T @ solved(chol, AJ)
+            self.kept.append(_Kept(problem.measured(flight), w, block.left * w, A, J, chol, AJ))
+
+    def at_all(self, points: Sequence[Point]) -> list[Place | None]:
+        """Fly to every point, the manoeuvres' own numbers refitted; None where a simulation fails."""
+        problem = self.problem
+        asked: list[_Asked] = []
+        for point in points:
+            asked.append(self._asked(point, asked[-1].columns.stop if asked else 0))
+        firsts, width = [a.first for a in asked], asked[-1].columns.stop
+        failed = np.zeros(len(asked), dtype=bool)
+        squares, prior = np.zeros((len(self.count), len(asked))), np.zeros(len(asked))
+        JX = np.zeros((len(self.information), width))
+        XX = [np.zeros((1 + len(a.steps), 1 + len(a.steps))) for a in asked]
+        owns = np.empty((len(asked), *self.fitted.point.own.shape))
+        for i, (flight, kept) in enumerate(zip(problem.flights.flights, self.kept, strict=True)):
+            X = self._seen(i, asked, width, failed)
+            AX = kept.A.T @ X
+            GX = solved(kept.chol, AX)
+            JX += kept.J.T @ X - kept.AJ.T @ GX
+            own = GX[:, firsts]
+            after = (X[:, firsts] - kept.A @ own) / kept.weights[:, None]
+            squares += [np.sum(after[rows] ** 2, axis=0) for rows in problem.rows(flight)]
+            prior += self.fitted.linear[i].prior @ own**2
+            owns[:, i] = own[: owns.shape[2]].T
+            for a, gram in zip(asked, XX, strict=True):
+                gram += X[:, a.columns].T @ X[:, a.columns] - AX[:, a.columns].T @ GX[:, a.columns]
+        noise = above_floor(problem, np.sqrt(squares / np.maximum(self.count, 1.0)[:, None]).T)
+        costs = 2.0 * np.log(noise) @ self.count + prior
+        return [
+            None if failed[j] else self._place(a, costs[j], noise[j], owns[j], JX[:, a.columns], XX[j])
+            for j, a in enumerate(asked)
+        ]
+
+    def _asked(self, point: Point, first: int) -> _Asked:
+        known = len(self.information)
+        steps = shared_steps(point)[known:]
+        p = self.problem.driving(point)
+        moved = shifted_points(point, range(known, known + len(steps)))
+        shifted = np.array([self.problem.driving(there) for there in moved]).reshape(len(steps), *p.shape)
+        return _Asked(point, p, shifted, steps, first)
+
+    def _place(
+        self, a: _Asked, cost: float, noise: FloatArray, own: FloatArray, JX: FloatArray, XX: FloatArray
+    ) -> Place:
+        pull, missed = self.problem.pull(a.point)
+        known = len(self.information)
+        H, g = np.diag(pull), pull * missed
+        H[:known, :known] += self.information
+        H[:known, known:] += JX[:, 1:]
+        H[known:, :known] += JX[:, 1:].T
+        H[known:, known:] += XX[1:, 1:]
+        g += np.concatenate([JX[:, 0], XX[1:, 0]])
+        there = a.point.moved(a.point.shared, a.point.own + own)
+        return Place(there, float(cost + pull @ missed**2), noise, H, g)
+
+    def _seen(self, i: int, asked: Sequence[_Asked], width: int, failed: np.ndarray) -> FloatArray:
+        """Weighted innovations of manoeuvre ``i`` and their sensitivities, shape (rows, width).
+
+        A change of derivatives from one manoeuvre to the next is a sum of sensitivities known already,
+        and none at all in manoeuvres it does not touch: nothing is flown for it.
+        """
+        problem, kept, flight = self.problem, self.kept[i], self.problem.flights.flights[i]
+        k = len(DERIVATIVES)
+        X = np.empty((len(kept.r), width))
+        rows: list[FloatArray] = []
+        begun, base, columns, scale = [], [], [], []
+        for j, a in enumerate(asked):
+            p, shifted = a.p[i], a.shifted[:, i]
+            changes = (shifted - p) / a.steps[:, None]
+            flown = np.any(changes[:, k:], axis=1)
+            X[:, a.first] = kept.r
+            X[:, a.columns][:, 1:] = kept.J[:, :k] @ changes[:, :k].T
+            if not np.any(flown) and np.array_equal(p, self.p[i]):
+                continue
+            begun.append((j, len(rows)))
+            base += [len(rows)] * (1 + np.count_nonzero(flown))
+            columns += [a.first, *(a.first + 1 + np.flatnonzero(flown))]
+            scale += [1.0, *a.steps[flown]]
+            rows += [p, *shifted[flown]]
+        if not rows:
+            return X
+        all_rows = np.array(rows)
+        read = problem.read_all(flight, problem.fly_all(flight, all_rows), all_rows)
+        finite = np.all(np.isfinite(read), axis=0)
+        read[:, ~finite] = 0.0
+        raw = (read - read[:, base]) / np.array(scale)
+        for j, at in begun:
+            failed[j] |= not finite[at]
+            raw[:, at] = kept.measured - read[:, at]
+        X[:, columns] = problem.innovations(i, raw) * kept.weights[:, None]
+        return X
+
+    def choose_sides(self, point: Point, entries: Sequence[float]) -> Point:
+        """In every manoeuvre the side that leaves least, own numbers refitted."""
+        problem = self.problem
+        p = [problem.driving(replace(point, sides=np.full(len(self.kept), side))) for side in entries]
+        best = []
+        for i, (flight, kept) in enumerate(zip(problem.flights.flights, self.kept, strict=True)):
+            rows = np.stack([q[i] for q in p])
+            left = kept.measured[:, None] - problem.read_all(flight, problem.fly_all(flight, rows), rows)
+            r = problem.innovations(i, left) * kept.weights[:, None]
+            Ar = kept.A.T @ r
+            costs = np.sum(r * r, axis=0) - np.sum(Ar * solved(kept.chol, Ar), axis=0)
+            best.append(entries[int(np.argmin(costs))])
+        return replace(point, sides=np.array(best))

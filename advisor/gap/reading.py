@@ -1,0 +1,61 @@
+"""Simulated channels at their measurements' own stamps: the model is interpolated, never the data."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numba import njit
+
+from advisor.flight.messages import FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def read_rows(
+    packs: FloatArray, h: float, stamps: FloatArray, output: np.ndarray, skews: FloatArray
+) -> FloatArray:
+    """All channels of one manoeuvre, of all its simulations at once.
+
+    Parameters
+    ----------
+    packs
+        As ``advisor.gap.simulate.simulate`` returns them, with any number of lanes in a pack.
+    h
+        Step in s.
+    stamps
+        Shape (rows,).
+    output
+        Shape (rows,), int64: which output each stamp reads.
+    skews
+        Shape (k, 4): of each simulation and output, in s; > 0: the channel is late.
+
+    Returns
+    -------
+    Shape (rows, k).
+    """
+    k, lanes, last = len(skews), packs.shape[3], packs.shape[1] - 2
+    y = np.empty((len(stamps), k))
+    for pack in range(len(packs)):
+        first = pack * lanes
+        width = min(lanes, k - first)
+        for i in range(len(stamps)):
+            c = output[i]
+            skew, at, part = np.inf, 0, 0.0
+            for lane in range(width):
+                if skews[first + lane, c] != skew:
+                    skew = skews[first + lane, c]
+                    x = (stamps[i] - skew) / h
+                    at = min(max(int(x), 0), last)
+                    part = min(max(x - at, 0.0), 1.0)
+                here = packs[pack, at, c, lane]
+                y[i, first + lane] = here + part * (packs[pack, at + 1, c, lane] - here)
+    return y
+
+
+def packed(grids: Sequence[FloatArray]) -> FloatArray:
+    """Series on the grid, each of shape (4, n + 1), as one pack to read."""
+    return np.ascontiguousarray(np.stack(grids, axis=-1).transpose(1, 0, 2))[None]
+
+
+def lane(packs: FloatArray, k: int) -> FloatArray:
+    """One simulation of many on its grid, shape (4, n + 1)."""
+    pack, at = divmod(k, packs.shape[3])
+    return np.ascontiguousarray(packs[pack, :, :, at].T)
