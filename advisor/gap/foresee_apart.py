@@ -21,7 +21,7 @@ from advisor.gap.causes import OFFSET_SIGMAS
 from advisor.gap.data import Flight
 from advisor.gap.fit import Fitted
 from advisor.gap.foresee import Foreseen, Mark
-from advisor.gap.linear import later, pulse_response
+from advisor.gap.linear import pulse_response
 from advisor.gap.marks import Marks
 from advisor.gap.needs import NEEDS
 from advisor.gap.probes import disturbance_columns
@@ -123,7 +123,7 @@ def _gust(problem: Problem, flight: Flight, p: FloatArray, length_s: float) -> F
     shape = 0.5 * (1.0 - np.cos(2.0 * np.pi * (np.arange(n) + 0.5) / n))
     pulse = pulse_response(problem, flight, p, DISTURB_AIR)
     response = np.vstack([np.convolve(row, shape)[: flight.n + 1] * flight.h for row in pulse])
-    return problem.read(flight, later(response, flight.last_step_s, flight.h), p)
+    return problem.read_delayed(flight, response, np.array([flight.last_step_s]), p)[:, 0]
 
 
 def _at_speed(flight: Flight, factor: float) -> Flight:

@@ -98,13 +98,11 @@ def measured_columns(
     pulse = (lane(packs, len(rows) - 1) - grid) / _PULSE
     late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
     begin = flight.edges[:, 0] + late + (0.5 * flight.edges[:, 2] if problem.held else 0.0)
-    edges = [later(pulse, at, flight.h) for at in begin]
-    responses = problem.read_grids(flight, [_lift_trim(flight, alpha), _summed(flight, q), *edges], p)
     own = [
         (moved[:, k:] - base) / _START_STEP,
-        responses[:, :2],
+        problem.read_grids(flight, [_lift_trim(flight, alpha), _summed(flight, q)], p),
         _offsets(problem, flight),
-        responses[:, 2:] * flight.edges[:, 1],
+        problem.read_delayed(flight, pulse, begin, p) * flight.edges[:, 1],
     ]
     return Columns(problem.measured(flight) - base[:, 0], (moved[:, :k] - base) / steps, np.hstack(own))
 
@@ -160,17 +158,6 @@ def unit_pulse(flight: Flight, where: int, lag_s: float = 0.0) -> FloatArray:
     else:
         disturbance[where, 0] = 1.0 / flight.h
     return disturbance
-
-
-def later(pulse: FloatArray, at: float, h: float) -> FloatArray:
-    """The same response, starting later; between two points of the grid it is mixed from both."""
-    k = int(max(at, 0.0) / h)
-    part = max(at, 0.0) / h - k
-    out = np.zeros_like(pulse)
-    n = pulse.shape[1]
-    out[:, k:] = (1.0 - part) * pulse[:, : max(n - k, 0)]
-    out[:, k + 1 :] += part * pulse[:, : max(n - k - 1, 0)]
-    return out
 
 
 def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:

@@ -103,7 +103,7 @@ class Neighbourhood:
         failed = np.zeros(len(asked), dtype=bool)
         squares, prior = np.zeros((len(self.count), len(asked))), np.zeros(len(asked))
         JX = np.zeros((len(self.information), width))
-        XX = [np.zeros((1 + len(a.steps), 1 + len(a.steps))) for a in asked]
+        XX = np.zeros((width, width))
         owns = np.empty((len(asked), *self.fitted.point.own.shape))
         for i, (flight, kept) in enumerate(zip(problem.flights.flights, self.kept, strict=True)):
             X = self._seen(i, asked, width, failed)
@@ -115,12 +115,13 @@ class Neighbourhood:
             squares += [np.sum(after[rows] ** 2, axis=0) for rows in problem.rows(flight)]
             prior += self.fitted.linear[i].prior @ own**2
             owns[:, i] = own[: owns.shape[2]].T
-            for a, gram in zip(asked, XX, strict=True):
-                gram += X[:, a.columns].T @ X[:, a.columns] - AX[:, a.columns].T @ GX[:, a.columns]
+            XX += X.T @ X - AX.T @ GX
         noise = above_floor(problem, np.sqrt(squares / np.maximum(self.count, 1.0)[:, None]).T)
         costs = 2.0 * np.log(noise) @ self.count + prior
         return [
-            None if failed[j] else self._place(a, costs[j], noise[j], owns[j], JX[:, a.columns], XX[j])
+            None
+            if failed[j]
+            else self._place(a, costs[j], noise[j], owns[j], JX[:, a.columns], XX[a.columns, a.columns])
             for j, a in enumerate(asked)
         ]
 
@@ -162,7 +163,8 @@ class Neighbourhood:
             changes = (shifted - p) / a.steps[:, None]
             flown = np.any(changes[:, k:], axis=1)
             X[:, a.first] = kept.r
-            X[:, a.columns][:, 1:] = kept.J[:, :k] @ changes[:, :k].T
+            if not np.all(flown):
+                X[:, a.columns][:, 1:] = kept.J[:, :k] @ changes[:, :k].T
             if not np.any(flown) and np.array_equal(p, self.p[i]):
                 continue
             begun.append((j, len(rows)))
@@ -194,5 +196,6 @@ class Neighbourhood:
             r = problem.innovations(i, left) * kept.weights[:, None]
             Ar = kept.A.T @ r
             costs = np.sum(r * r, axis=0) - np.sum(Ar * solved(kept.chol, Ar), axis=0)
-            best.append(entries[int(np.argmin(costs))])
+            # Without play all sides are alike but for rounding: the first is taken.
+            best.append(entries[int(np.argmax(costs <= np.min(costs) * (1.0 + 1e-9)))])
         return replace(point, sides=np.array(best))

@@ -15,7 +15,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flight
 from advisor.gap.fit import Fitted, factor
 from advisor.gap.layout import INDEX, OUTPUTS
-from advisor.gap.linear import later, pulse_response
+from advisor.gap.linear import pulse_response
 from advisor.gap.normal import solved
 from advisor.gap.problem import Problem, row_weights
 from advisor.gap.simulate import DISTURB_AIR, DISTURB_FORCE, DISTURB_INPUT, DISTURB_MOMENT
@@ -127,7 +127,7 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
         if block == "air unseen":
             response[OUTPUTS.index("alpha"), : len(shape)] -= shape * (1.0 + p[INDEX["alpha_scale"]])
     # The hat's rising side lies before its knot.
-    columns = problem.read_grids(flight, [later(response, t, flight.h) for t in knots[1:] - KNOTS_S], p)
+    columns = problem.read_delayed(flight, response, knots[1:] - KNOTS_S, p)
     return np.asarray(columns @ _colour(flight))
 
 

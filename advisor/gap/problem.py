@@ -9,7 +9,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.belief import pull_of
 from advisor.gap.data import Flight, Flights
 from advisor.gap.layout import DERIVATIVES, INDEX, NUISANCES, SKEWS
-from advisor.gap.reading import lane, packed, read_rows
+from advisor.gap.reading import delayed, lane, packed, read_rows
 from advisor.gap.simulate import LANES, simulate
 from advisor.gap.surface import surfaces
 from advisor.gap.variant import Variant
@@ -149,8 +149,14 @@ class Problem:
         """Shape (rows, k): of series on the grid, each of shape (4, n + 1), the same."""
         return self.read_all(flight, packed(grids), np.tile(p, (len(grids), 1)))
 
+    def read_delayed(
+        self, flight: Flight, response: FloatArray, delays: FloatArray, p: FloatArray
+    ) -> FloatArray:
+        """Shape (rows, k): of one series that starts later by each of the delays."""
+        return self.read_all(flight, delayed(response, flight.h, delays), np.tile(p, (len(delays), 1)))
+
     def read(self, flight: Flight, grid: FloatArray, p: FloatArray) -> FloatArray:
-        """The same of one series."""
+        """The same of one series as it is."""
         return self.read_grids(flight, [grid], p)[:, 0]
 
     def rows(self, flight: Flight) -> list[slice]:

@@ -50,6 +50,27 @@ def read_rows(
     return y
 
 
+@njit(cache=True, error_model="numpy")
+def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
+    """The same response, shape (4, n + 1), starting later by each of some delays, as one pack to read.
+
+    Between two points of the grid it is mixed from both.
+    """
+    n = response.shape[1]
+    out = np.zeros((1, n, 4, len(delays)))
+    steps = np.maximum(delays, 0.0) / h
+    for i in range(n):
+        for j in range(len(delays)):
+            k = i - int(steps[j])
+            part = steps[j] - int(steps[j])
+            for c in range(4):
+                if k >= 0:
+                    out[0, i, c, j] = (1.0 - part) * response[c, k]
+                if k > 0:
+                    out[0, i, c, j] += part * response[c, k - 1]
+    return out
+
+
 def packed(grids: Sequence[FloatArray]) -> FloatArray:
     """Series on the grid, each of shape (4, n + 1), as one pack to read."""
     return np.ascontiguousarray(np.stack(grids, axis=-1).transpose(1, 0, 2))[None]

@@ -23,15 +23,19 @@ def surfaces(
     deflection. Lanes to spare repeat the last one.
     """
     packs = (len(p) + lanes - 1) // lanes
+    different = np.empty((len(p), n))
+    which = np.empty(packs * lanes, dtype=np.int64)
+    count = 0
+    for j in range(packs * lanes):
+        if j == 0 or (j < len(p) and _differ(p[j], p[j - 1])):
+            different[count] = surface(h, n, t_u, u, held, trim, p[j])
+            count += 1
+        which[j] = count - 1
     out = np.empty((packs, n, lanes))
-    delta = surface(h, n, t_u, u, held, trim, p[0])
     for pack in range(packs):
-        for lane in range(lanes):
-            j = pack * lanes + lane
-            if 0 < j < len(p) and _differ(p[j], p[j - 1]):
-                delta = surface(h, n, t_u, u, held, trim, p[j])
-            for i in range(n):
-                out[pack, i, lane] = delta[i]
+        for i in range(n):
+            for lane in range(lanes):
+                out[pack, i, lane] = different[which[pack * lanes + lane], i]
     return out
 
 

@@ -47,10 +47,7 @@ class Filters:
 
     def innovations(self, i: int, columns: FloatArray) -> FloatArray:
         """Columns passed through the filter, in units of each innovation's standard deviation."""
-        order = self.order[i]
-        out = np.empty_like(columns)
-        out[order] = self.gains[i].innovations(columns[order])
-        return out
+        return self.gains[i].innovations(columns, self.order[i])
 
 
 def filters_for(

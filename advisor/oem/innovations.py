@@ -57,10 +57,11 @@ class Gains:
     observed: FloatArray
     """Shape (4, 8): how each channel sees the states."""
 
-    def innovations(self, columns: FloatArray) -> FloatArray:
-        """Whitened columns, shape (n, k), of columns in the same order of rows."""
+    def innovations(self, columns: FloatArray, order: np.ndarray | None = None) -> FloatArray:
+        """Whitened columns, shape (n, k), in the same order of rows: ``order`` says which come in time."""
+        rows = np.arange(len(columns)) if order is None else order
         return np.asarray(
-            _pass(self.step, self.keep, self.gain, self.root, self.channel, self.observed, columns)
+            _pass(self.step, self.keep, self.gain, self.root, self.channel, self.observed, columns, rows)
         )
 
     def cost(self, left: FloatArray) -> float:
@@ -201,6 +202,7 @@ def _pass(
     channel: np.ndarray,
     observed: FloatArray,
     columns: FloatArray,
+    rows: np.ndarray,
 ) -> FloatArray:
     n, k = columns.shape
     out = np.empty((n, k))
@@ -218,9 +220,9 @@ def _pass(
             for c in range(4, STATES):
                 for j in range(k):
                     X[c, j] *= keeps[i]
-        c = channel[i]
+        c, row, per_root = channel[i], rows[i], 1.0 / roots[i]
         for j in range(k):
-            innovation[j] = columns[i, j]
+            innovation[j] = columns[row, j]
         for s in range(STATES):
             seen = observed[c, s]
             if seen != 0.0:
@@ -231,5 +233,5 @@ def _pass(
             for j in range(k):
                 X[s, j] += gain * innovation[j]
         for j in range(k):
-            out[i, j] = innovation[j] / roots[i]
+            out[row, j] = innovation[j] * per_root
     return out
