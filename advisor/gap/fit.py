@@ -47,12 +47,11 @@ class Fitted:
     iterations: int
 
 
-def factor(problem: Problem, i: int, own: FloatArray, prior: FloatArray, weights: FloatArray) -> FloatArray:
-    """Cholesky factor of AᵀWA + Λ⁻¹ for one manoeuvre's own columns."""
-    weighted = own * row_weights(problem, i, weights)[:, None]
-    normal = weighted.T @ weighted + np.diag(prior)
-    normal[np.diag_indices_from(normal)] *= 1.0 + 1e-10
-    normal[np.diag_indices_from(normal)] += 1e-12 * np.trace(normal) / len(normal)
+def factor(A: FloatArray, prior: FloatArray) -> FloatArray:
+    """Cholesky factor of AᵀA + Λ⁻¹ for one manoeuvre's own columns, weighted."""
+    normal = A.T @ A
+    diagonal = np.diagonal(normal) + prior
+    np.fill_diagonal(normal, diagonal * (1.0 + 1e-10) + 1e-12 * np.mean(diagonal))
     return factored(normal)
 
 
@@ -91,13 +90,13 @@ def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray
     H, g = np.diag(pull), pull * missed
     free, follow = [], []
     for i, block in enumerate(linear):
-        w = row_weights(problem, i, weights)
-        A, J, r = block.own * w[:, None], block.shared * w[:, None], block.left * w
-        chol = factor(problem, i, block.own, block.prior, weights)
-        AJ, Ar = A.T @ J, A.T @ r
-        eliminated = solved(chol, np.column_stack([AJ, Ar]))
-        H += J.T @ J - AJ.T @ eliminated[:, :k]
-        g += J.T @ r - AJ.T @ eliminated[:, k]
+        w = row_weights(problem, i, weights)[:, None]
+        A, X = block.own * w, np.column_stack([block.shared, block.left]) * w
+        AX = A.T @ X
+        eliminated = solved(factor(A, block.prior), AX)
+        inner = X.T @ X - AX.T @ eliminated
+        H += inner[:k, :k]
+        g += inner[:k, k]
         free.append(eliminated[:, k])
         follow.append(eliminated[:, :k])
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))

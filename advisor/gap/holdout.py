@@ -117,7 +117,7 @@ def own_after(problem: Problem, i: int, block: Linear, weights: FloatArray, step
     w = row_weights(problem, i, weights)
     left = block.left - block.shared @ step
     A = block.own * w[:, None]
-    return np.asarray(solved(factor(problem, i, block.own, block.prior, weights), A.T @ (left * w)))
+    return np.asarray(solved(factor(A, block.prior), A.T @ (left * w)))
 
 
 def _reduced(problem: Problem, i: int, block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -125,6 +125,6 @@ def _reduced(problem: Problem, i: int, block: Linear, weights: FloatArray) -> tu
     w = row_weights(problem, i, weights)[:, None]
     A, X = block.own * w, np.column_stack([block.shared, block.left]) * w
     AX = A.T @ X
-    inner = X.T @ X - AX.T @ solved(factor(problem, i, block.own, block.prior, weights), AX)
+    inner = X.T @ X - AX.T @ solved(factor(A, block.prior), AX)
     k = block.shared.shape[1]
     return inner[:k, :k], inner[:k, k]

@@ -88,7 +88,7 @@ class Neighbourhood:
         for i, (flight, block) in enumerate(zip(problem.flights.flights, fitted.linear, strict=True)):
             w = row_weights(problem, i, weights)
             A, J = block.own * w[:, None], block.shared * w[:, None]
-            chol = factor(problem, i, block.own, block.prior, weights)
+            chol = factor(A, block.prior)
             AJ = A.T @ J
             self.information += J.T @ J - AJ.T @ solved(chol, AJ)
             self.kept.append(_Kept(problem.measured(flight), w, block.left * w, A, J, chol, AJ))
@@ -178,7 +178,7 @@ class Neighbourhood:
         read = problem.read_all(flight, problem.fly_all(flight, all_rows), all_rows)
         finite = np.all(np.isfinite(read), axis=0)
         read[:, ~finite] = 0.0
-        raw = (read - read[:, base]) / np.array(scale)
+        raw = (read - np.take(read, base, axis=1)) / np.array(scale)
         for j, at in begun:
             failed[j] |= not finite[at]
             raw[:, at] = kept.measured - read[:, at]

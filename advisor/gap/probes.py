@@ -89,7 +89,7 @@ def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> P
         B = B / unit
         own = fitted.linear[i].own
         A, r = own * w[:, None], fitted.innovations[i] * w
-        chol = factor(problem, i, own, fitted.linear[i].prior, weights)
+        chol = factor(A, fitted.linear[i].prior)
         AB, Ar = A.T @ B, A.T @ r
         gram = B.T @ B - AB.T @ solved(chol, AB)
         value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
@@ -142,8 +142,9 @@ def disturbance_course(
         B = size * disturbance_columns(problem, flight, p[i], block)
         own, prior = fitted.linear[i].measured.own, fitted.linear[i].prior
         both = np.column_stack([own, B])
-        chol = factor(problem, i, both, np.concatenate([prior, np.ones(B.shape[1])]), 1.0 / noise)
-        found = solved(chol, (both * w[:, None]).T @ (fitted.left[i] * w))
+        A = both * w[:, None]
+        chol = factor(A, np.concatenate([prior, np.ones(B.shape[1])]))
+        found = solved(chol, A.T @ (fitted.left[i] * w))
         courses.append(np.asarray(size * _colour(flight) @ found[own.shape[1] :]))
         lefts.append(np.asarray(fitted.left[i] - both @ found))
     return courses, lefts
