@@ -22,11 +22,8 @@ def white_noise(flights: Flights) -> dict[str, float]:
 
 def prefiltered(flights: Flights) -> dict[str, bool]:
     """Channels of a record that was filtered, or that are smoother than white noise can be."""
-    found = {}
-    for c in flights.channels:
-        peak = peak_of(flights, c)
-        found[c] = flights.alpha_is_smoothed or white_noise(flights)[c] < 1e-3 * peak
-    return found
+    white = white_noise(flights)
+    return {c: flights.alpha_is_smoothed or white[c] < 1e-3 * peak_of(flights, c) for c in flights.channels}
 
 
 def peak_of(flights: Flights, channel: str) -> float:
