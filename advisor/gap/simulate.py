@@ -22,6 +22,7 @@ import numpy as np
 from numba import njit
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.circle import cos_sin
 from advisor.gap.layout import ENTRIES
 
 GRAVITY_M_S2 = 9.80665
@@ -49,24 +50,6 @@ DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = range(4)
     Z_REST, M_REST, KA, KQ, NORMAL_0, QDOT_0,
     ROWS,
 ) = range(len(ENTRIES), len(ENTRIES) + 33)  # fmt: skip
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _cos_sin(x: float) -> tuple[float, float]:
-    """Their series, to the last digit but one: a library's functions would be called lane by lane."""
-    half_turns = np.floor(x * (1.0 / np.pi) + 0.5)
-    sign = 1.0 - 2.0 * (half_turns - 2.0 * np.floor(0.5 * half_turns))
-    y = x - half_turns * np.pi
-    s = y * y
-    s2 = s * s
-    s4 = s2 * s2
-    cos = ((1.0 - s * (1 / 2)) + s2 * (1 / 24 - s * (1 / 720))
-           + s4 * ((1 / 40320 - s * (1 / 3628800)) + s2 * (1 / 479001600 - s * (1 / 87178291200)))
-           + s4 * s4 * (1 / 20922789888000 - s * (1 / 6402373705728000)))  # fmt: skip
-    sin = ((1.0 - s * (1 / 6)) + s2 * (1 / 120 - s * (1 / 5040))
-           + s4 * ((1 / 362880 - s * (1 / 39916800)) + s2 * (1 / 6227020800 - s * (1 / 1307674368000)))
-           + s4 * s4 * (1 / 355687428096000 - s * (1 / 121645100408832000)))  # fmt: skip
-    return sign * cos, sign * y * sin
 
 
 @njit(cache=True)
@@ -183,8 +166,8 @@ def simulate(
                 m_d *= x[POWER, m] * (vv + x[WASHED, m] * (1.0 - vv) + x[BLOWN, m] * slow[THRUST, j])
                 pressure = x[POWER, m] * vv
                 lifting = x[POWER, m] * v * (1.0 + x[LIFT_H, m] * x[NEAR, m])
-                ca, sa = _cos_sin(x[ALPHA, m])
-                ct, st = _cos_sin(x[THETA, m])
+                ca, sa = cos_sin(x[ALPHA, m])
+                ct, st = cos_sin(x[THETA, m])
                 x[COS_ALPHA, m], x[SIN_ALPHA, m] = ca, sa
                 x[GRAVITY, m] = GRAVITY_M_S2 * per_speed * (ca * ct * cb + sa * st)
                 x[LIFTING, m] = lifting
