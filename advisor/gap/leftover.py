@@ -2,8 +2,7 @@
 
 What stays after the last named effect, freed of the flight's own noise, should be white, and no
 louder while the stick moves than in quiet. Otherwise something is there without a name; where, is said by the
-block whose unknown disturbance takes up most of it. A sensor whose errors are mostly small
-and now and then huge is no noise either.
+block whose unknown disturbance takes up most of it. A sensor that jumps now and then is no noise either.
 """
 
 from collections.abc import Sequence
@@ -41,9 +40,12 @@ _DOUBT = 2.5
 """Where the floor is stated, not measured, an unknown cause must exceed it this many times."""
 _BETTER_THAN_AIR = 1.25
 """What another block must take up of a residual, beside what the air does; in moving air at most 1.15."""
-_HEAVY_TAILS = 2.2
-"""Standard deviation over the one a normal distribution with the same median error has."""
-_ORDINARY_TAILS = 1.8
+_FAR = 6.0
+"""Standard deviations beyond which a change from one sample to the next is a jump ..."""
+_JUMPS = 0.005
+"""... share of them from which on a sensor jumps ..."""
+_SELDOM = 0.1
+"""... and what another sensor may have of that share."""
 
 
 @dataclass(frozen=True)
@@ -79,10 +81,9 @@ def left_over(
     """
     noise = _noise(problem)
     probes = probe_blocks(problem, last, noise)
-    spiky = _spiky_sensor(problem, last)
-    if spiky is not None:
-        block = "timing" if is_of_the_clock(problem, last, SENSOR_CHANNELS[spiky]) else spiky
-        return Leftover(block, 1.0, _ranking(probes, block))
+    jumping = _jumping_sensor(problem, last)
+    if jumping is not None:
+        return Leftover(jumping, 1.0, _ranking(probes, jumping))
     best = probes[0]
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     active, quiet = unrest(problem, last.innovations)
@@ -182,17 +183,24 @@ def _ranking(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ..
     return tuple(scores.items())
 
 
-def _spiky_sensor(problem: Problem, last: Fitted) -> str | None:
-    """The one sensor with errors far from normal; an autopilot's own estimate is not judged."""
-    tails = {}
+def _jumping_sensor(problem: Problem, last: Fitted) -> str | None:
+    """The one sensor that jumps now and then where nothing is flown; an autopilot's estimate is not judged.
+
+    What a model leaves, a gust even, is smooth; and no step of the command falls into these stretches.
+    """
+    jumps = {}
     for c, name in enumerate(problem.channels):
-        parts = zip(problem.flights.flights, last.left, strict=True)
-        errors = np.concatenate([left[problem.rows(flight)[c]] for flight, left in parts])
-        middle = float(np.median(np.abs(errors - np.median(errors)))) / 0.6745
-        tails[name] = float(np.std(errors)) / max(middle, 1e-15)
-    worst = max(tails, key=lambda name: tails[name])
-    others = [t for name, t in tails.items() if name != worst]
-    if tails[worst] < _HEAVY_TAILS or max(others, default=0.0) > _ORDINARY_TAILS:
+        parts = []
+        for flight, left in zip(problem.flights.flights, last.left, strict=True):
+            quiet = flight.is_quiet(flight.outputs[name].t)
+            parts.append(np.diff(left[problem.rows(flight)[c]])[quiet[1:] & quiet[:-1]])
+        changes = np.abs(np.concatenate(parts))
+        usual = float(np.median(changes)) / 0.6745 if len(changes) else 0.0
+        # Values that mostly repeat say nothing about how rough they are.
+        jumps[name] = float(np.mean(changes > _FAR * usual)) if usual > 0.0 else 0.0
+    worst = max(jumps, key=lambda name: jumps[name])
+    others = [share for name, share in jumps.items() if name != worst]
+    if jumps[worst] < _JUMPS or max(others, default=0.0) > _SELDOM * jumps[worst]:
         return None
     if worst == "alpha" and problem.flights.alpha_is_derived:
         return None
