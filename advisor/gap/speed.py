@@ -2,7 +2,8 @@
 
 The air speed swings in every flight, for a manoeuvre exchanges it for height. A simulator that is given the
 measured speed knows that; so it is a cause only where work was done on the aircraft, by an engine or
-by wind along the path, and its energy V²/2 + g h moved as much as its speed.
+by wind along the path, and its energy V²/2 + g h moved as much as its speed. Where it moved by little, the
+accelerations must show that work, too, beyond what drag takes.
 """
 
 from dataclasses import replace
@@ -17,7 +18,7 @@ from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.measure import gap_of
 from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED
+from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED, THRUST
 
 SPEED_CHANGE = 0.03
 """Relative change of air speed from which on it is looked at."""
@@ -27,8 +28,10 @@ _IS_CAUSE = 1.0
 """... and from which on it may be the cause."""
 _WORK = 0.02
 """Standard deviation of the speed that the energy alone would make, relative, that is work ..."""
+_LITTLE_WORK = 0.009
+"""... or this, if the accelerations show as much ..."""
 _EXCHANGED = 0.9
-"""... if it is at least this share of the speed's own: else most was exchanged for height ..."""
+"""... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
 _GUSTS = 4.0
 """... and both exceed this many times the air's own motion, which an air speed indicator reads, too."""
 
@@ -74,8 +77,9 @@ def speed_is_a_cause(
         return False
     speed, energy = swings(problem.flights)
     gusts = 0.0 if air is None else air.angle_std
-    worked = energy > max(_WORK, _EXCHANGED * speed) and min(speed, energy) > _GUSTS * gusts
-    return worked and speed_costs(constant, last, floor) > _IS_CAUSE
+    least = max(_EXCHANGED * speed, _LITTLE_WORK)
+    worked = energy > least and (energy > _WORK or work(problem.flights) > least)
+    return worked and min(speed, energy) > _GUSTS * gusts and speed_costs(constant, last, floor) > _IS_CAUSE
 
 
 def swings(flights: Flights) -> tuple[float, float]:
@@ -88,3 +92,28 @@ def swings(flights: Flights) -> tuple[float, float]:
         energies.append(float(np.std(np.sqrt(np.maximum(speed**2 + 2.0 * GRAVITY_M_S2 * climbed, 0.0)))))
     mean = float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))
     return float(np.mean(speeds)) / mean, float(np.mean(energies)) / mean
+
+
+def work(flights: Flights) -> float:
+    """How much work beyond drag's would make the speed swing within a manoeuvre, relative to the mean speed.
+
+    What the accelerations show along the path is freed of what goes with V² and with lift squared over V²
+    (the two parts of a parabolic polar) in all manoeuvres alike, and integrated. 0 where they were not
+    measured.
+    """
+    if "a_x" not in flights.has or not {"alpha", "a_z"} <= set(flights.channels):
+        return 0.0
+    along, drag = [], []
+    for flight in flights.flights:
+        speed, a_z = flight.slow[SPEED], flight.outputs["a_z"]
+        lift = np.interp((np.arange(flight.n) + 0.5) * flight.h, a_z.t, a_z.y)
+        along.append(GRAVITY_M_S2 * flight.slow[THRUST])
+        drag.append(np.column_stack([np.ones(flight.n), speed**2, (lift / speed) ** 2]))
+    X = np.vstack(drag)
+    scale = np.max(np.abs(X), axis=0)
+    parts = np.linalg.lstsq(X / scale, np.concatenate(along), rcond=None)[0] / scale
+    gained = [
+        np.std(np.cumsum(felt - taken @ parts) * flight.h)
+        for flight, felt, taken in zip(flights.flights, along, drag, strict=True)
+    ]
+    return float(np.mean(gained) / np.mean([np.mean(f.slow[SPEED]) for f in flights.flights]))

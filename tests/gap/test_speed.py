@@ -9,8 +9,8 @@ from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED
-from advisor.gap.speed import swings
+from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED, THRUST
+from advisor.gap.speed import swings, work
 from tests.gap.generator import Setup, fly
 
 HEIGHTS = (80.0, 90.0, 85.0)
@@ -42,6 +42,16 @@ def test_a_speed_exchanged_for_height_is_no_work():
 def test_a_speed_that_an_engine_changes_in_level_flight_is_all_work():
     speed, energy = swings(flights_with(phugoid, lambda t: np.full_like(t, 80.0)))
     assert energy == pytest.approx(speed, rel=1e-3)
+
+
+def test_work_is_what_an_engine_does_and_not_what_drag_takes():
+    glided = prepare(fly(Setup(maneuvers=6, heights_m=HEIGHTS, seed=8)), Aircraft())
+    assert work(glided) < 0.3 * swings(glided)[0]
+    excess, swept = 0.05, 6.0 * np.pi
+    for flight in glided.flights:
+        flight.slow[THRUST] += excess * np.sin(swept * np.linspace(0.0, 1.0, flight.n))
+    rate = swept / glided.flights[0].duration_s
+    assert work(glided) == pytest.approx(excess * GRAVITY_M_S2 / rate / np.sqrt(2.0) / 22.0, rel=0.1)
 
 
 def test_manoeuvres_flown_at_different_speeds_are_no_cause_where_the_speed_is_measured():
