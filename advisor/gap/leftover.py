@@ -81,10 +81,10 @@ def left_over(
     """
     noise = _noise(problem)
     probes = probe_blocks(problem, last, noise)
-    jumping = _jumping_sensor(problem, last)
-    if jumping is not None:
+    best, jumping = probes[0], _jumping_sensor(problem, last, stated)
+    # What a disturbance with a memory describes did not jump.
+    if jumping is not None and best.explained < _LEAST_SHARE:
         return Leftover(jumping, 1.0, _ranking(probes, jumping))
-    best = probes[0]
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     active, quiet = unrest(problem, last.innovations)
     # An autopilot's estimate of α is off by what its filter makes of the motion: no cause shows in it alone.
@@ -183,7 +183,7 @@ def _ranking(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ..
     return tuple(scores.items())
 
 
-def _jumping_sensor(problem: Problem, last: Fitted) -> str | None:
+def _jumping_sensor(problem: Problem, last: Fitted, stated: FloatArray) -> str | None:
     """The one sensor that jumps now and then where nothing is flown; an autopilot's estimate is not judged.
 
     What a model leaves, a gust even, is smooth; and no step of the command falls into these stretches.
@@ -197,7 +197,8 @@ def _jumping_sensor(problem: Problem, last: Fitted) -> str | None:
         changes = np.abs(np.concatenate(parts))
         usual = float(np.median(changes)) / 0.6745 if len(changes) else 0.0
         # Values that mostly repeat say nothing about how rough they are.
-        jumps[name] = float(np.mean(changes > _FAR * usual)) if usual > 0.0 else 0.0
+        far = max(_FAR * usual, _DOUBT * float(stated[c]))
+        jumps[name] = float(np.mean(changes > far)) if usual > 0.0 else 0.0
     worst = max(jumps, key=lambda name: jumps[name])
     others = [share for name, share in jumps.items() if name != worst]
     if jumps[worst] < _JUMPS or max(others, default=0.0) > _SELDOM * jumps[worst]:
