@@ -40,8 +40,8 @@ _DOUBT = 2.5
 """Where the floor is stated, not measured, an unknown cause must exceed it this many times."""
 _BETTER_THAN_AIR = 1.25
 """What another block must take up of a residual, beside what the air does; in moving air at most 1.15."""
-_FAR = 6.0
-"""Standard deviations beyond which a change from one sample to the next is a jump ..."""
+_FAR, _SURPRISE = 6.0, 4.0
+"""Standard deviations beyond which a change between two samples, and its innovation, are a jump ..."""
 _JUMPS = 0.005
 """... share of them from which on a sensor jumps ..."""
 _SELDOM = 0.1
@@ -186,19 +186,23 @@ def _ranking(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ..
 def _jumping_sensor(problem: Problem, last: Fitted, stated: FloatArray) -> str | None:
     """The one sensor that jumps now and then where nothing is flown; an autopilot's estimate is not judged.
 
-    What a model leaves, a gust even, is smooth; and no step of the command falls into these stretches.
+    What a model leaves is smooth, and what a gust leaves is no surprise to a filter that knows of it; no
+    step of the command falls into these stretches.
     """
     jumps = {}
     for c, name in enumerate(problem.channels):
         parts = []
-        for flight, left in zip(problem.flights.flights, last.left, strict=True):
-            quiet = flight.is_quiet(flight.outputs[name].t)
-            parts.append(np.diff(left[problem.rows(flight)[c]])[quiet[1:] & quiet[:-1]])
-        changes = np.abs(np.concatenate(parts))
-        usual = float(np.median(changes)) / 0.6745 if len(changes) else 0.0
+        flights = zip(problem.flights.flights, last.left, last.innovations, strict=True)
+        for flight, left, innovations in flights:
+            rows, quiet = problem.rows(flight)[c], flight.is_quiet(flight.outputs[name].t)
+            pair = np.column_stack([np.diff(left[rows]), innovations[rows][1:]])
+            parts.append(np.abs(pair[quiet[1:] & quiet[:-1]]))
+        changes, surprises = np.concatenate(parts).T
+        usual = [float(np.median(y)) / 0.6745 if len(y) else 0.0 for y in (changes, surprises)]
+        far = max(_FAR * usual[0], _DOUBT * float(stated[c]))
         # Values that mostly repeat say nothing about how rough they are.
-        far = max(_FAR * usual, _DOUBT * float(stated[c]))
-        jumps[name] = float(np.mean(changes > far)) if usual > 0.0 else 0.0
+        jumped = (changes > far) & (surprises > _SURPRISE * usual[1])
+        jumps[name] = float(np.mean(jumped)) if min(usual) > 0.0 else 0.0
     worst = max(jumps, key=lambda name: jumps[name])
     others = [share for name, share in jumps.items() if name != worst]
     if jumps[worst] < _JUMPS or max(others, default=0.0) > _SELDOM * jumps[worst]:

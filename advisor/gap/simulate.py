@@ -123,6 +123,7 @@ def simulate(
     Shape (packs, n + 1, 4, LANES): α as its sensor reads it, q likewise, a_z at the accelerometer, θ; of
     simulation j in lane j % LANES of pack j // LANES. Lanes to spare repeat the last simulation.
     """
+    # As many as LANES, but known only at run time: else the lanes are unrolled one after the other.
     packs, n, lanes = delta.shape
     out = np.empty((packs, n + 1, 4, LANES))
     x = np.empty((ROWS, LANES))
