@@ -136,6 +136,7 @@ def addition(
     fitted_ratio = np.log((before.noise / fitted.noise) ** 2)
     ratios = (fitted_ratio,) if unconfirmed else (ratio, fitted_ratio)
     likelihood = min(float(np.sum(independent / 2.0 * r)) for r in ratios)
+    likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
@@ -149,6 +150,15 @@ def addition(
         belief=belief, value=value, unconfirmed=unconfirmed,
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
+
+
+def price_of_edges(problem: Problem, fitted: Fitted) -> float:
+    """What the cost has beside noise and belief: edges of the command away from where they likely were.
+
+    A wrong model buys some of its fit by shifting them.
+    """
+    noise = float(np.sum(counts(problem) * 2.0 * np.log(fitted.noise)))
+    return fitted.cost - noise - problem.disbelief(fitted.point)
 
 
 def _odds_of_arm(problem: Problem, effect: str, arm_m: float) -> float:

@@ -7,8 +7,11 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.baseline import fit_baseline
+from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.data import prepare
 from advisor.gap.fit import fit
+from advisor.gap.score import price_of_edges
+from advisor.gap.screen import Screen
 from tests.gap.generator import Setup, fly
 
 
@@ -33,3 +36,13 @@ def test_a_fit_begun_nearby_comes_back(settled):
     assert again.iterations <= 5
     strong = [0, 3, 4, 5]
     assert again.point.derivatives[strong] == pytest.approx(fitted.point.derivatives[strong], rel=0.01)
+
+
+def test_a_simulator_without_the_delay_pays_for_the_edges_it_shifts():
+    problem, plain = fit_baseline(
+        prepare(fly(Setup(maneuvers=4, switches={"delay": 0.03}, seed=41)), Aircraft()), Aircraft()
+    )
+    delay = next(v for v in variants_for(problem.flights) if v.effect == "transport_delay")
+    [late] = Screen(problem, plain).quick_fits([delay])
+    right = fit(problem, late.point, late.noise)
+    assert price_of_edges(problem, right) < price_of_edges(problem, plain) - 10.0
