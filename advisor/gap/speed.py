@@ -3,7 +3,7 @@
 The air speed swings in every flight, for a manoeuvre exchanges it for height. A simulator that is given the
 measured speed knows that; so it is a cause only where work was done on the aircraft, by an engine or
 by wind along the path, and its energy V²/2 + g h moved as much as its speed. Where it moved by little, the
-accelerations must show that work, too, beyond what drag takes.
+accelerations must show that work, too, beyond what drag takes, and the air must be still.
 """
 
 from dataclasses import replace
@@ -29,7 +29,7 @@ _IS_CAUSE = 1.0
 _WORK = 0.02
 """Standard deviation of the speed that the energy alone would make, relative, that is work ..."""
 _LITTLE_WORK = 0.009
-"""... or this, if the accelerations show as much ..."""
+"""... or this, if the accelerations show as much and the air is still ..."""
 _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
 _GUSTS = 4.0
@@ -78,7 +78,7 @@ def speed_is_a_cause(
     speed, energy = swings(problem.flights)
     gusts = 0.0 if air is None else air.angle_std
     least = max(_EXCHANGED * speed, _LITTLE_WORK)
-    worked = energy > least and (energy > _WORK or work(problem.flights) > least)
+    worked = energy > least and (energy > _WORK or (air is None and work(problem.flights) > least))
     return worked and min(speed, energy) > _GUSTS * gusts and speed_costs(constant, last, floor) > _IS_CAUSE
 
 
