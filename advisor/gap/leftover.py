@@ -23,11 +23,11 @@ from advisor.gap.problem import Problem
 _LEAST_GAIN = 100.0
 """Log likelihood a disturbance must bring ..."""
 _LEAST_SHARE = 0.2
-"""... and share of what is left that it must take up: less is the roughness of any model ..."""
+"""... and share of what is left that it must take up: less is the roughness of any model."""
 _FAINT_SHARE = 0.05
-"""... or, in still air, of the noise's filter ..."""
+"""The least share in still air, for a disturbance that is large beside what the named effects took up ..."""
 _FAINT_OF_GAP = 0.25
-"""... unless it is this much beside what the named effects took up: then no name comes near what is there."""
+"""... by this much: then no name came near what is there."""
 _RESTLESS = 2.0
 """Power while the stick moves over that in quiet, from which on it is no noise."""
 _LEAST_OF_GAP = 0.1
@@ -96,8 +96,8 @@ def left_over(
     if not np.any(telling & (beyond > _OF_PEAK * peaks)):
         return None
     faint = best.explained < _LEAST_SHARE
-    disturbed = best.gain >= _LEAST_GAIN and bool(np.any(loud))
-    disturbed = disturbed and (not faint or (not moving_air and best.explained >= _FAINT_SHARE))
+    least_share = _LEAST_SHARE if moving_air else _FAINT_SHARE
+    disturbed = best.gain >= _LEAST_GAIN and best.explained >= least_share and bool(np.any(loud))
     # What a low-pass leaves of noise is like no noise with a memory: there only the stick can tell.
     disturbed = disturbed and not problem.flights.alpha_is_smoothed
     if not disturbed and np.max(louder) < _RESTLESS:

@@ -15,7 +15,7 @@ from advisor.gap.surface import surfaces
 from advisor.gap.variant import Variant
 from advisor.gap.whitening import Filters, Whitening
 
-NO_DISTURBANCE = np.zeros((4, 0))
+_NO_DISTURBANCE = np.zeros((4, 0))
 _SKEW_ENTRIES = np.array([INDEX[name] for name in SKEWS])
 
 
@@ -126,7 +126,7 @@ class Problem:
         self,
         flight: Flight,
         p: FloatArray,
-        disturbance: FloatArray = NO_DISTURBANCE,
+        disturbance: FloatArray = _NO_DISTURBANCE,
         doses: FloatArray | None = None,
     ) -> FloatArray:
         """One manoeuvre simulated with every row of ``p``, shape (k, entries), in packs for ``read_all``.
