@@ -36,6 +36,7 @@ _WHAT = {
     "pitch_rate_skew": "The pitch rate's time stamps are {skew_s_ms:+.0f} ms off",
     "accelerometer_skew": "The accelerometer's time stamps are {skew_s_ms:+.0f} ms off",
     "attitude_skew": "The attitude's time stamps are {skew_s_ms:+.0f} ms off",
+    "attitude_skew with_pitch_rate": "The time stamps of attitude and pitch rate are {skew_s_ms:+.0f} ms off",
 }
 _BLOCK = {
     "input": "between the command and the surface",
@@ -59,7 +60,7 @@ def what(cause: Cause) -> str:
         sizes[f"{name}_deg"] = 57.29578 * value.value
         sizes[f"{name}_percent"] = 100.0 * value.value
         sizes[f"{name}_power"] = 2.0 + value.value
-    particular = f"{cause.effect} {next(iter(cause.parameters), '')}"
+    particular = f"{cause.effect} {list(cause.parameters)[-1]}" if cause.parameters else cause.effect
     return _WHAT.get(particular, _WHAT[cause.effect]).format(**sizes)
 
 

@@ -5,6 +5,7 @@ unless ``at_s`` (seconds since the log began) says when; ``ramp_s`` is how long 
 """
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -121,10 +122,19 @@ def _imu_arm(kit: Kit, sizes: Sizes) -> None:
 
 def _skew(*channels: str) -> Kind:
     def fit(kit: Kit, sizes: Sizes) -> None:
-        for channel in channels:
-            kit.fittings.skews[channel] = kit.fittings.skews.get(channel, 0.0) + sizes["skew_s"]
+        _late(kit, channels, sizes["skew_s"])
 
     return Kind("timing", {"skew_s": 0.04}, fit)
+
+
+def _late(kit: Kit, channels: Iterable[str], skew_s: float) -> None:
+    for channel in channels:
+        kit.fittings.skews[channel] = kit.fittings.skews.get(channel, 0.0) + skew_s
+
+
+def _attitude_late(kit: Kit, sizes: Sizes) -> None:
+    """The attitude alone, or the message that brings it together with the pitch rate."""
+    _late(kit, ("theta", "q") if sizes["with_pitch_rate"] else ("theta",), sizes["skew_s"])
 
 
 _ONSET = {"at_s": math.nan, "ramp_s": 0.0}
@@ -196,6 +206,6 @@ CATALOGUE: dict[str, Kind] = {
     "alpha_skew": _skew("alpha"),
     "pitch_rate_skew": _skew("q"),
     "accelerometer_skew": _skew("a_z", "a_x"),
-    "attitude_skew": _skew("theta"),
+    "attitude_skew": Kind("timing", {"skew_s": 0.04, "with_pitch_rate": 0.0}, _attitude_late),
 }
 """Effect name of the gap analysis to its component."""

@@ -164,6 +164,8 @@ class Setup:
     q_bias: float = 0.0
     q_scale: float = 0.0
     skew: dict[str, float] = field(default_factory=dict)
+    attitude_brings_q: bool = False
+    """Pitch rate and attitude in one message, with the same stamps."""
     thrust_amplitude: float = 0.0
     thrust_moves_in: tuple[int, ...] = tuple(range(9))
     """Manoeuvres, counted from 0, in which the throttle moves."""
@@ -265,11 +267,14 @@ def _measure(setup, rng, i, t, command, out, start) -> Maneuver:
     channels = {}
     boot = 80.0 + 30.0 * i
 
-    def add(name, y, rate, noise, skew=0.0):
-        stamps = np.arange(0.003 + 0.9 / rate * rng.random(), t[-1] - 0.2, 1.0 / rate)
-        if setup.jitter:
-            stamps = stamps + rng.uniform(-setup.jitter, setup.jitter, len(stamps))
-            stamps = np.sort(np.clip(stamps, 0.0, t[-1]))
+    def add(name, y, rate, noise, skew=0.0, brought_by=None):
+        if brought_by is None:
+            stamps = np.arange(0.003 + 0.9 / rate * rng.random(), t[-1] - 0.2, 1.0 / rate)
+            if setup.jitter:
+                stamps = stamps + rng.uniform(-setup.jitter, setup.jitter, len(stamps))
+                stamps = np.sort(np.clip(stamps, 0.0, t[-1]))
+        else:
+            stamps = channels[brought_by].t - boot
         true = np.interp(np.clip(stamps - skew, 0.0, t[-1]), t, y)
         e = rng.standard_normal(len(stamps))
         if setup.coloured:
@@ -302,7 +307,14 @@ def _measure(setup, rng, i, t, command, out, start) -> Maneuver:
         setup.skew.get("q", 0),
     )
     add("a_z", out[2], rate, setup.noise * peak["a_z"], setup.skew.get("a_z", 0))
-    add("theta", out[3], rate, setup.noise * peak["theta"] * 0.5, setup.skew.get("theta", 0))
+    add(
+        "theta",
+        out[3],
+        rate,
+        setup.noise * peak["theta"] * 0.5,
+        setup.skew.get("theta", 0),
+        brought_by="q" if setup.attitude_brings_q else None,
+    )
     add("a_x", out[5], rate, 0.03)
     add("airspeed", out[4], 10.0, 0.1)
     add("climb_rate", out[6], 10.0, 0.05)

@@ -46,6 +46,16 @@ def test_effects_of_every_kind_are_named_in_noise_with_memory_and_jitter(effect,
     assert found.verdict == "effect"
 
 
+@pytest.mark.parametrize("late_s", [0.05, -0.03])
+def test_a_message_that_is_late_shifts_attitude_and_pitch_rate_together(late_s):
+    skew = {"q": late_s, "theta": late_s}
+    found = diagnose(fly(Setup(maneuvers=6, skew=skew, attitude_brings_q=True, seed=6)), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["attitude_skew"]
+    assert found.causes[0].parameters["skew_s"].value == pytest.approx(late_s, abs=0.004)
+    assert found.causes[0].parameters["with_pitch_rate"].value == 1.0
+    assert "stamps of attitude and pitch rate" in found.sentence
+
+
 @pytest.mark.parametrize("scale", [0.12, -0.28])
 def test_a_scale_error_of_the_vane_is_not_taken_for_an_offset(scale):
     found = diagnose(fly(Setup(maneuvers=6, alpha_scale=scale, seed=5)), Aircraft())

@@ -150,6 +150,11 @@ def test_an_instruments_effect_touches_that_instrument_alone(name, touched, plai
     assert {channel for channel, size in seen.items() if size > 1e-9} == touched
 
 
+def test_a_late_message_takes_attitude_and_pitch_rate_with_it(plain):
+    seen = difference(replace(PLAIN, effects={"attitude_skew": {"with_pitch_rate": 1.0}}), plain)
+    assert {channel for channel, size in seen.items() if size > 1e-9} == {"theta", "q"}
+
+
 def test_effects_combine(plain):
     one = difference(replace(PLAIN, effects={"alpha_scale": {}}), plain)
     both = difference(replace(PLAIN, effects={"alpha_scale": {}, "pitch_rate_scale": {}}), plain)

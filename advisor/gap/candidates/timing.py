@@ -1,6 +1,9 @@
 """The stamps: one stream earlier or later than the others."""
 
+from dataclasses import replace
 from functools import partial
+
+import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flights
@@ -40,9 +43,15 @@ def _whole_skew(entry: str, p: FloatArray, values: Values, _: Flights) -> None:
     p[:, INDEX[entry]] = values[0]
 
 
-def variants(least_s: float) -> list[Variant]:
-    """One skew a stream; positive is late."""
-    return [
+def _whole_message(p: FloatArray, values: Values, _: Flights) -> None:
+    """Attitude and pitch rate together."""
+    for channel in ("q", "theta"):
+        p[:, INDEX[SKEWS[OUTPUTS.index(channel)]]] += values[0]
+
+
+def variants(flights: Flights, least_s: float) -> list[Variant]:
+    """One skew a stream, positive is late; and of a message that brings attitude and pitch rate together."""
+    found = [
         Variant(
             effect,
             BLOCK,
@@ -55,3 +64,14 @@ def variants(least_s: float) -> list[Variant]:
         )
         for effect, channel in _STREAMS
     ]
+    if _in_one_message(flights):
+        skew = next(v for v in found if v.effect == "attitude_skew")
+        found.append(replace(skew, fixed={"with_pitch_rate": 1.0}, apply_with=_whole_message))
+    return found
+
+
+def _in_one_message(flights: Flights) -> bool:
+    """Whether attitude and pitch rate have the same stamps throughout."""
+    return "theta" in flights.channels and all(
+        np.array_equal(f.outputs["q"].t, f.outputs["theta"].t) for f in flights.flights
+    )
