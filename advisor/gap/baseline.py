@@ -6,17 +6,25 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates.catalogue import everywhere
+from advisor.gap.candidates.catalogue import everywhere, variants_for
 from advisor.gap.command import read_command, with_latency
 from advisor.gap.data import Flight, Flights
 from advisor.gap.fit import Fitted, fit
 from advisor.gap.floor import stated_floor
 from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
-from advisor.gap.noise import whitening_of
+from advisor.gap.noise import loudness, whitening_of
 from advisor.gap.problem import Point, Problem
+from advisor.gap.screen import Screen
 from advisor.gap.simulate import GRAVITY_M_S2
 from advisor.gap.stamps import rates_of, stamp_jitter
 from advisor.gap.whitening import Weighting
+
+_LOUD = 1.5
+"""Power of what is left where nothing is flown, beside white noise, from which on it is asked what it is."""
+_QUIETER = 0.7
+"""Share of that power which a model with one effect more may leave there, to be believed for this."""
+_AT_MOST = 2
+"""Effects in that model."""
 
 
 def base_entries(aircraft: Aircraft) -> FloatArray:
@@ -111,14 +119,44 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     )
     fitted = fit(problem, everywhere(first_guess(flights, aircraft), flights, latency_s=0.001))
     fitted = with_latency(problem, fitted)
-    problem, fitted = read_command(*_filtered(problem, fitted, first_look=True))
-    # The noise is seen through the fit, and the fit made by the noise: the second round is the last.
-    return _filtered(problem, fitted) if problem.knows_the_noise else (problem, fitted)
+    plain, seen = fitted, quietest(problem, fitted)
+    problem, fitted = read_command(*_filtered(problem, fitted, seen, first_look=True))
+    if not problem.knows_the_noise:
+        return problem, fitted
+    # The noise is seen through a fit, and the fit made by the noise: the second round is the last.
+    seen = fit(problem, seen.point, fitted.noise, iterations=8) if seen is not plain else fitted
+    return _filtered(problem, fitted, seen)
 
 
-def _filtered(problem: Problem, fitted: Fitted, first_look: bool = False) -> tuple[Problem, Fitted]:
-    problem = replace(problem, jitter_s=stamp_jitter(problem, fitted, rates_of(problem, fitted)))
-    whitening = whitening_of(problem, fitted, first_look)
+def quietest(problem: Problem, fitted: Fitted) -> Fitted:
+    """The model through which the noise is seen: with the likeliest effects in it, where that is quieter.
+
+    What a missing effect makes of the motion dies down long after the last step, and would pass for noise
+    with a memory; a right one takes it away, and none takes away what moves in still flight of itself.
+    """
+    best, loud = fitted, loudness(problem, fitted)
+    for _ in range(_AT_MOST):
+        if loud < _LOUD:
+            break
+        present = {variant.effect for variant in best.point.effects}
+        variants = [v for v in variants_for(problem.flights) if v.effect not in present]
+        likeliest = next(iter(Screen(problem, best).try_all(variants, lambda _: 0.0)), None)
+        if likeliest is None:
+            break
+        more = fit(problem, likeliest.point, likeliest.noise, iterations=8)
+        before, loud = loud, loudness(problem, more)
+        if loud > _QUIETER * before:
+            break
+        best = more
+    return best
+
+
+def _filtered(
+    problem: Problem, fitted: Fitted, seen: Fitted, first_look: bool = False
+) -> tuple[Problem, Fitted]:
+    """The problem with the noise that is seen through one fit, and another fit made by it."""
+    problem = replace(problem, jitter_s=stamp_jitter(problem, seen, rates_of(problem, seen)))
+    whitening = whitening_of(problem, seen, first_look)
     if whitening is None or isinstance(whitening, Weighting):
         # A filter of the round before measured innovations in units of their own.
         assert problem.instruments is not None

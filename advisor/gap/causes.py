@@ -11,7 +11,7 @@ from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.measure import gap_of
 from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.score import Judged
+from advisor.gap.score import TIMES, Judged
 from advisor.gap.ties import tied_with
 from advisor.gap.waterfall import Stage
 
@@ -100,7 +100,7 @@ def with_doubt(cause: Cause, problem: Problem) -> Cause:
 
 def _doubt(name: str, value: float) -> float:
     """Standard deviation of a size beyond its fit's: a share of it, and for times part of a step."""
-    return float(np.hypot(_SHAPE_DOUBT * value, _TIME_DOUBT_S if name.endswith("_s") else 0.0))
+    return float(np.hypot(_SHAPE_DOUBT * value, _TIME_DOUBT_S if name in TIMES else 0.0))
 
 
 def _with_edge_doubt(cause: Cause, problem: Problem) -> Cause:

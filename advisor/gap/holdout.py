@@ -63,13 +63,15 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     anchor[:k] = 0.0
     lefts: list[FloatArray] = [np.empty(0)] * n
     innovations: list[FloatArray] = [np.empty(0)] * n
+    # Where a response has kinks, the search refuses what the linear model proposes: it is no part of the fit.
+    refused = solve_scaled(total_H, total_g)
     for fold in chosen:
         step = np.zeros(len(total_g))
         if len(fold) < n:
             # What only the manoeuvres kept out could tell of an effect stays at "no effect".
             H = total_H - np.sum([blocks[i][0] for i in fold], axis=0) + np.diag(anchor)
             g = total_g - np.sum([blocks[i][1] for i in fold], axis=0) - anchor * fitted.point.shared
-            step = solve_scaled(H, g)
+            step = solve_scaled(H, g) - refused
             shared = fitted.point.shared
             step = np.clip(shared + step, lower, upper) - shared
         for i in fold:

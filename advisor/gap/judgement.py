@@ -14,6 +14,10 @@ from advisor.gap.result import Cause, Value, Verdict
 from advisor.gap.score import file_is_off
 from advisor.gap.speed import airspeed_cause, speed_is_a_cause
 
+_PLAIN = 0.5
+"""Gap that the file's own derivatives leave beside fitted ones from which on it does not matter whether they
+are off by more than a linear model ever is."""
+
 
 @dataclass(frozen=True)
 class Judgement:
@@ -82,8 +86,8 @@ def _wrong_values(e: Evidence) -> bool:
     """Whether the file's own parameters leave a gap, and cannot be right within their tolerance."""
     if e.file_model is None:
         return False
-    more = (e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2
-    return float(np.mean(more)) > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted)
+    more = float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2))
+    return more > _PLAIN or (more > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted))
 
 
 def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ...]:

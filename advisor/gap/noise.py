@@ -77,6 +77,14 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
     return with_floor(problem, found.air) if gain > _LEAST_GAIN else None
 
 
+def loudness(problem: Problem, fitted: Fitted) -> float:
+    """Power of what is left in quiet stretches beside the instruments' noise: the median of the stretches."""
+    white = instrument_noise(problem)
+    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, i, fitted.left[i])]
+    powers = [float(np.mean((r.left / white[r.channel]) ** 2)) for r in _without_offsets(parts)]
+    return float(np.median(powers)) if powers else 0.0
+
+
 def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool) -> dict[int, AirModel]:
     """The air of those manoeuvres that a gust fell into: far worse explained than the quietest quarter.
 

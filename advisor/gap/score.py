@@ -20,15 +20,28 @@ _UNCONFIRMED = 20.0
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
 LEAST_SIGMA = 3.0
+_CERTAIN, _FAINT = 30.0, 0.15
+"""Log likelihood from which on a share of it is enough, where the air is still and nothing else there ..."""
+_BY_NATURE = frozenset(
+    {
+        "elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift", "unsteady_lift", "alpha_dot",
+        "icing", "structural_mode", "airspeed_variation",
+    }
+)  # fmt: skip
+"""... but for what every aircraft has to some degree, or what takes its shape; and times must be
+twice the least."""
 _OF_PEAK = 0.003
 """Share of each channel's peak that an effect must change."""
 _DOUBT = 2.5
 """Where the noise of the instruments is stated, not measured, the change must exceed it this many times."""
-_TIMES = {"delay_s", "lag_s", "skew_s"}
+TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
+"""Parameters that are times."""
 _JITTERS = 3.0
 """Standard deviations of the stamps by which a time must exceed its physical minimum."""
 LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
+_SUPPORT = 4.0
+"""The same of an effect that is certain anyway."""
 _STATED = -4.0
 """Log odds of an arm that the aircraft file states, against its twin that the file leaves open; and of a
 vane's where the angle of attack is an estimate."""
@@ -49,7 +62,9 @@ class Judged:
     removed: float
     """What it changes in the outputs of manoeuvres kept out, mean square beside the instruments' noise."""
     least: float
-    """What ``removed`` must exceed."""
+    """What ``removed`` must exceed ..."""
+    least_certain: float
+    """... and what it must exceed where ``gain`` leaves no doubt."""
     smallest: float
     """Size below which it is not worth a name."""
     belief: float
@@ -67,7 +82,10 @@ class Judged:
     @property
     def worth_naming(self) -> bool:
         """Better on unseen manoeuvres, by more than noise, and not smaller than matters."""
-        if self.gain < self.least_gain or (self.removed < self.least and self.belief < LEAST_BELIEF):
+        certain = self.gain >= _CERTAIN
+        least = self.least_certain if certain else self.least
+        supported = self.belief >= (_SUPPORT if certain else LEAST_BELIEF)
+        if self.gain < self.least_gain or not (supported or self.removed >= least):
             return False
         size = float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
         return size > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
@@ -111,7 +129,7 @@ def worth(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
 
 def smallest_of(problem: Problem, variant: Variant) -> float:
     """Size of an effect's first parameter below which it is not worth a name, the stamps as they are."""
-    return variant.smallest + (_JITTERS * problem.jitter_s if variant.names[0] in _TIMES else 0.0)
+    return variant.smallest + (_JITTERS * problem.jitter_s if variant.names[0] in TIMES else 0.0)
 
 
 def addition(
@@ -141,15 +159,25 @@ def addition(
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
     odds = _odds_of_arm(problem, variant.effect, float(value[0]))
+    least = least_change(problem)
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
         gain=likelihood - price + belief + odds,
         removed=_difference(problem, seen_before, seen_after),
-        least=least_change(problem),
+        least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant),
         belief=belief, value=value, unconfirmed=unconfirmed,
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
+
+
+def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:
+    """Of the least change: what is enough where an effect is certain."""
+    alone = all(effect.always for effect in before.point.effects)
+    if not alone or problem.knows_the_noise or variant.effect in _BY_NATURE:
+        return 1.0
+    times = 2.0 if variant.names[0] in TIMES else 1.0
+    return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0
 
 
 def price_of_edges(problem: Problem, fitted: Fitted) -> float:

@@ -3,11 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.problem import Problem
 from advisor.gap.ranking import candidates_for, judge
-from advisor.gap.score import Judged, addition, worth
+from advisor.gap.score import LEAST_BELIEF, LEAST_GAIN, Judged, addition, shared_std, worth
 from advisor.gap.variant import Variant
 
 MOST_EFFECTS = 3
@@ -44,7 +46,26 @@ def build_up(
         if added is None:
             break
         fitted, held = added.fitted, added.held_out
-    return settled(problem, _other_companion(problem, stages, variants))
+    return in_full(problem, settled(problem, _other_companion(problem, stages, variants)))
+
+
+def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:
+    """The same with sizes from the last model: in earlier ones an effect stood for others, too."""
+    full = stages[-1].fitted
+    if sum(s.added is not None for s in stages) < 2:
+        return stages
+    places = {variant.effect: k for k, variant in enumerate(full.point.effects)}
+    ends = np.cumsum([len(full.point.derivatives), *map(len, full.point.values)])
+    independent = worth(problem, full.innovations)
+
+    def restated(added: Judged) -> Judged:
+        k = places[added.effect]
+        std = shared_std(problem, full, independent, trusted=added.belief >= LEAST_BELIEF)
+        return replace(
+            added, variant=full.point.effects[k], value=full.point.values[k], std=std[ends[k] : ends[k + 1]]
+        )
+
+    return [s if s.added is None else replace(s, added=restated(s.added)) for s in stages]
 
 
 def _other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
@@ -61,16 +82,25 @@ def _other_companion(problem: Problem, stages: list[Stage], variants: Sequence[V
     held = hold_out(problem, alone)
     companions = judge(problem, alone, held, candidates_for(problem, alone, variants))
     best = next((j for j in companions if j.worth_naming), None)
-    if best is None or best.effect == first.effect or best.fitted.cost > second.fitted.cost - _CLEARLY:
+    same = next((j for j in companions if j.effect == first.effect), None)
+    if best is None or best.effect == first.effect or not _clearly_better(best, same, second):
         return stages
     independent = worth(problem, best.fitted.innovations)
     only_second = addition(problem, stages[0].fitted, stages[0].held_out, alone, second.effect, independent)
     after = judge(problem, best.fitted, best.held_out, candidates_for(problem, best.fitted, variants))
     return [
-        Stage(stages[0].fitted, stages[0].held_out, stages[0].considered, only_second),
+        # Its rivals were those beside the first, which the companion has replaced.
+        Stage(stages[0].fitted, stages[0].held_out, stages[1].considered, only_second),
         Stage(alone, held, tuple(companions), best),
         Stage(best.fitted, best.held_out, tuple(after), None),
     ]
+
+
+def _clearly_better(best: Judged, same: Judged | None, second: Judged) -> bool:
+    """Whether a companion beats the first effect beside the second: by what it brings, or by its fit."""
+    if same is not None:
+        return best.gain > same.gain + LEAST_GAIN
+    return best.fitted.cost < second.fitted.cost - _CLEARLY
 
 
 def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
@@ -111,7 +141,7 @@ def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) 
     if list(names) == list(considered):
         return list(stages)
     full = _only(problem, stages[-1].fitted, names)
-    return _rebuilt(problem, stages[0], names, full, considered, stages[-1].considered)
+    return in_full(problem, _rebuilt(problem, stages[0], names, full, considered, stages[-1].considered))
 
 
 def _rebuilt(

@@ -83,6 +83,36 @@ def test_wrong_numbers_in_the_file_are_told_from_missing_structure():
     assert found.model["M_alpha"].value == pytest.approx(-37.4, rel=0.03)
 
 
+def test_numbers_that_are_off_by_a_few_per_cent_each_are_told_where_they_leave_a_gap():
+    names = ("M_alpha", "Z_alpha", "M_delta_e", "M_q")
+    wrong = {**MODEL, **{n: f * MODEL[n] for n, f in zip(names, (0.94, 1.07, 0.93, 1.05), strict=True)}}
+    found = diagnose(fly(Setup(maneuvers=6, noise=0.02, seed=4)), Aircraft(model=wrong))
+    assert found.gap.before > 0.5
+    assert found.verdict == "parameters"
+
+
+def test_a_faint_error_of_an_instrument_is_named_when_it_is_certain_in_still_air():
+    found = diagnose(fly(Setup(maneuvers=6, alpha_scale=0.03, noise=0.03, seed=5)), Aircraft())
+    assert found.gap.before < 0.05
+    assert [c.effect for c in found.causes if c.present] == ["alpha_scale"]
+    assert found.causes[0].parameters["scale"].value == pytest.approx(0.03, abs=0.01)
+
+
+def test_of_two_effects_each_has_the_size_it_has_beside_the_other():
+    setup = Setup(maneuvers=6, alpha_scale=0.19, skew={"a_z": 0.047}, seed=5)
+    found = {c.effect: c.parameters for c in diagnose(fly(setup), Aircraft()).causes if c.present}
+    assert set(found) == {"alpha_scale", "accelerometer_skew"}
+    assert found["alpha_scale"]["scale"].value == pytest.approx(0.19, abs=0.012)
+    assert found["accelerometer_skew"]["skew_s"].value == pytest.approx(0.047, abs=0.003)
+
+
+def test_a_slow_servo_is_not_taken_for_a_late_one_though_its_response_has_kinks():
+    setup = Setup(maneuvers=6, switches={"rate_limit": 0.7}, held=True, seed=5)
+    found = diagnose(fly(setup), Aircraft())
+    assert found.causes[0].effect == "actuator_rate_limit"
+    assert found.causes[0].parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.1)
+
+
 def test_the_document_is_json_without_nan_and_has_every_key_of_the_contract(delayed):
     document = json.loads(json.dumps(gap_document(delayed), allow_nan=False))
     assert document["schema"] == "advisor.gap/1"

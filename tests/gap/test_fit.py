@@ -8,8 +8,10 @@ import pytest
 from advisor.aircraft import Aircraft
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.causes import with_doubt
 from advisor.gap.data import prepare
 from advisor.gap.fit import fit
+from advisor.gap.result import Cause, Value
 from advisor.gap.score import price_of_edges
 from advisor.gap.screen import Screen
 from tests.gap.generator import Setup, fly
@@ -46,3 +48,14 @@ def test_a_simulator_without_the_delay_pays_for_the_edges_it_shifts():
     [late] = Screen(problem, plain).quick_fits([delay])
     right = fit(problem, late.point, late.noise)
     assert price_of_edges(problem, right) < price_of_edges(problem, plain) - 10.0
+
+
+def test_only_a_time_has_the_error_of_a_grid_of_time_in_its_size(settled):
+    problem, _ = settled
+
+    def doubted(effect, name, value):
+        cause = Cause(effect, "timing", 0.9, {name: Value(value, 1e-5)}, (), "", 0.0, True)
+        return with_doubt(cause, problem).parameters[name].std
+
+    assert doubted("pitch_rate_bias", "bias_rad_s", 0.004) == pytest.approx(0.03 * 0.004, rel=0.01)
+    assert doubted("alpha_skew", "skew_s", 0.004) > 3.0 * 0.03 * 0.004

@@ -17,6 +17,8 @@ _STREAMS = (
     ("accelerometer_skew", "a_z"),
     ("attitude_skew", "theta"),
 )
+_MESSAGE_S = 0.012
+"""Least delay of a message worth a name: what is shorter resembles too much else."""
 _FILTERS_S = {"alpha": 0.02, "a_z": 0.01, "theta": 0.01}
 """By what an autopilot's filters make its channels later than its pitch rate, give or take."""
 
@@ -66,7 +68,9 @@ def variants(flights: Flights, least_s: float) -> list[Variant]:
     ]
     if _in_one_message(flights):
         skew = next(v for v in found if v.effect == "attitude_skew")
-        found.append(replace(skew, fixed={"with_pitch_rate": 1.0}, apply_with=_whole_message))
+        least_s = max(least_s, _MESSAGE_S)
+        whole = replace(skew, fixed={"with_pitch_rate": 1.0}, apply_with=_whole_message, smallest=least_s)
+        found.append(whole)
     return found
 
 
