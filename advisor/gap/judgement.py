@@ -15,8 +15,7 @@ from advisor.gap.score import file_is_off
 from advisor.gap.speed import airspeed_cause, speed_is_a_cause
 
 _PLAIN = 0.5
-"""Gap that the file's own derivatives leave beside fitted ones from which on it does not matter whether they
-are off by more than a linear model ever is."""
+"""Gap of the file's own derivatives beside fitted ones from which on it takes less to call them wrong."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +86,7 @@ def _wrong_values(e: Evidence) -> bool:
     if e.file_model is None:
         return False
     more = float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2))
-    return more > _PLAIN or (more > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted))
+    return more > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted, plainly=more > _PLAIN)
 
 
 def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ...]:

@@ -25,7 +25,7 @@ _CERTAIN, _FAINT = 30.0, 0.15
 _BY_NATURE = frozenset(
     {
         "elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift", "unsteady_lift", "alpha_dot",
-        "icing", "structural_mode", "airspeed_variation",
+        "icing", "structural_mode", "airspeed_variation", "thrust_moment",
     }
 )  # fmt: skip
 """... but for what every aircraft has to some degree, or what takes its shape; and times must be
@@ -227,13 +227,13 @@ def belief_in(problem: Problem, fitted: Fitted, independent: FloatArray) -> floa
     return log_belief(fitted.point.derivatives, known, problem.believed)
 
 
-def file_is_off(problem: Problem, fitted: Fitted) -> bool:
-    """Whether what was fitted says that the aircraft file's derivatives are wrong."""
+def file_is_off(problem: Problem, fitted: Fitted, plainly: bool) -> bool:
+    """Whether what was fitted says that the aircraft file's derivatives are wrong; see ``is_off``."""
     if problem.believed is None:
         return False
     n = len(problem.believed)
     known = covariance(problem, fitted, worth(problem, fitted.innovations))[:n, :n]
-    return is_off(fitted.point.derivatives, known, problem.believed)
+    return is_off(fitted.point.derivatives, known, problem.believed, plainly)
 
 
 def shared_std(
