@@ -139,8 +139,11 @@ def quietest(problem: Problem, fitted: Fitted) -> Fitted:
         if loud < _LOUD:
             break
         present = {variant.effect for variant in best.point.effects}
-        variants = [v for v in variants_for(problem.flights) if v.effect not in present]
-        likeliest = next(iter(Screen(problem, best).try_all(variants, lambda _: 0.0)), None)
+        # Of changes between manoeuvres the drift stands for all: what they leave dies down as fast as any.
+        variants = [
+            v for v in variants_for(problem.flights) if v.effect not in present and "at_s" not in v.fixed
+        ]
+        likeliest = next(iter(Screen(problem, best, steps=1).try_all(variants, lambda _: 0.0)), None)
         if likeliest is None:
             break
         more = fit(problem, likeliest.point, likeliest.noise, iterations=8)

@@ -12,7 +12,7 @@ from advisor.gap.neighbourhood import Neighbourhood, Place
 from advisor.gap.problem import Point, Problem
 from advisor.gap.variant import Variant
 
-_ITERATIONS = 4
+_STEPS = 4
 _AT_ONCE = 16
 """Points that are flown together: enough to fill the packs, few enough for the cache."""
 _HARDLY = 6.0
@@ -37,10 +37,10 @@ _Descent = Generator[Point, Place | None, Screened | None]
 
 
 class Screen:
-    """The baseline made ready for many candidates."""
+    """The baseline made ready for many candidates, each of which is followed for at most some steps."""
 
-    def __init__(self, problem: Problem, fitted: Fitted) -> None:
-        self.problem, self.fitted = problem, fitted
+    def __init__(self, problem: Problem, fitted: Fitted, steps: int = _STEPS) -> None:
+        self.problem, self.fitted, self.steps = problem, fitted, steps
         self.around = Neighbourhood(problem, fitted)
 
     def try_all(self, variants: Sequence[Variant], believed: Callable[[Point], float]) -> list[Screened]:
@@ -89,7 +89,7 @@ class Screen:
         if here is None:
             return None
         lower, upper = bounds_of(point)
-        for n in range(_ITERATIONS):
+        for n in range(self.steps):
             step, promised = here.step()
             if self.fitted.cost - here.cost + promised < _HARDLY:
                 # Not worth a flight: what the model says of the step is answer enough.
