@@ -28,6 +28,10 @@ _SIGNED = frozenset({"scale", "step", "change", "skew_s", "bias_rad", "bias_rad_
 """Parameters whose direction matters to the reader."""
 
 
+_IN_WORDS = {"with_pitch_rate": "the pitch rate, too"}
+"""Parameters that only say that something is so."""
+
+
 def spelled(effect: str) -> str:
     """An effect's name as people write it."""
     return effect.replace("_", " ")
@@ -67,10 +71,13 @@ def with_error(parameter: str, value: Value) -> str:
 
 def sizes_of(cause: Cause) -> list[str]:
     """Every parameter of a cause, one a line; its name only where there are several."""
-    shown = {name: with_error(name, value) for name, value in cause.parameters.items()}
+    words = [text for name, text in _IN_WORDS.items() if name in cause.parameters]
+    shown = {
+        name: with_error(name, value) for name, value in cause.parameters.items() if name not in _IN_WORDS
+    }
     if len(shown) == 1:
-        return list(shown.values())
-    return [f"{_named(name)} {text}" for name, text in shown.items()]
+        return [*shown.values(), *words]
+    return [*(f"{_named(name)} {text}" for name, text in shown.items()), *words]
 
 
 def _rounded(x: float, decimals: int, sign: str = "") -> str:

@@ -124,6 +124,12 @@ def test_several_sizes_of_one_cause_are_named():
     assert [line.split()[0] for line in sizes_of(CURVED)] == ["M_alpha2", "M_alpha3"]
 
 
+def test_a_parameter_that_only_says_that_something_is_so_is_put_in_words():
+    sizes = {"skew_s": Value(0.06, 0.002), "with_pitch_rate": Value(1.0, 0.0)}
+    late = Cause("attitude_skew", "timing", 0.9, sizes, (), "", 0.1)
+    assert sizes_of(late) == ["+60 ± 2 ms", "the pitch rate, too"]
+
+
 @pytest.mark.parametrize(
     "parameter", ["change", "share", "rate_per_s", "sigma_w_m_s", "frequency_hz", "gain"]
 )
