@@ -98,14 +98,13 @@ def _between_rests(t: FloatArray, d: FloatArray) -> _Movement | None:
     width = round(STILL_S / float(np.median(np.diff(t)))) + 1
     if len(t) < 3 * width:
         return None
-    windows = sliding_window_view(d, width)
-    ranges = windows.max(axis=1) - windows.min(axis=1)
     unrest = float(np.ptp(d[-(width // 2) :]))
-    largest = np.maximum.accumulate(np.abs(d)[::-1])[::-1][: len(ranges)]
-    still = ranges <= np.maximum(_STILL * largest, _NOISE * unrest)
-    moving = np.flatnonzero(~still)
-    if len(moving) == 0 or not still[-1] or t[-1] - t[moving[-1] + width - 1] > _NEWLY_S:
+    newly = max(0, int(np.searchsorted(t, t[-1] - _NEWLY_S)) - width + 1)
+    *_, still = _windows(d[newly:], width, unrest)
+    if np.all(still) or not still[-1]:
         return None
+    windows, ranges, largest, still = _windows(d, width, unrest)
+    moving = np.flatnonzero(~still)
     last = int(moving[-1])
     at_trim = np.abs(windows[:last].mean(axis=1)) <= _AT_TRIM * largest[:last]
     rests = np.flatnonzero(still[:last] & at_trim)
@@ -115,6 +114,16 @@ def _between_rests(t: FloatArray, d: FloatArray) -> _Movement | None:
     start = _before_it_swells(ranges, rest, width, float(largest[rest]))
     quiet = float(np.std(windows[rest]))
     return _Movement(rest + width - 1, last, float(t[start + width - 1]), quiet, unrest)
+
+
+def _windows(
+    d: FloatArray, width: int, unrest: float
+) -> tuple[FloatArray, FloatArray, FloatArray, np.ndarray]:
+    """All windows of a length: their samples, ranges, the largest deviation since, and which are still."""
+    windows = sliding_window_view(d, width)
+    ranges = windows.max(axis=1) - windows.min(axis=1)
+    largest = np.maximum.accumulate(np.abs(d)[::-1])[::-1][: len(ranges)]
+    return windows, ranges, largest, ranges <= np.maximum(_STILL * largest, _NOISE * unrest)
 
 
 def _before_it_swells(ranges: FloatArray, rest: int, width: int, amplitude: float) -> int:

@@ -10,8 +10,9 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.gap.airspeed import airspeed_on, along_the_path
 from advisor.gap.layout import OUTPUTS
+from advisor.gap.provenance import is_estimate, renewed
 from advisor.gap.simulate import GRAVITY_M_S2, THRUST
-from advisor.gap.smoothness import is_filtered, is_smoothed
+from advisor.gap.smoothness import is_filtered, is_smoothed, white_part
 
 STEP_S = 0.005
 LEAST_SAMPLES = 30
@@ -19,8 +20,6 @@ DEPARTED_RAD = 1.0
 """Swing of the angle of attack that no equation about a trim describes any more."""
 _QUIET_AFTER = 0.6
 """Share of the free response after which the motion has died down."""
-_ESTIMATED_HZ = 22.0
-"""ArduPilot renews its estimate of α 20 times a second at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +92,10 @@ class Flights:
     """α was filtered before it was stored, as an estimate is: its roughness is no measure of its errors."""
     has: frozenset[str]
     """Slow channels that were measured: airspeed, a_x, bank, throttle, height."""
+    white: FloatArray
+    """Shape (channels,): standard deviation of the white part, robust against edges of the motion."""
+    peaks: FloatArray
+    """Shape (channels,): the largest departure from the starting value, the median over all manoeuvres."""
 
     def __len__(self) -> int:
         return len(self.flights)
@@ -128,21 +131,18 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
 
     smoothed = "alpha" in channels and is_smoothed(quiet("alpha"))
     # Where a whole record went through a filter on the ground, a smooth α is no sign of an estimator.
-    derived = any(_is_estimate(m, smoothed and not is_filtered(quiet("q"))) for m in usable)
-    return Flights(flights, channels, measured, reference, moves, derived, derived or smoothed, has)
+    derived = any(is_estimate(m, smoothed and not is_filtered(quiet("q"))) for m in usable)
+    whole = [[f.outputs[c].y for f in flights] for c in channels]
+    white = np.array([white_part(series) for series in whole])
+    peaks = np.array([np.median([_departure(y) for y in series]) for series in whole])
+    return Flights(
+        flights, channels, measured, reference, moves, derived, derived or smoothed, has, white, peaks
+    )
 
 
-def _is_estimate(m: Maneuver, smoothed: bool) -> bool:
-    """Whether α is made from inertial sensors, as it says of itself.
-
-    ArduPilot says so of whatever it sends. What is rough and renewed too fast for its estimator is a vane's.
-    """
-    alpha = m.channels.get("alpha")
-    if alpha is None or alpha.provenance != "derived":
-        return False
-    t, _ = renewed(alpha.t, alpha.y)
-    slow = len(t) < _ESTIMATED_HZ * (alpha.t[-1] - alpha.t[0])
-    return slow or smoothed or not alpha.source.startswith("AOA_SSA")
+def _departure(y: FloatArray) -> float:
+    """The largest departure of a series from its starting value."""
+    return float(np.max(np.abs(y - np.median(y[: max(5, len(y) // 50)]))))
 
 
 def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:
@@ -223,12 +223,6 @@ def _outputs(m: Maneuver, start: float, end: float) -> dict[str, Measured]:
         if len(t) >= LEAST_SAMPLES:
             outputs[name] = Measured(t, y)
     return outputs
-
-
-def renewed(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Only samples that bring a new value, when a channel repeats old ones under fresh stamps."""
-    new = np.concatenate(([True], np.diff(y) != 0.0))
-    return (t[new], y[new]) if np.mean(new) < 0.7 else (t, y)
 
 
 def _edges(t: FloatArray, u: FloatArray) -> FloatArray:

@@ -161,13 +161,15 @@ def _response(problem: Problem, fitted: Fitted, variant: Variant, size: float) -
     """Change of every manoeuvre's channels, shape (rows,), per unit of the effect's size."""
     sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
     rest = variant.starts[0][1:]
-    seen = []
-    for value in (size, 0.0):
-        p = problem.driving(fitted.point.with_effect(variant, (value, *rest), sides))
-        seen.append(
-            [problem.read(f, problem.fly(f, p[i]), p[i]) for i, f in enumerate(problem.flights.flights)]
-        )
-    return [(there - here) / size for there, here in zip(*seen, strict=True)]
+    there, here = (
+        problem.driving(fitted.point.with_effect(variant, (value, *rest), sides)) for value in (size, 0.0)
+    )
+    changes = []
+    for i, flight in enumerate(problem.flights.flights):
+        rows = np.stack([there[i], here[i]])
+        seen = problem.fly_and_read(flight, rows)
+        changes.append((seen[:, 0] - seen[:, 1]) / size)
+    return changes
 
 
 def _needed(marks: Marks, numbers: int) -> float:

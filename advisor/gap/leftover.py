@@ -14,7 +14,6 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.clock import is_of_the_clock
 from advisor.gap.course import is_of_the_air
 from advisor.gap.fit import Fitted, rms_of
-from advisor.gap.floor import peak_of
 from advisor.gap.noise import unfiltered
 from advisor.gap.origin import stick_or_motion
 from advisor.gap.probes import SENSOR_CHANNELS, Probe, disturbance_course, probe_blocks
@@ -92,7 +91,7 @@ def left_over(
     loud = telling & (rms_of(problem, last.left) > _DOUBT * stated)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - _instruments(problem) ** 2, 0.0))
-    peaks = np.array([peak_of(problem.flights, c) for c in problem.channels])
+    peaks = problem.flights.peaks
     if not np.any(telling & (beyond > _OF_PEAK * peaks)):
         return None
     faint = best.explained < _LEAST_SHARE

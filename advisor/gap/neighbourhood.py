@@ -15,6 +15,7 @@ from advisor.gap.layout import DERIVATIVES
 from advisor.gap.linear import shared_steps, shifted_points
 from advisor.gap.normal import solved
 from advisor.gap.problem import Point, Problem, counts, row_weights
+from advisor.gap.reading import differences
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,8 @@ class _Kept:
     weights: FloatArray
     r: FloatArray
     """Shape (rows,): what the fit left, own numbers not refitted."""
+    still: FloatArray
+    """Shape (rows, 7): sensitivities to the derivatives, and ``r``: what is known without a flight."""
     A: FloatArray
     """Own columns, shape (rows, m) ..."""
     J: FloatArray
@@ -65,6 +68,12 @@ class _Asked:
     """Shape (numbers, manoeuvres, entries): with each number of its last effect moved by its step."""
     steps: FloatArray
     """Shape (numbers,)."""
+    changes: FloatArray
+    """Shape (numbers, manoeuvres, 6): what each step does to the derivatives, per unit."""
+    flown: np.ndarray
+    """Shape (numbers, manoeuvres), bool: whether it does more than that ..."""
+    moved: np.ndarray
+    """... and shape (manoeuvres,): whether there is anything to fly at all."""
     first: int
     """Column of what is left; those of the numbers come next."""
 
@@ -91,7 +100,9 @@ class Neighbourhood:
             chol = factor(A, block.prior)
             AJ = A.T @ J
             self.information += J.T @ J - AJ.T @ solved(chol, AJ)
-            self.kept.append(_Kept(problem.measured(flight), w, block.left * w, A, J, chol, AJ))
+            r = block.left * w
+            still = np.column_stack([J[:, : len(DERIVATIVES)], r])
+            self.kept.append(_Kept(problem.measured(flight), w, r, still, A, J, chol, AJ))
 
     def at_all(self, points: Sequence[Point]) -> list[Place | None]:
         """Fly to every point, the manoeuvres' own numbers refitted; None where a simulation fails."""
@@ -126,12 +137,15 @@ class Neighbourhood:
         ]
 
     def _asked(self, point: Point, first: int) -> _Asked:
-        known = len(self.information)
+        known, k = len(self.information), len(DERIVATIVES)
         steps = shared_steps(point)[known:]
         p = self.problem.driving(point)
-        moved = shifted_points(point, range(known, known + len(steps)))
-        shifted = np.array([self.problem.driving(there) for there in moved]).reshape(len(steps), *p.shape)
-        return _Asked(point, p, shifted, steps, first)
+        there = shifted_points(point, range(known, known + len(steps)))
+        shifted = np.array([self.problem.driving(one) for one in there]).reshape(len(steps), *p.shape)
+        flown = np.any(shifted[:, :, k:] != p[:, k:], axis=2)
+        moved = np.any(flown, axis=0) | np.any(p != self.p, axis=1)
+        changes = (shifted[:, :, :k] - p[:, :k]) / steps[:, None, None]
+        return _Asked(point, p, shifted, steps, changes, flown, moved, first)
 
     def _place(
         self, a: _Asked, cost: float, noise: FloatArray, own: FloatArray, JX: FloatArray, XX: FloatArray
@@ -155,33 +169,29 @@ class Neighbourhood:
         """
         problem, kept, flight = self.problem, self.kept[i], self.problem.flights.flights[i]
         k = len(DERIVATIVES)
-        X = np.empty((len(kept.r), width))
+        still = np.zeros((k + 1, width))
         rows: list[FloatArray] = []
-        begun, base, columns, scale = [], [], [], []
+        begun, base, columns, step = [], [], [], []
         for j, a in enumerate(asked):
-            p, shifted = a.p[i], a.shifted[:, i]
-            changes = (shifted - p) / a.steps[:, None]
-            flown = np.any(changes[:, k:], axis=1)
-            X[:, a.first] = kept.r
-            if not np.all(flown):
-                X[:, a.columns][:, 1:] = kept.J[:, :k] @ changes[:, :k].T
-            if not np.any(flown) and np.array_equal(p, self.p[i]):
+            still[k, a.first] = 1.0
+            still[:k, a.first + 1 : a.columns.stop] = a.changes[:, i].T
+            if not a.moved[i]:
                 continue
+            flown = np.flatnonzero(a.flown[:, i])
             begun.append((j, len(rows)))
-            base += [len(rows)] * (1 + np.count_nonzero(flown))
-            columns += [a.first, *(a.first + 1 + np.flatnonzero(flown))]
-            scale += [1.0, *a.steps[flown]]
-            rows += [p, *shifted[flown]]
+            base += [len(rows)] * (1 + len(flown))
+            columns += [a.first, *(a.first + 1 + flown)]
+            step += [0.0, *a.steps[flown]]
+            rows += [a.p[i], *a.shifted[flown, i]]
+        X = np.asarray(kept.still @ still)
         if not rows:
             return X
-        all_rows = np.array(rows)
-        read = problem.read_all(flight, problem.fly_all(flight, all_rows), all_rows)
-        finite = np.all(np.isfinite(read), axis=0)
+        read = problem.fly_and_read(flight, np.array(rows))
+        finite = np.isfinite(np.sum(read, axis=0))
         read[:, ~finite] = 0.0
-        raw = (read - np.take(read, base, axis=1)) / np.array(scale)
         for j, at in begun:
             failed[j] |= not finite[at]
-            raw[:, at] = kept.measured - read[:, at]
+        raw = differences(read, kept.measured, np.array(base), np.array(step))
         X[:, columns] = problem.innovations(i, raw) * kept.weights[:, None]
         return X
 
@@ -192,7 +202,7 @@ class Neighbourhood:
         best = []
         for i, (flight, kept) in enumerate(zip(problem.flights.flights, self.kept, strict=True)):
             rows = np.stack([q[i] for q in p])
-            left = kept.measured[:, None] - problem.read_all(flight, problem.fly_all(flight, rows), rows)
+            left = kept.measured[:, None] - problem.fly_and_read(flight, rows)
             r = problem.innovations(i, left) * kept.weights[:, None]
             Ar = kept.A.T @ r
             costs = np.sum(r * r, axis=0) - np.sum(Ar * solved(kept.chol, Ar), axis=0)

@@ -12,7 +12,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted, rms_of
-from advisor.gap.floor import stated_floor, white_noise
+from advisor.gap.floor import stated_floor
 from advisor.gap.holdout import mean_squares
 from advisor.gap.layout import DERIVATIVES, short_period
 from advisor.gap.linear import as_measured
@@ -164,7 +164,7 @@ def quiet_rms(problem: Problem, fitted: Fitted) -> FloatArray:
 
 def instrument_noise(problem: Problem) -> FloatArray:
     """Shape (4,): white noise of each channel from differences of its samples; 1 for one that is missing."""
-    white = white_noise(problem.flights)
+    white = dict(zip(problem.channels, problem.flights.white, strict=True))
     return np.array([white.get(c, 1.0) for c in CHANNELS])
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.belief import pull_of
 from advisor.gap.data import Flight, Flights
-from advisor.gap.layout import DERIVATIVES, INDEX, NUISANCES, SKEWS
+from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES, SKEWS
 from advisor.gap.reading import delayed, lane, packed, read_rows
 from advisor.gap.simulate import LANES, simulate
 from advisor.gap.surface import surfaces
@@ -17,6 +17,7 @@ from advisor.gap.whitening import Filters, Whitening
 
 _NO_DISTURBANCE = np.zeros((4, 0))
 _SKEW_ENTRIES = np.array([INDEX[name] for name in SKEWS])
+_FLOWN_ENTRIES = np.array([i for i, name in enumerate(ENTRIES) if name not in SKEWS])
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,21 @@ class Problem:
 
     def read_all(self, flight: Flight, packs: FloatArray, p: FloatArray) -> FloatArray:
         """Shape (rows, k): of every simulation all channels at their own stamps, one after another."""
-        return np.asarray(read_rows(packs, flight.h, flight.stamps, flight.output, p[:, _SKEW_ENTRIES]))
+        return self._read(flight, packs, np.arange(len(p)), p)
+
+    def fly_and_read(self, flight: Flight, p: FloatArray) -> FloatArray:
+        """Shape (rows, k): one manoeuvre as every row of ``p``, shape (k, entries), says it was measured.
+
+        Rows that differ in their channels' skews alone are flown once.
+        """
+        places: dict[bytes, int] = {}
+        flown = [places.setdefault(row.tobytes(), len(places)) for row in p[:, _FLOWN_ENTRIES]]
+        _, first = np.unique(flown, return_index=True)
+        return self._read(flight, self.fly_all(flight, p[first]), np.array(flown), p)
+
+    def _read(self, flight: Flight, packs: FloatArray, flown: np.ndarray, p: FloatArray) -> FloatArray:
+        skews = p[:, _SKEW_ENTRIES]
+        return np.asarray(read_rows(packs, flight.h, flight.stamps, flight.output, flown, skews))
 
     def fly(self, flight: Flight, p: FloatArray) -> FloatArray:
         """Simulated outputs of one manoeuvre on the grid, shape (4, n + 1)."""

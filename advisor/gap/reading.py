@@ -10,7 +10,7 @@ from advisor.flight.messages import FloatArray
 
 @njit(cache=True, error_model="numpy")
 def read_rows(
-    packs: FloatArray, h: float, stamps: FloatArray, output: np.ndarray, skews: FloatArray
+    packs: FloatArray, h: float, stamps: FloatArray, output: np.ndarray, flown: np.ndarray, skews: FloatArray
 ) -> FloatArray:
     """All channels of one manoeuvre, of all its simulations at once.
 
@@ -24,30 +24,55 @@ def read_rows(
         Shape (rows,).
     output
         Shape (rows,), int64: which output each stamp reads.
+    flown
+        Shape (k,), int64: which simulation each column reads; several may read one.
     skews
-        Shape (k, 4): of each simulation and output, in s; > 0: the channel is late.
+        Shape (k, 4): of each column and output, in s; > 0: the channel is late.
 
     Returns
     -------
     Shape (rows, k).
     """
-    k, lanes, last = len(skews), packs.shape[3], packs.shape[1] - 2
+    k, last = len(flown), packs.shape[1] - 2
+    pack, lane = flown // packs.shape[3], flown % packs.shape[3]
     y = np.empty((len(stamps), k))
-    for pack in range(len(packs)):
-        first = pack * lanes
-        width = min(lanes, k - first)
-        for i in range(len(stamps)):
-            c = output[i]
-            skew, at, part = np.inf, 0, 0.0
-            for lane in range(width):
-                if skews[first + lane, c] != skew:
-                    skew = skews[first + lane, c]
-                    x = (stamps[i] - skew) / h
-                    at = min(max(int(x), 0), last)
-                    part = min(max(x - at, 0.0), 1.0)
-                here = packs[pack, at, c, lane]
-                y[i, first + lane] = here + part * (packs[pack, at + 1, c, lane] - here)
+    for i in range(len(stamps)):
+        c = output[i]
+        skew, at, part = np.inf, 0, 0.0
+        for j in range(k):
+            if skews[j, c] != skew:
+                skew = skews[j, c]
+                x = (stamps[i] - skew) / h
+                at = min(max(int(x), 0), last)
+                part = min(max(x - at, 0.0), 1.0)
+            here = packs[pack[j], at, c, lane[j]]
+            y[i, j] = here + part * (packs[pack[j], at + 1, c, lane[j]] - here)
     return y
+
+
+@njit(cache=True, error_model="numpy")
+def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: FloatArray) -> FloatArray:
+    """Residuals and sensitivities from readings, shape (rows, k) like them.
+
+    Parameters
+    ----------
+    read
+        Shape (rows, k).
+    measured
+        Shape (rows,).
+    base
+        Shape (k,), int64: the column from which a column was moved ...
+    step
+        ... shape (k,), by how much; 0: the column is a base itself, of which stays what it leaves.
+    """
+    out = np.empty_like(read)
+    for i in range(read.shape[0]):
+        for j in range(read.shape[1]):
+            if step[j] == 0.0:
+                out[i, j] = measured[i] - read[i, j]
+            else:
+                out[i, j] = (read[i, j] - read[i, base[j]]) / step[j]
+    return out
 
 
 @njit(cache=True, error_model="numpy")

@@ -8,7 +8,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.belief import NARROW, is_off, log_belief, scale_of
 from advisor.gap.fit import Fitted, rms_of
-from advisor.gap.floor import independent_samples, peak_of, prefiltered
+from advisor.gap.floor import independent_samples, prefiltered
 from advisor.gap.holdout import HeldOut, has_lone_witness, hold_out
 from advisor.gap.problem import Problem, counts
 from advisor.gap.variant import Variant
@@ -207,8 +207,7 @@ def least_change(problem: Problem) -> float:
     least = LEAST_GAP * (_DOUBT**2 if any(prefiltered(problem.flights).values()) else 1.0)
     if problem.instruments is None:
         return least
-    peaks = np.array([peak_of(problem.flights, c) for c in problem.channels])
-    return max(least, float(_OF_PEAK**2 / np.mean((problem.instruments / peaks) ** 2)))
+    return max(least, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
 
 
 def _difference(problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted) -> float:

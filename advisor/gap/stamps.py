@@ -11,7 +11,6 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import STEP_S
 from advisor.gap.fit import Fitted
-from advisor.gap.floor import white_noise
 from advisor.gap.layout import ENTRIES
 from advisor.gap.problem import Problem
 
@@ -94,7 +93,7 @@ def _jitter_in(
     level = np.array([np.median(y[k]) for k in bins]) / _MEDIAN
     X = np.column_stack([np.ones(_BINS), [np.mean(x[k]) for k in bins]]) / level[:, None]
     variance = max(float(np.linalg.lstsq(X, np.ones(_BINS), rcond=None)[0][1]), 0.0)
-    least = _LEAST[channel] * white_noise(problem.flights)[channel]
+    least = _LEAST[channel] * float(problem.flights.white[problem.channels.index(channel)])
     return variance * float(np.mean(x)) / least**2, float(np.sqrt(variance))
 
 

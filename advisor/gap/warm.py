@@ -4,7 +4,7 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.gap.plan import foresee_plan
-from advisor.oem.innovations import AirModel, gains_of
+from advisor.oem.innovations import AirModel, cost_of, gains_of
 
 _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -50.0), strict=True))
 
@@ -12,9 +12,10 @@ _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -5
 def warm_up() -> None:
     """Foresee a tiny plan and filter a few samples: between them they run through every compiled function."""
     foresee_plan(Aircraft(model=_ANY_AIRCRAFT), ("pulse", "pulse"), 50.0, 1.0)
-    one = np.ones(4)
-    gains = gains_of(np.linspace(0.0, 0.06, 4), np.arange(4), np.ones(5), AirModel(one, one, 1.0, 0.1, 1.0))
-    gains.innovations(np.ones((4, 2)))
+    one, channels, t = np.ones(4), np.arange(4), np.linspace(0.0, 0.06, 4)
+    air = AirModel(one, one, 1.0, 0.1, 1.0)
+    gains_of(t, channels, np.ones(5), air).innovations(np.ones((4, 2)))
+    cost_of(t, channels, one, np.ones(5), air)
 
 
 if __name__ == "__main__":

@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.oem import innovations
 from advisor.oem.estimate import ChannelFit, Estimate
-from advisor.oem.innovations import ALPHA, CHANNELS, AirModel, gains_of
+from advisor.oem.innovations import ALPHA, CHANNELS, AirModel
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Rows:
 
 def cost_of(rows: Sequence[Rows], system: FloatArray, air: AirModel) -> float:
     """-2 log likelihood of residuals under an air model, summed over manoeuvres."""
-    return sum(gains_of(r.t, r.channel, np.append(system, r.speed), air).cost(r.left) for r in rows)
+    return sum(innovations.cost_of(r.t, r.channel, r.left, np.append(system, r.speed), air) for r in rows)
 
 
 _STEPS = (0.7, 0.35, 0.15)
@@ -114,14 +115,17 @@ def _descend(
     for step in steps:
         for i in free:
             for direction in (step, -step):
-                moved = x.copy()
-                moved[i] += direction
-                cost = cost_of(rows, system, model(moved))
-                while cost < best - 0.5:
-                    best, x = cost, moved
+                before = best
+                while True:
                     moved = x.copy()
                     moved[i] += direction
                     cost = cost_of(rows, system, model(moved))
+                    if cost >= best - 0.5:
+                        break
+                    best, x = cost, moved
+                if best < before:
+                    # The other way leads back to where it came from.
+                    break
     return model(x), best
 
 

@@ -11,6 +11,8 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.causes import with_doubt
 from advisor.gap.data import prepare
 from advisor.gap.fit import fit
+from advisor.gap.layout import INDEX
+from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Value
 from advisor.gap.score import price_of_edges
 from advisor.gap.screen import Screen
@@ -59,3 +61,21 @@ def test_only_a_time_has_the_error_of_a_grid_of_time_in_its_size(settled):
 
     assert doubted("pitch_rate_bias", "bias_rad_s", 0.004) == pytest.approx(0.03 * 0.004, rel=0.01)
     assert doubted("alpha_skew", "skew_s", 0.004) > 3.0 * 0.03 * 0.004
+
+
+def test_where_only_a_channel_is_late_nothing_is_flown_again_and_another_delay_is(settled, monkeypatch):
+    problem, fitted = settled
+    flight, p = problem.flights.flights[0], problem.driving(fitted.point)[0]
+    rows = np.tile(p, (4, 1))
+    rows[1, INDEX["alpha_skew_s"]] = 0.02
+    rows[2, INDEX["delay_s"]] = 0.02
+    rows[3, [INDEX["alpha_skew_s"], INDEX["q_skew_s"]]] = 0.03, -0.01
+    flown = []
+    fly_all = Problem.fly_all
+    monkeypatch.setattr(
+        Problem, "fly_all", lambda self, f, some: flown.append(len(some)) or fly_all(self, f, some)
+    )
+    each = [problem.read(flight, problem.fly(flight, row), row) for row in rows]
+    flown.clear()
+    assert np.array_equal(problem.fly_and_read(flight, rows), np.column_stack(each))
+    assert flown == [2]

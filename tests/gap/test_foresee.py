@@ -14,7 +14,6 @@ from advisor.gap.baseline import believed_derivatives
 from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.floor import white_noise
 from advisor.gap.plan import foresee_flights, foresee_plan
 from advisor.problems import ConfigurationError
 from advisor.report.gap_plan import ForesightScreen, size_of
@@ -163,9 +162,7 @@ def test_a_plan_that_cannot_be_flown_is_refused_with_what_would_do(plan, rate_hz
 )
 def test_flown_by_another_generator_twice_the_foreseen_size_is_named_and_a_third_is_not(effect, changes):
     flown = prepare(fly(Setup(maneuvers=7, seed=21)), PLANE)
-    noise = white_noise(flown)
-    sizes = np.array([noise[channel] for channel in flown.channels])
-    found = foresee_flights(PLANE, believed_derivatives(PLANE), flown, sizes, UAV.unit_s)
+    found = foresee_flights(PLANE, believed_derivatives(PLANE), flown, flown.white, UAV.unit_s)
     smallest = {f.effect: f.smallest for f in found}[effect]
     twice, third = (
         diagnose(fly(Setup(maneuvers=7, seed=22, **changes(share * smallest))), Aircraft())

@@ -13,7 +13,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.noise import only
 from advisor.gap.stamps import rates_of, stamp_jitter
 from advisor.gap.whitening import Filters
-from advisor.oem.innovations import AirModel, gains_of
+from advisor.oem.innovations import DIFFUSE, AirModel, cost_of, gains_of
 from tests.gap.generator import Setup, fly
 
 SYSTEM = np.array([-4.3, -0.03, -37.0, -4.8, 22.0])
@@ -37,6 +37,18 @@ def test_innovations_of_coloured_instruments_agree_with_their_covariance_matrix(
     e = gains.innovations(left[:, None])[:, 0]
     assert e @ e == pytest.approx(left @ np.linalg.solve(dense, left), rel=1e-9)
     assert 2.0 * np.sum(np.log(gains.root)) == pytest.approx(np.linalg.slogdet(dense)[1], rel=1e-9)
+
+
+def test_a_search_for_the_noise_asks_for_the_likelihood_that_the_filter_gives():
+    t, channel = merged(40, 4)
+    air = AirModel(np.full(4, 0.002), np.full(4, 0.001), 0.2, 0.01, 0.9)
+    left = np.random.default_rng(5).standard_normal(len(t)) * 0.003
+    gains = gains_of(t, channel, SYSTEM, air)
+    known = gains.root**2 < 0.1 * DIFFUSE
+    e = gains.innovations(left[:, None])[known, 0]
+    assert 0 < np.count_nonzero(~known) < 6
+    expected = 2.0 * np.sum(np.log(gains.root[known])) + e @ e
+    assert cost_of(t, channel, left, SYSTEM, air) == pytest.approx(expected, rel=1e-12)
 
 
 def test_air_that_moves_as_assumed_leaves_white_innovations():

@@ -1,0 +1,236 @@
+"""The Kalman filter of ``innovations``, compiled: its covariance, its gains, and what it makes of residuals.
+
+States: α, q, θ and the gust angle, which move together, then the coloured noise of each channel. Rows come
+one at a time, in order of time, so that every update is by a scalar.
+"""
+
+import numpy as np
+from numba import njit
+
+from advisor.flight.messages import FloatArray
+
+STATES = 8
+DIFFUSE = 1e3
+"""Variance of a motion of which nothing is known at the start of the record."""
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _begun(system: FloatArray, memory: FloatArray, start_variance: float) -> tuple[FloatArray, FloatArray]:
+    """Rates of α, q, θ and the gust, shape (4, 4), and the covariance at the start, shape (8, 8)."""
+    z_a, z_q, m_a, m_q = system[0], system[1], system[2], system[3]
+    A, P = np.zeros((4, 4)), np.zeros((STATES, STATES))
+    A[0, 0], A[0, 1], A[0, 3] = z_a, 1.0 + z_q, z_a
+    A[1, 0], A[1, 1], A[1, 3] = m_a, m_q, m_a
+    A[2, 1] = 1.0
+    P[0, 0], P[1, 1], P[2, 2], P[3, 3] = start_variance, start_variance, start_variance, memory[5] ** 2
+    for c in range(4):
+        P[4 + c, 4 + c] = memory[c] ** 2
+    return A, P
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _transition(step: FloatArray, A: FloatArray, dt: float, keep_gust: float) -> None:
+    """Fill in what α, q, θ and the gust become after ``dt``: second order, the gust exactly."""
+    for a in range(4):
+        for b in range(4):
+            square = 0.0
+            for s in range(4):
+                square += A[a, s] * A[s, b]
+            step[a, b] = (1.0 if a == b else 0.0) + A[a, b] * dt + square * 0.5 * dt * dt
+    step[3, 3] = keep_gust
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _propagate(
+    P: FloatArray, moved: FloatArray, step: FloatArray, keep: float, keep_gust: float, memory: FloatArray
+) -> None:
+    """The covariance after a step; ``moved``, shape (4, 8), is room to work in."""
+    for a in range(4):
+        for b in range(STATES):
+            moved[a, b] = (step[a, 0] * P[0, b] + step[a, 1] * P[1, b]
+                           + step[a, 2] * P[2, b] + step[a, 3] * P[3, b])  # fmt: skip
+    for a in range(4):
+        for b in range(4):
+            P[a, b] = (moved[a, 0] * step[b, 0] + moved[a, 1] * step[b, 1]
+                       + moved[a, 2] * step[b, 2] + moved[a, 3] * step[b, 3])  # fmt: skip
+        for b in range(4, STATES):
+            P[a, b] = moved[a, b] * keep
+            P[b, a] = P[a, b]
+    for a in range(4, STATES):
+        for b in range(4, STATES):
+            P[a, b] *= keep * keep
+    fresh = memory[5] ** 2 * (1.0 - keep_gust * keep_gust)
+    P[3, 3] += fresh
+    # The gust that arises within the step already acts on the states, for half of it.
+    for a in range(2):
+        P[a, 3] += 0.5 * step[a, 3] * fresh
+        P[3, a] += 0.5 * step[a, 3] * fresh
+        for b in range(2):
+            P[a, b] += 0.25 * step[a, 3] * step[b, 3] * fresh
+    for c in range(4):
+        P[4 + c, 4 + c] += memory[c] ** 2 * (1.0 - keep * keep)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _correct(P: FloatArray, gain: FloatArray, observed: FloatArray, white: float) -> float:
+    """Take a row into the covariance; its variance, and the ``gain``, shape (8,), filled in."""
+    gain[:] = 0.0
+    for s in range(STATES):
+        seen = observed[s]
+        if seen != 0.0:
+            for a in range(STATES):
+                gain[a] += P[s, a] * seen
+    variance = white
+    for s in range(STATES):
+        variance += observed[s] * gain[s]
+    per_variance = 1.0 / variance
+    for a in range(STATES):
+        share = gain[a] * per_variance
+        for b in range(STATES):
+            P[a, b] -= share * gain[b]
+    for a in range(STATES):
+        gain[a] *= per_variance
+    return variance
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def gains_along(
+    t: FloatArray,
+    channel: np.ndarray,
+    system: FloatArray,
+    white: FloatArray,
+    memory: FloatArray,
+    observed: FloatArray,
+    start_variance: float,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Gains of a record, as ``innovations.Gains`` has them: steps, what colour keeps, gains, roots.
+
+    Parameters
+    ----------
+    t, channel
+        Shape (n,): times, ascending, and which row of ``observed`` each sample is.
+    system
+        Shape (5,): Z_α, Z_q, M_α, M_q, V.
+    white
+        Shape (n,): variance of each row's white noise.
+    memory
+        Shape (7,): standard deviations of the coloured noise by channel and its memory in s, then of the
+        gust angle, rad, and its memory in s.
+    observed
+        Shape (4, 8): how each channel sees the states.
+    start_variance
+        Of α, q and θ at the start.
+    """
+    n = len(t)
+    steps, keeps = np.empty((n, 4, 4)), np.empty(n)
+    gains, roots = np.empty((n, STATES)), np.empty(n)
+    A, P = _begun(system, memory, start_variance)
+    step, moved = np.eye(4), np.empty((4, STATES))
+    last, keep_gust, keep = -1.0, 1.0, 1.0
+    for i in range(n):
+        dt = t[i] - t[i - 1] if i > 0 else 0.0
+        if dt > 1e-9:
+            if abs(dt - last) > 1e-9:
+                last, keep_gust, keep = dt, np.exp(-dt / memory[6]), np.exp(-dt / memory[4])
+                _transition(step, A, dt, keep_gust)
+            steps[i], keeps[i] = step, keep
+            _propagate(P, moved, step, keep, keep_gust, memory)
+        else:
+            steps[i], keeps[i] = np.eye(4), 1.0
+        roots[i] = np.sqrt(_correct(P, gains[i], observed[channel[i]], white[i]))
+    return steps, keeps, gains, roots
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def cost_along(
+    t: FloatArray,
+    channel: np.ndarray,
+    left: FloatArray,
+    system: FloatArray,
+    white: FloatArray,
+    memory: FloatArray,
+    observed: FloatArray,
+    start_variance: float,
+) -> float:
+    """-2 log likelihood of a residual ``left``, shape (n,): no constant, and no rows that are still diffuse.
+
+    What ``gains_along`` and ``pass_through`` say of it, in one pass in which nothing is kept. Arguments as
+    there, but ``white``, shape (4,), is by channel.
+    """
+    A, P = _begun(system, memory, start_variance)
+    step, moved = np.eye(4), np.empty((4, STATES))
+    x, gain = np.zeros(STATES), np.empty(STATES)
+    last, keep_gust, keep, cost = -1.0, 1.0, 1.0, 0.0
+    for i in range(len(t)):
+        dt = t[i] - t[i - 1] if i > 0 else 0.0
+        if dt > 1e-9:
+            if abs(dt - last) > 1e-9:
+                last, keep_gust, keep = dt, np.exp(-dt / memory[6]), np.exp(-dt / memory[4])
+                _transition(step, A, dt, keep_gust)
+            _propagate(P, moved, step, keep, keep_gust, memory)
+            a, q, air = x[0], x[1], x[3]
+            x[0] = step[0, 0] * a + step[0, 1] * q + step[0, 3] * air
+            x[1] = step[1, 0] * a + step[1, 1] * q + step[1, 3] * air
+            x[2] += step[2, 0] * a + step[2, 1] * q + step[2, 3] * air
+            x[3] = keep_gust * air
+            for s in range(4, STATES):
+                x[s] *= keep
+        seen = observed[channel[i]]
+        innovation = left[i]
+        for s in range(STATES):
+            innovation -= seen[s] * x[s]
+        variance = _correct(P, gain, seen, white[channel[i]])
+        for s in range(STATES):
+            x[s] += gain[s] * innovation
+        if variance < 0.1 * DIFFUSE:
+            cost += np.log(variance) + innovation * innovation / variance
+    return cost
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def pass_through(
+    steps: FloatArray,
+    keeps: FloatArray,
+    gains: FloatArray,
+    roots: FloatArray,
+    channel: np.ndarray,
+    observed: FloatArray,
+    columns: FloatArray,
+    rows: np.ndarray,
+) -> FloatArray:
+    """Innovations of columns, shape (n, k), each in units of its own standard deviation.
+
+    The first six arguments as ``gains_along`` gives and takes them; ``rows``, shape (n,), are the columns'
+    rows in order of time.
+    """
+    n, k = columns.shape
+    out = np.empty((n, k))
+    X = np.zeros((STATES, k))
+    innovation = np.empty(k)
+    for i in range(n):
+        if keeps[i] < 1.0:
+            s = steps[i]
+            for j in range(k):
+                a, q, angle, air = X[0, j], X[1, j], X[2, j], X[3, j]
+                X[0, j] = s[0, 0] * a + s[0, 1] * q + s[0, 3] * air
+                X[1, j] = s[1, 0] * a + s[1, 1] * q + s[1, 3] * air
+                X[2, j] = angle + s[2, 0] * a + s[2, 1] * q + s[2, 3] * air
+                X[3, j] = s[3, 3] * air
+            for c in range(4, STATES):
+                for j in range(k):
+                    X[c, j] *= keeps[i]
+        c, row, per_root = channel[i], rows[i], 1.0 / roots[i]
+        for j in range(k):
+            innovation[j] = columns[row, j]
+        for s in range(STATES):
+            seen = observed[c, s]
+            if seen != 0.0:
+                for j in range(k):
+                    innovation[j] -= seen * X[s, j]
+        for s in range(STATES):
+            gain = gains[i, s]
+            for j in range(k):
+                X[s, j] += gain * innovation[j]
+        for j in range(k):
+            out[row, j] = innovation[j] * per_root
+    return out
