@@ -25,7 +25,12 @@ _POINTS = 512
 
 def is_of_the_air(flights: Sequence[Flight], courses: Sequence[FloatArray]) -> bool:
     """Whether courses of a disturbance, one value every ``KNOTS_S``, have no tone and ignore the stick."""
-    return tone_of(courses) < _TONE and louder_with_the_stick(flights, courses) < _LOUDER
+    return not has_tone(courses) and louder_with_the_stick(flights, courses) < _LOUDER
+
+
+def has_tone(courses: Sequence[FloatArray]) -> bool:
+    """Whether courses swing of themselves: nearly all of their power is in one line."""
+    return tone_of(courses) >= _TONE
 
 
 def tone_of(courses: Sequence[FloatArray]) -> float:

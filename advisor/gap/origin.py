@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.course import has_tone
 from advisor.gap.data import Flight
 from advisor.gap.fit import Fitted
 from advisor.gap.holdout import folds_of
@@ -52,6 +53,9 @@ def stick_or_motion(
 
 def followed(flights: Sequence[Flight], courses: Sequence[FloatArray]) -> str | None:
     """The block whose quantities predict an unknown moment's courses, one value every ``KNOTS_S``."""
+    if has_tone(courses):
+        # With what swings of itself the motion swings: that one follows the other says nothing of the cause.
+        return None
     times = [KNOTS_S * np.arange(1.0, len(course) + 1.0) for course in courses]
     predicted = {
         block: _predicted([of(f, t) for f, t in zip(flights, times, strict=True)], courses)

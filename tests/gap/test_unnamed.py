@@ -50,6 +50,20 @@ def test_an_unknown_moment_is_told_by_whether_it_follows_the_stick_or_the_motion
     assert followed(flights, neither) is None
 
 
+def test_that_the_motion_swings_with_a_tone_does_not_tell_where_the_tone_is():
+    def humming(flight):
+        q = flight.outputs["q"]
+        return replace(q, y=q.y + 0.2 * np.sin(2.0 * np.pi * 1.2 * q.t))
+
+    calm = prepare(fly(Setup(maneuvers=6, seed=26)), Aircraft()).flights
+    flights = [replace(f, outputs={**f.outputs, "q": humming(f)}) for f in calm]
+    rates = []
+    for flight in flights:
+        t = KNOTS_S * np.arange(1.0, flight.duration_s / KNOTS_S)
+        rates.append(np.sin(2.0 * np.pi * 1.2 * t))
+    assert followed(flights, rates) is None
+
+
 def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane():
     maneuvers = []
     rng = np.random.default_rng(22)
