@@ -7,8 +7,8 @@ import numpy as np
 
 from advisor.flight.messages import Columns
 
-_EVERY = 4000
-"""Longest piece in arrival orders, so that memory stays bounded whatever the batch."""
+_EVERY = 100_000
+"""Longest piece in arrival orders (bytes of a log), so that memory stays bounded whatever the batch."""
 
 
 def pieces(columns: Sequence[Columns]) -> Iterator[list[Columns]]:
