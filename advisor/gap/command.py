@@ -7,7 +7,7 @@ import numpy as np
 from advisor.gap.candidates import input
 from advisor.gap.fit import Fitted, evidence_of, fit
 from advisor.gap.neighbourhood import Neighbourhood
-from advisor.gap.problem import Problem
+from advisor.gap.problem import Problem, counts
 from advisor.gap.screen import Screen
 
 _NEARLY = 0.25
@@ -41,7 +41,8 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     # Held with a delay d and linear with d plus half an interval are the same motion. The held reading is
     # believed where it needs no delay at all; else the doubt of half an interval goes into the delay's error.
     near = best_of_all + _NEARLY * (max(plain.values()) - best_of_all)
-    is_held = plain[True] < min(near, plain[False])
+    price = 2.0 * float(np.log(np.sum(counts(linear))))
+    is_held = plain[True] < min(near, plain[False], both[False] + price)
     if is_held:
         return held, plainly_held
     return linear, fitted
