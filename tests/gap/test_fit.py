@@ -79,10 +79,3 @@ def test_where_only_a_channel_is_late_nothing_is_flown_again_and_another_delay_i
     flown.clear()
     assert np.array_equal(problem.fly_and_read(flight, rows), np.column_stack(each))
     assert flown == [2]
-
-
-@pytest.mark.parametrize("seed", [1, 2])
-def test_a_delay_of_nearly_an_interval_is_not_taken_for_a_held_command_that_is_half_as_late(seed):
-    late = Setup(maneuvers=6, switches={"delay": 0.018}, jitter=0.002, seed=seed)
-    problem, _ = fit_baseline(prepare(fly(late), Aircraft()), Aircraft())
-    assert not problem.held
