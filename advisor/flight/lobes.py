@@ -17,9 +17,9 @@ def without_spikes(u: FloatArray) -> FloatArray:
 
 def lobes(d: FloatArray, first: int, last: int, least: float) -> list[tuple[int, int]]:
     """Stretches on one side of trim, as index pairs; short dips inside one are overlooked."""
-    side = np.sign(d[first : last + 1]) * (np.abs(d[first : last + 1]) > least)
-    out = np.flatnonzero(side) + first
-    turns = np.flatnonzero(np.diff(np.sign(d[out])) != 0)
+    out = np.flatnonzero(np.abs(d[first : last + 1]) > least) + first
+    above = d[out] > 0.0
+    turns = np.flatnonzero(above[1:] != above[:-1])
     starts = [int(out[0]), *(int(out[k + 1]) for k in turns)]
     ends = [*(int(out[k]) for k in turns), int(out[-1])]
     return list(zip(starts, ends, strict=True))
@@ -37,9 +37,8 @@ def onsets(t: FloatArray, d: FloatArray, places: list[tuple[int, int]], levels: 
             back = places[-1][1]
             i = min(back + 1, len(d) - 1)
         middle = 0.5 * (old + new)
-        stretch = np.arange(back, i + 1)
-        passed = stretch[(d[stretch] - middle) * np.sign(new - old) >= 0.0]
-        j = int(passed[0]) if len(passed) else i
+        passed = np.flatnonzero((d[back : i + 1] - middle) * np.sign(new - old) >= 0.0)
+        j = back + int(passed[0]) if len(passed) else i
         times.append(0.5 * (t[j] + t[max(j - 1, 0)]))
     return np.array(times)
 
