@@ -1,27 +1,24 @@
 """Telling inputs apart: lobes on either side of trim, how long each lasts, how square it is.
 
-Works on a stretch of elevator that has just come to rest. Everything is relative to the
-stretch itself: trim is the level at which it rests now, the amplitude is its largest
-deviation from that, the quiet level is what the elevator does at trim before the first step.
+Works on a stretch of elevator that has just come to rest. The amplitude is its largest
+deviation from trim, the quiet level is what the elevator does at trim before the first step.
 """
 
 import numpy as np
 
-from advisor.flight.lobes import lobes, onsets, squareness, without_spikes
+from advisor.flight.lobes import lobes, onsets, squareness
 from advisor.flight.maneuver import InputKind
 from advisor.flight.messages import FloatArray
 from advisor.flight.shape import BAND, Shape
+from advisor.flight.stretch import RESTING_S, Stretch, at_rest, median
 from advisor.flight.swept_input import recognise_swept
 
-RESTING_S = 0.5
-"""How long the elevator must have rested before its past is looked at."""
 SMALLEST_RAD = float(np.radians(0.15))
 """Smaller inputs than this are no test inputs."""
 
-_SQUARE = {"pulse": 0.7, "doublet": 0.6, "other": 0.6}
-"""Least share of an input's time spent on its levels: half a sine reaches 0.45, a hand's steps 0.62."""
-_SQUARE_3211 = 0.4
-"""The same for a pattern whose timing already gives it away."""
+_SQUARE = {"pulse": 0.7, "doublet": 0.6, "other": 0.6, "3-2-1-1": 0.4, "reverse 3-2-1-1": 0.4}
+"""Least share of an input's time spent on its levels: half a sine reaches 0.45, a hand's steps 0.62. Less
+will do for a pattern whose timing already gives it away."""
 _SHARP = 0.2
 """Longest time from a fifth to four fifths of a step, as a share of the shortest level; a sine takes 0.23."""
 _SHARP_3211 = (0.33, 0.5)
@@ -33,8 +30,6 @@ _QUIET_S = {"pulse": 1.5, "doublet": 0.9, "other": 0.9}
 """Inputs that a correction might resemble are told from it by the quiet before them: this long."""
 _JUST_BEGUN_S = 0.1
 """Enough quiet where the record itself begins only then."""
-_SLOWEST_STEP_S = 0.25
-"""Samples farther apart than this hide the shape of an input."""
 _LEAST_LEVEL = 0.4
 """A lobe smaller than this share of the largest is no step of a known input."""
 
@@ -53,48 +48,50 @@ def recognise(t: FloatArray, u: FloatArray) -> Shape | None:
         None also when the elevator moves now, rests at another level than before the
         movement (a trim change), or moved in no recognisable way.
     """
-    resting = t >= t[-1] - RESTING_S
-    if np.count_nonzero(resting) < 3 or float(np.median(np.diff(t))) > _SLOWEST_STEP_S:
+    stretch = at_rest(t, u)
+    if stretch is None:
         return None
-    trim = float(np.median(u[resting]))
-    d = without_spikes(u) - trim
-    found = _recognised(t, d, trim, float(np.ptp(d[resting])))
-    return found if found is not None else recognise_swept(t, d, trim, SMALLEST_RAD)
+    found = _recognised(stretch)
+    return found if found is not None else recognise_swept(stretch, SMALLEST_RAD)
 
 
-def _recognised(t: FloatArray, d: FloatArray, trim: float, rest_range: float) -> Shape | None:
+def _recognised(stretch: Stretch) -> Shape | None:
     """The input of steps between the last rest and now."""
-    found = _extent(t, d, rest_range)
+    found = _extent(stretch)
     if found is None:
         return None
     before, first, last = found
-    amplitude = float(np.max(np.abs(d[first : last + 1])))
-    quiet = float(np.std(d[before:first]))
-    if amplitude < max(SMALLEST_RAD, 5.0 * quiet) or rest_range > 0.4 * amplitude:
+    # Nothing after ``last`` is larger: it would be away from trim, too.
+    amplitude = float(stretch.largest[first])
+    if amplitude < SMALLEST_RAD or stretch.rest_range > 0.4 * amplitude:
         return None
-    if abs(float(np.mean(d[before:first]))) > 0.5 * BAND * amplitude:
+    earlier = stretch.d[before:first]
+    if abs(float(earlier.mean())) > 0.5 * BAND * amplitude:
         return None
-    shape = _classify(t, d, first, last, trim, amplitude, quiet)
+    quiet = float(np.std(earlier))
+    if amplitude < 5.0 * quiet:
+        return None
+    shape = _classify(stretch, first, last, amplitude, quiet)
     if shape is None:
         return None
-    rested_s = float(t[first] - t[before])
+    rested_s = float(stretch.t[first] - stretch.t[before])
     if shape.is_3211:
         clear = rested_s >= _QUIET_S["other"] and amplitude >= 10.0 * quiet
-        return shape if _is_sharp(t, d, shape, _SHARP_3211[int(clear)]) else None
+        return shape if _is_sharp(stretch, shape, _SHARP_3211[int(clear)]) else None
     steady = rested_s >= _QUIET_S[shape.kind] and amplitude >= 8.0 * quiet
-    return shape if steady and _is_sharp(t, d, shape, _SHARP) else None
+    return shape if steady and _is_sharp(stretch, shape, _SHARP) else None
 
 
-def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, int] | None:
+def _extent(stretch: Stretch) -> tuple[int, int, int] | None:
     """Indices: start of the quiet before, first and last sample away from trim.
 
     Goes back in time from the rest: the band around trim widens with the largest deviation
     met so far, and the input ends where the elevator stays in the band for as long as it
     would between two inputs.
     """
-    largest = np.maximum.accumulate(np.abs(d)[::-1])[::-1]
-    band = np.maximum(BAND * largest, max(0.5 * SMALLEST_RAD, rest_range))
-    away = np.flatnonzero(np.abs(d) > band)
+    t = stretch.t
+    band = np.maximum(BAND * stretch.largest, max(0.5 * SMALLEST_RAD, stretch.rest_range))
+    away = np.flatnonzero(np.abs(stretch.d) > band)
     if len(away) == 0:
         return None
     last = int(away[-1])
@@ -106,43 +103,38 @@ def _extent(t: FloatArray, d: FloatArray, rest_range: float) -> tuple[int, int, 
         first = int(away[0])
         before = 0
     rested = _JUST_BEGUN_S if before == 0 else 0.8 * RESTING_S
-    before = max(before, int(np.searchsorted(t, t[first] - 1.7)))
+    before = max(before, int(t.searchsorted(t[first] - 1.7)))
     if first - before < 2 or t[first] - t[before] < rested:
         return None
     return before, first, last
 
 
-def _classify(
-    t: FloatArray, d: FloatArray, first: int, last: int, trim: float, amplitude: float, quiet: float
-) -> Shape | None:
+def _classify(stretch: Stretch, first: int, last: int, amplitude: float, quiet: float) -> Shape | None:
+    t, d = stretch.t, stretch.d
     places = lobes(d, first, last, BAND * amplitude)
-    levels = np.array([float(np.median(d[a : b + 1])) for a, b in places])
+    levels = np.array([median(d[a : b + 1]) for a, b in places])
     if np.min(np.abs(levels)) < 0.5 * BAND * amplitude:
         return None
     times = onsets(t, d, places, levels)
     durations = np.diff(times)
-    kind = _kind(
-        levels,
-        durations,
-        squareness(t, d, levels, times, quiet),
-        float(np.max(np.diff(t[first - 1 : last + 2]))),
-    )
-    if kind is None:
+    kind = _kind(levels, durations, t[first - 1 : last + 2])
+    if kind is None or squareness(t, d, levels, times, quiet) < _SQUARE[kind]:
         return None
     leaving = np.flatnonzero(np.abs(d[: first + 1]) <= 0.1 * amplitude + 2.0 * quiet)
     start_s = float(t[leaving[-1]]) if len(leaving) else float(t[first])
     start_s = max(start_s, float(times[0]) - 0.3 * float(durations[0]))
     steps = (*zip(times[:-1].tolist(), levels.tolist(), strict=True), (float(times[-1]), 0.0))
     over_s = float(t[min(last + 1, len(t) - 1)])
-    return Shape(kind, start_s, float(times[-1]), over_s, trim, amplitude, quiet, steps)
+    return Shape(kind, start_s, float(times[-1]), over_s, stretch.trim, amplitude, quiet, steps)
 
 
-def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape, share: float) -> bool:
+def _is_sharp(stretch: Stretch, shape: Shape, share: float) -> bool:
     """Whether the elevator steps from level to level, in this share of the shortest, or swings."""
+    t, d = stretch.t, stretch.d
     shortest = float(np.min(np.diff([onset for onset, _ in shape.steps])))
     least, most = _HAND_S
     longest = max(least, share * shortest) if shape.is_3211 else min(most, max(least, share * shortest))
-    longest += 1.5 * float(np.median(np.diff(t)))
+    longest += 1.5 * stretch.interval_s
     old = 0.0
     for onset, new in shape.steps:
         i = int(np.clip(np.searchsorted(t, onset), 1, len(t) - 1))
@@ -162,19 +154,17 @@ def _is_sharp(t: FloatArray, d: FloatArray, shape: Shape, share: float) -> bool:
     return True
 
 
-def _kind(levels: FloatArray, durations: FloatArray, square: float, step_s: float) -> InputKind | None:
-    """Which input these lobes are, None for movements that are no test input."""
-    sizes = np.abs(levels) / np.max(np.abs(levels))
-    even = bool(np.all(sizes >= _LEAST_LEVEL))
-    if len(levels) == 4 and square >= _SQUARE_3211 and even:
+def _kind(levels: FloatArray, durations: FloatArray, t: FloatArray) -> InputKind | None:
+    """Which input these lobes are by their timing, None for movements that are no test input."""
+    if len(levels) == 1:
+        return "pulse" if 0.08 <= durations[0] <= 4.0 else None
+    sizes = np.abs(levels)
+    even = bool(np.all(sizes / np.max(sizes) >= _LEAST_LEVEL))
+    if len(levels) == 2 and even and 0.5 <= durations[0] / durations[1] <= 2.0:
+        return "doublet"
+    if len(levels) == 4 and even:
         unit = float(np.sum(durations)) / 7.0
+        step_s = float(np.max(np.diff(t)))
         if np.all(np.abs(durations - unit * np.array([3, 2, 1, 1])) <= 0.45 * unit + step_s):
             return "3-2-1-1" if levels[0] < 0.0 else "reverse 3-2-1-1"
-    kind: InputKind = "other"
-    if len(levels) == 1 and 0.08 <= durations[0] <= 4.0:
-        kind = "pulse"
-    elif len(levels) == 2 and even and 0.5 <= durations[0] / durations[1] <= 2.0:
-        kind = "doublet"
-    if square >= _SQUARE[kind] and (kind != "other" or len(levels) > 1):
-        return kind
-    return None
+    return "other"

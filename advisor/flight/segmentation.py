@@ -10,10 +10,11 @@ on the samples alone, not on how they were delivered.
 
 import numpy as np
 
-from advisor.flight.input_shape import RESTING_S, SMALLEST_RAD, recognise
+from advisor.flight.input_shape import SMALLEST_RAD, recognise
 from advisor.flight.maneuver import Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.shape import Shape
+from advisor.flight.stretch import RESTING_S, median, range_of
 
 LEAD_IN_S = 1.0
 """How much of the flight before the first step belongs to the record."""
@@ -99,18 +100,19 @@ class Segmenter:
     def _look(self, t: float) -> None:
         window = slice(self._from, self._size)
         times, u = self._t[window], self._u[window]
-        resting = u[np.searchsorted(times, t - RESTING_S) :]
-        self._watch_onset(times, u, resting)
-        if np.ptp(u) < SMALLEST_RAD or np.ptp(resting) > 0.5 * np.ptp(u):
+        resting = u[times.searchsorted(t - RESTING_S) :]
+        rest_range, moved = range_of(resting), range_of(u)
+        self._watch_onset(times, resting, rest_range)
+        if moved < SMALLEST_RAD or rest_range > 0.5 * moved:
             return
         self._pending = recognise(times, u)
         self._away.clear()
 
-    def _watch_onset(self, times: FloatArray, u: FloatArray, resting: FloatArray) -> None:
+    def _watch_onset(self, times: FloatArray, resting: FloatArray, rest_range: float) -> None:
         """Keep track of rest, and of when the elevator left it with a step."""
-        steady = len(resting) > 2 and np.ptp(resting) <= SMALLEST_RAD
+        steady = len(resting) > 2 and rest_range <= SMALLEST_RAD
         if steady and (self._level is None or abs(float(resting[-1]) - self._level) <= SMALLEST_RAD):
-            self._level, self._onset_s = float(np.median(resting)), None
+            self._level, self._onset_s = median(resting), None
         elif self._level is not None and self._onset_s is None:
             away = np.abs(resting - self._level)
             gone = np.flatnonzero(away > SMALLEST_RAD)
@@ -133,7 +135,7 @@ class Segmenter:
         else:
             self._away.clear()
         duration = shape.last_step_s - shape.start_s
-        end_s = shape.last_step_s + float(np.clip(duration, *_FREE_S))
+        end_s = shape.last_step_s + min(max(duration, _FREE_S[0]), _FREE_S[1])
         return self._end("quiet", end_s) if t >= end_s else None
 
     def _end_with_mode(self) -> Span | None:

@@ -14,6 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from advisor.flight.lobes import lobes, onsets
 from advisor.flight.messages import FloatArray
 from advisor.flight.shape import Shape
+from advisor.flight.stretch import Stretch, median, range_of
 
 STILL_S = 1.0
 """The elevator keeps still for so long before and after."""
@@ -41,20 +42,21 @@ _SWELLS = 0.3
 """... and an earlier half smaller than this share of the later one is a movement that grows."""
 
 
-def recognise_swept(t: FloatArray, d: FloatArray, trim: float, least: float) -> Shape | None:
+def recognise_swept(stretch: Stretch, least: float) -> Shape | None:
     """The multisine or sweep after which the elevator has just come to rest, if there is one.
 
     Parameters
     ----------
-    t, d
-        Shape (n,): stamps (s) and deviation from ``trim`` (rad), up to now.
+    stretch
+        The elevator up to now.
     least
         Smallest amplitude of a test input, rad.
     """
-    found = _between_rests(t, d)
+    found = _between_rests(stretch)
     if found is None:
         return None
     first, last, start_s, quiet, unrest = found
+    t, d = stretch.t, stretch.d
     moved = d[first : last + 1]
     amplitude = float(np.max(np.abs(moved)))
     if amplitude < max(least, 5.0 * quiet) or unrest > _RESTLESS * amplitude:
@@ -66,13 +68,15 @@ def recognise_swept(t: FloatArray, d: FloatArray, trim: float, least: float) -> 
     if late < _DIES_AWAY * early or early < _SWELLS * late:
         return None
     places = lobes(d, first, last, _AT_TRIM * amplitude)
+    if len(places) < _FEWEST_LOBES:
+        return None
     levels = np.array([float(np.max(np.abs(d[a : b + 1])) * np.sign(d[a])) for a, b in places])
     times = onsets(t, d, places, levels)
-    if len(places) < _FEWEST_LOBES or float(np.median(np.diff(times))) > _SLOWEST_LOBE_S:
+    if median(np.diff(times)) > _SLOWEST_LOBE_S:
         return None
     end_s = float(t[last])
     steps = (*zip(times[:-1].tolist(), levels.tolist(), strict=True), (end_s, 0.0))
-    return Shape("multisine", start_s, end_s, float(t[last + 1]), trim, amplitude, quiet, steps)
+    return Shape("multisine", start_s, end_s, float(t[last + 1]), stretch.trim, amplitude, quiet, steps)
 
 
 class _Movement(NamedTuple):
@@ -90,23 +94,30 @@ class _Movement(NamedTuple):
     """Range in the newest half of the rest after."""
 
 
-def _between_rests(t: FloatArray, d: FloatArray) -> _Movement | None:
+def _between_rests(stretch: Stretch) -> _Movement | None:
     """The movement before the rest just reached.
 
     Goes back in time from now: what counts as still grows with the largest deviation met so far.
     """
-    width = round(STILL_S / float(np.median(np.diff(t)))) + 1
+    t, d, largest = stretch.t, stretch.d, stretch.largest
+    width = round(STILL_S / stretch.interval_s) + 1
     if len(t) < 3 * width:
         return None
-    unrest = float(np.ptp(d[-(width // 2) :]))
-    newly = max(0, int(np.searchsorted(t, t[-1] - _NEWLY_S)) - width + 1)
-    *_, still = _windows(d[newly:], width, unrest)
-    if np.all(still) or not still[-1]:
+    unrest = range_of(d[-(width // 2) :])
+    still_now = max(_STILL * float(largest[-width]), _NOISE * unrest)
+    newly = max(0, int(t.searchsorted(t[-1] - _NEWLY_S)) - width + 1)
+    # What counts as still only shrinks on the way to now: what passes now's measure passes its own.
+    if range_of(d[-width:]) > still_now or range_of(d[newly:]) <= still_now:
         return None
-    windows, ranges, largest, still = _windows(d, width, unrest)
+    ranges = _ranges(d, width)
+    largest = largest[: len(ranges)]
+    still = ranges <= np.maximum(_STILL * largest, _NOISE * unrest)
     moving = np.flatnonzero(~still)
+    if len(moving) == 0 or moving[-1] < newly:
+        return None
     last = int(moving[-1])
-    at_trim = np.abs(windows[:last].mean(axis=1)) <= _AT_TRIM * largest[:last]
+    windows = sliding_window_view(d, width)[:last]
+    at_trim = np.abs(windows.mean(axis=1)) <= _AT_TRIM * largest[:last]
     rests = np.flatnonzero(still[:last] & at_trim)
     if len(rests) == 0 or last < rests[-1] + 2 * width:
         return None
@@ -116,14 +127,15 @@ def _between_rests(t: FloatArray, d: FloatArray) -> _Movement | None:
     return _Movement(rest + width - 1, last, float(t[start + width - 1]), quiet, unrest)
 
 
-def _windows(
-    d: FloatArray, width: int, unrest: float
-) -> tuple[FloatArray, FloatArray, FloatArray, np.ndarray]:
-    """All windows of a length: their samples, ranges, the largest deviation since, and which are still."""
-    windows = sliding_window_view(d, width)
-    ranges = windows.max(axis=1) - windows.min(axis=1)
-    largest = np.maximum.accumulate(np.abs(d)[::-1])[::-1][: len(ranges)]
-    return windows, ranges, largest, ranges <= np.maximum(_STILL * largest, _NOISE * unrest)
+def _ranges(d: FloatArray, width: int) -> FloatArray:
+    """Range over every window of this length: two that overlap make one up to twice as long."""
+    high = low = d
+    length = 1
+    while length < width:
+        more = min(length, width - length)
+        high, low = np.maximum(high[more:], high[:-more]), np.minimum(low[more:], low[:-more])
+        length += more
+    return high - low
 
 
 def _before_it_swells(ranges: FloatArray, rest: int, width: int, amplitude: float) -> int:
