@@ -58,6 +58,13 @@ class BootClock:
         time_boot_ms
             Shape (n,), as received.
         """
+        newest_ms = time_boot_ms[:1] if self._newest_ms is None else self._newest_ms
+        ahead_ms = np.diff(time_boot_ms, prepend=newest_ms)
+        if len(ahead_ms) and np.all((ahead_ms >= 0) & (ahead_ms <= _SILENCE_MS)):
+            # In order and without a silence, as nearly always: all of them are believed.
+            self._newest_ms = int(time_boot_ms[-1])
+            self._doubt.clear()
+            return MasterStamps(time_boot_ms.astype(np.float64) * _MS, np.full(len(time_boot_ms), self.boot))
         t = np.full(len(time_boot_ms), np.nan)
         boot = np.empty(len(time_boot_ms), dtype=np.int64)
         for i, raw in enumerate(time_boot_ms.tolist()):
