@@ -221,7 +221,7 @@ class FlightStream:
         for boot, (a, b) in zip(boots.tolist(), pairwise(edges), strict=True):
             believed = (ticks.boot == boot) & np.isfinite(ticks.t)
             master = _Master(boot, attitude.order[believed], ticks.t[believed], pitch[believed])
-            yield between(mine, a, b), master
+            yield between(mine, a, b) if len(boots) > 1 else list(mine), master
 
     def _feed_part(self, part: Sequence[Columns], master: _Master, vehicle: Vehicle) -> list[FlightEvent]:
         """Columns of one boot: channels first, then the elevator sample by sample."""
