@@ -47,7 +47,7 @@ class Track:
             return
         before = self.newest_s if self._size else float(t[0])
         newest = np.maximum.accumulate(np.concatenate(([before], t)))
-        self.largest_gap_s = max(self.largest_gap_s, float(np.max(np.diff(newest))))
+        self.largest_gap_s = max(self.largest_gap_s, float((newest[1:] - newest[:-1]).max()))
         self.newest_s = float(newest[-1])
         self._make_room(len(t))
         new = slice(self._size, self._size + len(t))
