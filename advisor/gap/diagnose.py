@@ -20,7 +20,7 @@ from advisor.gap.fit import Fitted, solve_blocks
 from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.layout import DERIVATIVES
-from advisor.gap.leftover import Leftover, left_over, of_the_wind, other_than_air
+from advisor.gap.leftover import Leftover, left_over, of_the_wind, other_than_air, swinging
 from advisor.gap.linear import linearise
 from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
@@ -124,7 +124,11 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     leftover = left_over(problem, stages[0].fitted, last, stated, moving_air=air is not None)
     if air is not None and (leftover is None or leftover.block == "air"):
         leftover = other_than_air(problem, stages[0].fitted, last)
+    # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
+    leftover = swinging(problem, stages[0].fitted, last, stated) or leftover
     floor = np.minimum(quiet_rms(problem, last), np.sqrt(stages[-1].held_out.mean_square))
+    if leftover is not None and leftover.in_quiet is not None:
+        floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, white**2))
     return Evidence(
         problem,
         stages,

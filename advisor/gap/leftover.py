@@ -18,6 +18,7 @@ from advisor.gap.noise import unfiltered
 from advisor.gap.origin import stick_or_motion
 from advisor.gap.probes import SENSOR_CHANNELS, Probe, disturbance_course, probe_blocks
 from advisor.gap.problem import Problem
+from advisor.gap.tone import tone_in
 
 _LEAST_GAIN = 100.0
 """Log likelihood a disturbance must bring ..."""
@@ -33,10 +34,14 @@ _LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
 _OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that."""
+_OF_PEAK_SWINGING = 0.005
+"""The same for a motion at one frequency: no error of a model looks like that."""
 _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
 _DOUBT = 2.5
 """Where the floor is stated, not measured, an unknown cause must exceed it this many times."""
+_VISIBLE = 0.05
+"""Power of a swing, beside the instruments' noise, from which on there is something to explain."""
 _BETTER_THAN_AIR = 1.25
 """What another block must take up of a residual, beside what the air does; in moving air at most 1.15."""
 _FAR, _SURPRISE = 6.0, 4.0
@@ -56,6 +61,8 @@ class Leftover:
     """Of the power that is left, taken up by an unknown disturbance there."""
     ranking: tuple[tuple[str, float], ...]
     """Block and score, 1 for the likeliest."""
+    in_quiet: FloatArray | None = None
+    """Shape (channels,): mean square of what it does where nothing is flown, too; None: next to nothing."""
 
 
 def of_the_wind(found: Leftover | None) -> Leftover:
@@ -109,6 +116,25 @@ def left_over(
         return None
     block = _block(problem, last, _instruments(problem), probes)
     return Leftover(block, best.explained, _ranking(probes, block))
+
+
+def swinging(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) -> Leftover | None:
+    """What swings of itself, where it is more than an instrument's noise. Arguments as in ``left_over``."""
+    noise, instruments = _noise(problem), _instruments(problem)
+    tone = tone_in(problem, last, noise)
+    if tone is None or tone.probes[0].gain < _LEAST_GAIN or tone.probes[0].block == "air":
+        return None
+    best = tone.probes[0]
+    least = _OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
+    if not np.any(tone.power > np.maximum(least * problem.flights.peaks, stated) ** 2):
+        return None
+    if float(np.mean(tone.power / instruments**2)) < _VISIBLE:
+        return None
+    powers = (rms_of(problem, last.innovations) / noise) ** 2
+    taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
+    if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
+        return None
+    return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power)
 
 
 def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | None:

@@ -28,7 +28,7 @@ SENSOR_CHANNELS = {
     "accelerometer": "a_z",
     "attitude_sensor": "theta",
 }
-_DYNAMIC = {
+DYNAMIC = {
     "input": DISTURB_INPUT,
     "force_equation": DISTURB_FORCE,
     "moment_equation": DISTURB_MOMENT,
@@ -65,7 +65,7 @@ def probe_blocks(
     noise
         Shape (channels,): of the innovations, or, without a filter, what the instruments alone leave.
     """
-    wanted = [*_DYNAMIC, *SENSOR_CHANNELS, "air unseen"] if blocks is None else list(blocks)
+    wanted = [*DYNAMIC, *SENSOR_CHANNELS, "air unseen"] if blocks is None else list(blocks)
     found = []
     for block in wanted:
         if block in SENSOR_CHANNELS and SENSOR_CHANNELS[block] not in problem.channels:
@@ -120,7 +120,7 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
     if block in SENSOR_CHANNELS:
         response[OUTPUTS.index(SENSOR_CHANNELS[block]), : len(shape)] = shape
     else:
-        where = _DYNAMIC["air" if block.startswith("air") else block]
+        where = DYNAMIC["air" if block.startswith("air") else block]
         pulse = pulse_response(problem, flight, p, where)
         for c in range(4):
             response[c] = np.convolve(pulse[c], shape)[:n] * flight.h

@@ -52,16 +52,16 @@ SWITCHES = {
     "vane_lag": 0.0, "vane_arm": 0.0, "mode_gain": 0.0, "mode_hz": 5.0, "acc_arm": 0.0,
     "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
     "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0, "before_lag": 0.0,
-    "speed_power": 0.0, "power_from": 22.0,
+    "speed_power": 0.0, "power_from": 22.0, "beat": 0.0, "beat_hz": 1.3,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
- KINK, KWIDTH, WASH, BEFORE, POWER, FROM) = range(len(SWITCHES))  # fmt: skip
+ KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
-def _integrate(n, command, gust, thrust_wave, body, sw, out):
+def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
     (mass, iyy, area, chord, speed, cl0, cla, clq, clde, cd0, induced, cma, cmq, cmde, cmad) = body
     rho = 1.225
     # Trim: α for lift = weight at level flight, thrust for drag, elevator taken as zero there.
@@ -128,6 +128,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, out):
             + sw[HYST] * (a - hyst)
             + sw[QSQ] * q * abs(q)
             + sw[ECM] * (extra - de)
+            + sw[BEAT] * np.sin(2 * np.pi * sw[BEATHZ] * t + phase)
         )
         lift, drag = qb * cl, qb * cd
         fx = -drag * np.cos(a) + lift * np.sin(a) + thrust
@@ -240,7 +241,7 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
             inside = (t > at) & (t < at + 0.8)
             gust = gust + setup.gust_pulse * 0.5 * (1 - np.cos(2 * np.pi * (t - at) / 0.8)) * inside
         out = np.zeros((8, n))
-        _integrate(n, command, gust, wave, body, sw, out)
+        _integrate(n, command, gust, wave, body, sw, 2.4 * i, out)
         result.append(_measure(setup, rng, i, t, command, out, start))
     return result
 
