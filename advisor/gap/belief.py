@@ -1,4 +1,4 @@
-"""What the aircraft file's derivatives are worth as evidence.
+"""What the aircraft file is worth as evidence.
 
 Either the simulator's derivatives are right, and an effect is missing; or they are off, by tens of per
 cent. Both are given the same chance beforehand. Where the data leave a choice (a dead-band or less
@@ -15,6 +15,13 @@ WIDE = 0.3
 """Relative error of derivatives that are not."""
 _CHI_SQUARE_999, _CHI_SQUARE_500 = 22.46, 5.35
 """Of six degrees of freedom, exceeded once in a thousand times, and every other time."""
+
+_STATED = -4.0
+"""Log odds of an arm that the aircraft file states, against its twin that the file leaves open; and of a
+vane's where the angle of attack is an estimate."""
+_BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
+"""Log odds of an arm that points backwards. The two are one and the same in the data; but a vane
+behind the centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""
 
 
 def scale_of(believed: FloatArray) -> FloatArray:
@@ -69,3 +76,15 @@ def is_off(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray
 
 def _distance(off: FloatArray, spread: FloatArray) -> float:
     return float(off @ np.linalg.solve(spread, off))
+
+
+def odds_of_arm(effect: str, arm_m: float, stated: frozenset[str], alpha_is_derived: bool) -> float:
+    """Log odds beforehand between the two arms that are one and the same in the data; 0 for other effects.
+
+    ``stated`` are the effects whose arm the file states.
+    """
+    if effect not in _BACKWARD:
+        return 0.0
+    only_one_stated = len(stated) == 1 and effect in stated
+    no_vane = effect == "alpha_vane_offset" and alpha_is_derived
+    return (_BACKWARD[effect] if arm_m < 0.0 else 0.0) + (_STATED if only_one_stated or no_vane else 0.0)

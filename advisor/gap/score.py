@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.belief import NARROW, is_off, log_belief, scale_of
+from advisor.gap.belief import NARROW, is_off, log_belief, odds_of_arm, scale_of
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import independent_samples, prefiltered
 from advisor.gap.holdout import HeldOut, has_lone_witness, hold_out
@@ -17,6 +17,8 @@ LEAST_GAIN = 6.0
 """Log likelihood, on held-out manoeuvres and after the price of its numbers, that an effect must bring."""
 _UNCONFIRMED = 20.0
 """The same of what a single manoeuvre tells, which no other can confirm."""
+_WITH_THE_AIR = 40.0
+"""The same in moving air of what air speed, throttle or height tell: they move with the air themselves."""
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
 LEAST_SIGMA = 3.0
@@ -42,12 +44,6 @@ LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
 _SUPPORT = 4.0
 """The same of an effect that is certain anyway."""
-_STATED = -4.0
-"""Log odds of an arm that the aircraft file states, against its twin that the file leaves open; and of a
-vane's where the angle of attack is an estimate."""
-_BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
-"""Log odds of an arm that points backwards. The two are one and the same in the data; but a vane
-behind the centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +69,8 @@ class Judged:
     std: FloatArray
     unconfirmed: bool = False
     """A single manoeuvre tells of it: ``gain`` and ``removed`` are the fit's own."""
+    with_the_air: bool = False
+    """The air moves, and with it the channel that tells of the effect."""
 
     @property
     def effect(self) -> str:
@@ -93,6 +91,8 @@ class Judged:
     @property
     def least_gain(self) -> float:
         """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
+        if self.with_the_air:
+            return _WITH_THE_AIR
         if self.unconfirmed:
             return _UNCONFIRMED
         return 0.0 if self.variant.twin is not None and self.belief >= LEAST_BELIEF else LEAST_GAIN
@@ -158,7 +158,7 @@ def addition(
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
-    odds = _odds_of_arm(problem, variant.effect, float(value[0]))
+    odds = odds_of_arm(variant.effect, float(value[0]), problem.stated, problem.flights.alpha_is_derived)
     least = least_change(problem)
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
@@ -167,6 +167,7 @@ def addition(
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant),
         belief=belief, value=value, unconfirmed=unconfirmed,
+        with_the_air=bool(variant.needs) and problem.knows_the_noise,
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
 
@@ -187,15 +188,6 @@ def price_of_edges(problem: Problem, fitted: Fitted) -> float:
     """
     noise = float(np.sum(counts(problem) * 2.0 * np.log(fitted.noise)))
     return fitted.cost - noise - problem.disbelief(fitted.point)
-
-
-def _odds_of_arm(problem: Problem, effect: str, arm_m: float) -> float:
-    """Log odds beforehand between the two arms that are one and the same in the data; 0 for other effects."""
-    if effect not in _BACKWARD:
-        return 0.0
-    only_one_stated = len(problem.stated) == 1 and effect in problem.stated
-    no_vane = effect == "alpha_vane_offset" and problem.flights.alpha_is_derived
-    return (_BACKWARD[effect] if arm_m < 0.0 else 0.0) + (_STATED if only_one_stated or no_vane else 0.0)
 
 
 def least_change(problem: Problem) -> float:

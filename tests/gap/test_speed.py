@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
+from advisor.gap.holdout import hold_out
+from advisor.gap.ranking import judge
+from advisor.gap.score import LEAST_GAIN
+from advisor.gap.screen import Screen
 from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED, THRUST
 from advisor.gap.speed import swings, work
 from tests.gap.generator import Setup, fly
@@ -74,6 +79,21 @@ def test_forces_that_do_not_grow_with_the_speed_squared_are_named_with_their_pow
     assert abs(exponent.value + 0.8) < 2.5 * exponent.std
     assert "with its power 1.2" in found.sentence
     assert [effect for effect, _ in found.waterfall] == ["airspeed_variation"]
+
+
+def test_what_the_air_speed_tells_takes_more_in_air_that_moves_with_it():
+    needed = {}
+    for gust_std in (0.0, 0.3):
+        setup = Setup(
+            maneuvers=4, speed_change=0.12, switches={"speed_power": -1.5}, gust_std=gust_std, seed=8
+        )
+        problem, plain = fit_baseline(prepare(fly(setup), Aircraft()), Aircraft())
+        power = [v for v in variants_for(problem.flights) if v.effect == "airspeed_variation"]
+        found = Screen(problem, plain).quick_fits(power)
+        [judged] = judge(problem, plain, hold_out(problem, plain), found)
+        needed[gust_std] = judged.least_gain
+    assert needed[0.0] == LEAST_GAIN
+    assert needed[0.3] >= 4.0 * LEAST_GAIN
 
 
 def test_a_power_of_the_speed_is_not_looked_for_where_the_speed_hardly_moved():
