@@ -17,7 +17,7 @@ LEAST_GAIN = 6.0
 """Log likelihood, on held-out manoeuvres and after the price of its numbers, that an effect must bring."""
 _UNCONFIRMED = 20.0
 """The same of what a single manoeuvre tells, which no other can confirm."""
-_WITH_THE_AIR = 40.0
+_WITH_THE_AIR = 30.0
 """The same in moving air of what air speed, throttle or height tell: they move with the air themselves."""
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
