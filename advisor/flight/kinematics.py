@@ -14,6 +14,7 @@ import numpy as np
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
+from advisor.flight.renewal import renewed
 
 GRAVITY_M_S2 = 9.80665
 NEEDED = ("alpha", "q", "theta", "a_z")
@@ -92,7 +93,7 @@ def check_alpha(
             f"alpha cannot be checked against the motion: no {listed} in this log.",
             tuple(missing),
         )
-    t_alpha, alpha = _renewed(found["alpha"].t, found["alpha"].y)
+    t_alpha, alpha = renewed(found["alpha"].t, found["alpha"].y)
     t = found["q"].t
 
     def at(name: str) -> FloatArray:
@@ -115,12 +116,6 @@ def check_alpha(
     )
     rebuilt = np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
     return _compare(t, rebuilt, rate, t_alpha, alpha, _bias(maneuver, speed, t, theta))
-
-
-def _renewed(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Only the samples that bring a new value, when the channel repeats old ones under fresh stamps."""
-    new = np.concatenate(([True], np.diff(y) != 0.0))
-    return (t[new], y[new]) if np.mean(new) < 0.7 else (t, y)
 
 
 def _bias(maneuver: Maneuver, speed: FloatArray, t: FloatArray, theta: FloatArray) -> tuple[float, float]:

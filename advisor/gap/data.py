@@ -8,9 +8,10 @@ import numpy as np
 from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
+from advisor.flight.renewal import renewed
 from advisor.gap.airspeed import airspeed_on, along_the_path
 from advisor.gap.layout import OUTPUTS
-from advisor.gap.provenance import is_estimate, renewed
+from advisor.gap.provenance import is_estimate
 from advisor.gap.simulate import GRAVITY_M_S2, THRUST
 from advisor.gap.smoothness import is_filtered, is_smoothed, white_part
 

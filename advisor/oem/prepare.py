@@ -9,6 +9,7 @@ from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
+from advisor.flight.renewal import renewed
 from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lost_input import restored
@@ -20,8 +21,6 @@ SPEED_CHANGE = 0.03
 """Beyond this relative change of air speed the derivatives are scaled with it ..."""
 SMOOTH_SPEED_CHANGE = 0.01
 """... and already beyond this one when its shape comes from the accelerometers: no noise can pass for it."""
-REPEATED_SHARE = 0.3
-"""A channel whose samples repeat the last value more often than this is held between renewals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +63,7 @@ def prepare(
         speed.signal if speed is not None and together else _constant(maneuver, aircraft.airspeed_m_s)
         for maneuver, speed in zip(maneuvers, speeds, strict=True)
     ]
-    alphas = [renewed(_signal(m.channels["alpha"])) for m in maneuvers]
+    alphas = [_renewed(_signal(m.channels["alpha"])) for m in maneuvers]
     records = tuple(
         _record(maneuver, signal, alpha, usable)
         for maneuver, signal, (alpha, _) in zip(maneuvers, signals, alphas, strict=True)
@@ -90,15 +89,14 @@ def prepare(
     )
 
 
-def renewed(signal: Signal) -> tuple[Signal, bool]:
+def _renewed(signal: Signal) -> tuple[Signal, bool]:
     """Samples that bring a new value, and whether the channel is held between them.
 
     A staircase under fresh stamps would count each value several times, and late.
     """
-    fresh = np.concatenate([[True], np.diff(signal.y) != 0.0])
-    if np.count_nonzero(~fresh) <= REPEATED_SHARE * len(fresh) or np.count_nonzero(fresh) < FEWEST_SAMPLES:
-        return signal, False
-    return Signal(signal.t[fresh], signal.y[fresh]), True
+    t, y = renewed(signal.t, signal.y)
+    held = FEWEST_SAMPLES <= len(t) < len(signal.t)
+    return (Signal(t, y), True) if held else (signal, False)
 
 
 def _has(channels: Mapping[str, Channel], name: str) -> bool:

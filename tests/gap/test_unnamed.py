@@ -77,6 +77,21 @@ def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane():
     assert found.where.block == "alpha_sensor"
 
 
+def test_a_vane_that_sticks_for_long_is_unknown_in_the_vane_and_not_a_channel_that_repeats_itself():
+    sticky = []
+    for maneuver in fly(Setup(maneuvers=6, seed=29)):
+        alpha = maneuver.channels["alpha"]
+        shown, stuck = alpha.y[0], []
+        for value in alpha.y:
+            shown = value if abs(value - shown) > 0.012 else shown
+            stuck.append(shown)
+        channels = {**maneuver.channels, "alpha": replace(alpha, y=np.array(stuck))}
+        sticky.append(replace(maneuver, channels=channels))
+    found = diagnose(sticky, Aircraft())
+    assert found.verdict == "unknown"
+    assert found.where.block == "alpha_sensor"
+
+
 def test_two_effects_are_both_named_the_larger_one_first():
     flown = fly(Setup(maneuvers=6, switches={"delay": 0.06}, alpha_scale=0.1, seed=23))
     found = diagnose(flown, Aircraft())
