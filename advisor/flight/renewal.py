@@ -6,16 +6,14 @@ from advisor.flight.messages import FloatArray
 
 _MOSTLY_NEW = 0.7
 """Share of new values from which on nothing is sent twice."""
-_STUCK_S = 0.5
-"""No channel that is worth anything is renewed less often."""
 
 
-def renewed(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+def renewed(t: FloatArray, y: FloatArray, fewest: int = 1) -> tuple[FloatArray, FloatArray]:
     """Only samples that bring a new value, when a channel repeats old ones; ``t`` and ``y`` of shape (n,).
 
-    What rests for longer was not sent again: the sensor is stuck, or nothing moves.
+    Where fewer than ``fewest`` would be left, the sensor is stuck, and was read all the same.
     """
     new = np.concatenate(([True], np.diff(y) != 0.0))
-    if np.mean(new) >= _MOSTLY_NEW or np.max(np.diff(t[new], append=t[-1:])) > _STUCK_S:
+    if np.mean(new) >= _MOSTLY_NEW or np.count_nonzero(new) < fewest:
         return t, y
     return t[new], y[new]

@@ -220,7 +220,7 @@ def _outputs(m: Maneuver, start: float, end: float) -> dict[str, Measured]:
         if channel is None or len(channel) < LEAST_SAMPLES:
             continue
         cut = channel.cut(start, end)
-        t, y = renewed(cut.t - start, cut.y)
+        t, y = renewed(cut.t - start, cut.y, LEAST_SAMPLES)
         if len(t) >= LEAST_SAMPLES:
             outputs[name] = Measured(t, y)
     return outputs

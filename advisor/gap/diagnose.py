@@ -22,6 +22,7 @@ from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.layout import DERIVATIVES
 from advisor.gap.leftover import Leftover, left_over, of_the_wind, other_than_air, swinging
 from advisor.gap.linear import linearise
+from advisor.gap.misread import misread
 from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
 from advisor.gap.result import Diagnosis
@@ -105,6 +106,9 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     variants = variants_for(problem.flights)
     white = stated_floor(problem.flights)
     stages = build_up(problem, baseline, variants, progress)
+    scale = misread(problem, stages)
+    if scale is not None:
+        stages = reduced_to(problem, stages, [])
     air = None
     last = stages[-1].fitted
     samples = sum(len(f.outputs["q"].t) for f in problem.flights.flights)
@@ -125,7 +129,7 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     if air is not None and (leftover is None or leftover.block == "air"):
         leftover = other_than_air(problem, stages[0].fitted, last)
     # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
-    leftover = swinging(problem, stages[0].fitted, last, stated) or leftover
+    leftover = scale or swinging(problem, stages[0].fitted, last, stated) or leftover
     floor = np.minimum(quiet_rms(problem, last), np.sqrt(stages[-1].held_out.mean_square))
     if leftover is not None and leftover.in_quiet is not None:
         floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, white**2))

@@ -149,11 +149,7 @@ def addition(
     # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
     unconfirmed = bool(variant.needs) and has_lone_witness(problem, fitted, at)
     seen_before, seen_after = (before, fitted) if unconfirmed else (held_before, held)
-    # What was gained on manoeuvres kept out, but by luck not more than in the fit itself.
-    ratio = np.log(held_before.innovations / held.innovations)
-    fitted_ratio = np.log((before.noise / fitted.noise) ** 2)
-    ratios = (fitted_ratio,) if unconfirmed else (ratio, fitted_ratio)
-    likelihood = min(float(np.sum(independent / 2.0 * r)) for r in ratios)
+    likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed)
     likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
@@ -170,6 +166,24 @@ def addition(
         with_the_air=bool(variant.needs) and problem.knows_the_noise,
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
+
+
+def log_likelihood_gained(
+    before: Fitted,
+    held_before: HeldOut,
+    after: Fitted,
+    held_after: HeldOut,
+    independent: FloatArray,
+    unconfirmed: bool = False,
+) -> float:
+    """What was gained on manoeuvres kept out, but by luck not more than in the fit itself.
+
+    ``unconfirmed``: no other manoeuvre could confirm it, so the fit is asked alone.
+    """
+    ratios = [np.log((before.noise / after.noise) ** 2)]
+    if not unconfirmed:
+        ratios.append(np.log(held_before.innovations / held_after.innovations))
+    return min(float(np.sum(independent / 2.0 * r)) for r in ratios)
 
 
 def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:

@@ -36,7 +36,7 @@ LANES = 8
     STEP_AT, STEP_Z_ALPHA, STEP_Z_DELTA, STEP_M_ALPHA, STEP_M_DELTA,
     ALPHA_LAG, ALPHA_SCALE, ALPHA_BIAS, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
-    ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY,
+    ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY, A_Z_SCALE, THETA_SCALE,
 ) = range(len(ENTRIES))  # fmt: skip
 # Rows of the slow inputs, one value a step.
 SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST = range(6)
@@ -225,10 +225,9 @@ def simulate(
                 )
                 out[k, i, 1, m] = ((1.0 + x[Q_SCALE, m]) * q + x[Q_BIAS, m] + x[MODE_GAIN, m] * x[BEND, m]
                                    + x[MODE_RATE_GAIN, m] * x[BEND_RATE, m] * x[SOFTNESS, m])  # fmt: skip
-                out[k, i, 2, m] = (V * x[NORMAL_0, m] + a_x * x[SIN_ALPHA, m]) / x[COS_ALPHA, m] - x[
-                    IMU_ARM, m
-                ] * x[QDOT_0, m]
-                out[k, i, 3, m] = theta
+                a_z = (V * x[NORMAL_0, m] + a_x * x[SIN_ALPHA, m]) / x[COS_ALPHA, m]
+                out[k, i, 2, m] = (1.0 + x[A_Z_SCALE, m]) * (a_z - x[IMU_ARM, m] * x[QDOT_0, m])
+                out[k, i, 3, m] = trim[1] + (1.0 + x[THETA_SCALE, m]) * (theta - trim[1])
                 # A search may try an unstable aircraft: its motion stays finite, and is rejected by its cost.
                 x[ALPHA, m] = min(max(alpha + h * x[KA, m], -1.5), 1.5)
                 x[Q, m] = min(max(q + h * x[KQ, m], -15.0), 15.0)

@@ -94,9 +94,8 @@ def _renewed(signal: Signal) -> tuple[Signal, bool]:
 
     A staircase under fresh stamps would count each value several times, and late.
     """
-    t, y = renewed(signal.t, signal.y)
-    held = FEWEST_SAMPLES <= len(t) < len(signal.t)
-    return (Signal(t, y), True) if held else (signal, False)
+    t, y = renewed(signal.t, signal.y, FEWEST_SAMPLES)
+    return Signal(t, y), len(t) < len(signal.t)
 
 
 def _has(channels: Mapping[str, Channel], name: str) -> bool:
