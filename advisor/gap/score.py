@@ -31,7 +31,7 @@ _BY_NATURE = frozenset(
     }
 )  # fmt: skip
 """... but for what every aircraft has to some degree, or what takes its shape; and times must be
-twice the least."""
+twice the least, and steps that may have come between any two manoeuvres."""
 _OF_PEAK = 0.003
 """Share of each channel's peak that an effect must change."""
 _DOUBT = 2.5
@@ -191,7 +191,7 @@ def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: Flo
     alone = all(effect.always for effect in before.point.effects)
     if not alone or problem.knows_the_noise or variant.effect in _BY_NATURE:
         return 1.0
-    times = 2.0 if variant.names[0] in TIMES else 1.0
+    times = 2.0 if variant.names[0] in TIMES or variant.fixed else 1.0
     return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0
 
 
