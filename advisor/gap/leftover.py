@@ -120,7 +120,7 @@ def left_over(
 
 def swinging(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) -> Leftover | None:
     """What swings of itself, where it is more than an instrument's noise. Arguments as in ``left_over``."""
-    noise, instruments = _noise(problem), _instruments(problem)
+    noise, instruments = _noise(problem), np.maximum(_instruments(problem), 1e-12)
     tone = tone_in(problem, last, noise)
     if tone is None or tone.probes[0].gain < _LEAST_GAIN or tone.probes[0].block == "air":
         return None

@@ -44,6 +44,9 @@ def misread(problem: Problem, stages: list[Stage]) -> Leftover | None:
     named = _gain_of_all(problem, stages)
     if not scaled.worth_naming or scaled.gain < max(_CERTAIN, named + _LIKELIER):
         return None
+    # Likelier though it removes less of the gap: it stands beside what was named, not in its place.
+    if scaled.removed < sum(s.added.removed for s in stages if s.added is not None):
+        return None
     left = scaled.held_out.mean_square / held.mean_square
     block = likeliest.variant.block
     rivals = {BLOCK_OF[j.effect]: _share(j, scaled) for j in reversed(stages[0].considered)}

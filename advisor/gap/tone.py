@@ -27,6 +27,7 @@ _LINE = 3.0
 _ABOVE = 5.0
 """Power of the line, over the white noise's and over the highest elsewhere."""
 _POINTS = 4096
+"""Of the spectrum, at least."""
 
 
 @dataclass(frozen=True)
@@ -66,11 +67,12 @@ def line_of(records: Sequence[FloatArray], interval_s: float) -> tuple[float, fl
     That is the smaller of its power over white noise's of the same variance and over the highest power
     off the line. Samples count as equally far apart.
     """
-    hz = np.fft.rfftfreq(_POINTS, interval_s)
     long = [r for r in records if len(r) > 2.0 * _SWINGS]
     if not long:
         return 0.0, 0.0
-    power = np.mean([_spectrum(r) for r in long], axis=0)
+    points = max(_POINTS, *map(len, long))
+    hz = np.fft.rfftfreq(points, interval_s)
+    power = np.mean([_spectrum(r, points) for r in long], axis=0)
     per_record = 1.0 / (interval_s * float(np.median([len(r) for r in long])))
     fast = hz >= _SWINGS * per_record
     if not np.any(fast):
@@ -80,10 +82,10 @@ def line_of(records: Sequence[FloatArray], interval_s: float) -> tuple[float, fl
     return float(hz[peak]), float(power[peak] / max(1.0, float(np.max(power[off], initial=0.0))))
 
 
-def _spectrum(record: FloatArray) -> FloatArray:
+def _spectrum(record: FloatArray, points: int) -> FloatArray:
     """Power at each frequency, 1 in the mean for white noise."""
     window = np.hanning(len(record))
-    swing = np.fft.rfft((record - record.mean()) * window, _POINTS)
+    swing = np.fft.rfft((record - record.mean()) * window, points)
     return np.asarray(np.abs(swing) ** 2 / max(float(window @ window) * float(np.var(record)), 1e-300))
 
 
