@@ -106,6 +106,8 @@ def _notes(e: Evidence, aircraft: Aircraft) -> tuple[str, ...]:
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
         notes.append(f"The wind changed with height, by {per_metre} a metre.")
+    if e.leftover is not None and e.leftover.note:
+        notes.append(e.leftover.note)
     missing = [c for c in ("a_z", "theta") if c not in flights.channels]
     if missing:
         notes.append(f"Without {' and '.join(missing)} several instrument effects cannot be seen.")

@@ -32,8 +32,8 @@ EFFECT_ENTRIES = (
     "alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s",
     # few milliseconds between a command's stamp and its effect, in every model
     "latency_s",
-    # instruments that read in proportion, and have no name for it
-    "a_z_scale", "theta_scale",
+    # instruments whose reading is a scaled or bent one, and has no name for it
+    "a_z_scale", "theta_scale", "a_z_read2", "a_z_read3", "alpha_read2", "alpha_read3",
 )  # fmt: skip
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}

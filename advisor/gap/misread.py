@@ -1,57 +1,98 @@
-"""An accelerometer or an attitude that reads in proportion: an error without a name in the catalogue.
+"""An instrument that reads out of proportion: an error without a name in the catalogue.
 
-α and q may be scaled by name, a_z and θ may not; yet two or three named effects together imitate a scale well
-where the air moves. One number that explains as much as several is likelier than they are.
+α and q may be scaled by name; a_z and θ may not, and no reading may be bent. Yet two or three named effects
+together imitate that well where the air moves. One instrument that explains more than they do is likelier.
 """
 
 import numpy as np
 
+from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import BLOCK_OF
-from advisor.gap.fit import fit
+from advisor.gap.fit import Fitted, fit
+from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.leftover import Leftover
 from advisor.gap.problem import Problem
-from advisor.gap.score import Judged, addition, belief_in, log_likelihood_gained, worth
-from advisor.gap.screen import Screen
+from advisor.gap.score import Judged, addition, belief_in, difference, log_likelihood_gained, worth
+from advisor.gap.screen import Screen, penalty
 from advisor.gap.variant import Variant
 from advisor.gap.waterfall import Stage
 
-_SCALES = {
-    channel: Variant(
-        name, block, ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.03, entries=(f"{channel}_scale",)
-    )
-    for channel, name, block in (
-        ("a_z", "accelerometer_scale", "accelerometer"),
-        ("theta", "attitude_scale", "attitude_sensor"),
-    )
+
+def _scale(name: str, block: str, channel: str) -> Variant:
+    """What is read is in proportion."""
+    entries = (f"{channel}_scale",)
+    return Variant(name, block, ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.03, entries=entries)
+
+
+def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
+    """Factors of what is read, of its square and of its cube (IEEE Std 1293); ``unit``: a usual reading."""
+    return Variant(
+        name, block, ("scale", "square", "cube"), ((0.0, 0.0, 0.0),),
+        (0.002, 0.002 / unit, 0.002 / unit**2),
+        ((-0.8, 3.0), (-10.0 / unit, 10.0 / unit), (-100.0 / unit**2, 100.0 / unit**2)), 0.0,
+        entries=tuple(f"{channel}_{order}" for order in ("scale", "read2", "read3")),
+    )  # fmt: skip
+
+
+_READINGS = {
+    "a_z": (
+        _scale("accelerometer_scale", "accelerometer", "a_z"),
+        _curve("accelerometer_curve", "accelerometer", "a_z", 5.0),
+    ),
+    "alpha": (_curve("alpha_curve", "alpha_sensor", "alpha", 0.05),),
+    "theta": (_scale("attitude_scale", "attitude_sensor", "theta"),),
+}
+_SAID = {
+    "accelerometer_scale": "The accelerometer reads {percent:+.1f} % against what the motion says; an air "
+    "speed that reads as much {other} looks the same: compare it with the ground speed on opposite headings.",
+    "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
+    "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
+    "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
 }
 _CERTAIN = 30.0
-"""Log likelihood that a scale must bring: most of what a scale of a_z does is the lift's own slope."""
+"""Log likelihood that a reading must bring: most of what it does is the lift's own slope."""
 _LIKELIER = 10.0
 """... and by how much it must beat all that was named together."""
+_BESIDE = 0.5
+"""Share of what the named effects bring that they bring beside the reading, too, where they are another
+matter; what is certain beside it is another matter anyhow."""
 
 
 def misread(problem: Problem, stages: list[Stage]) -> Leftover | None:
-    """The instrument whose scale explains more than everything that was named; None where none does."""
+    """The instrument whose reading explains more than everything that was named; None where none does."""
     plain, held = stages[0].fitted, stages[0].held_out
-    tried = [variant for channel, variant in _SCALES.items() if channel in problem.channels]
+    # What an autopilot makes of the angle of attack is no instrument: its errors have other shapes.
+    readings = [c for c in problem.channels if c != "alpha" or not problem.flights.alpha_is_derived]
+    tried = [variant for channel in readings for variant in _READINGS.get(channel, ())]
     found = Screen(problem, plain).quick_fits(tried)
-    likeliest = min(found, key=lambda s: s.cost, default=None)
+    samples = float(np.sum(worth(problem, plain.innovations)))
+    likeliest = min(found, key=lambda s: s.cost + penalty(s.variant, samples), default=None)
     if likeliest is None or 0.5 * (plain.cost - likeliest.cost) < _CERTAIN:
         return None
     fitted = fit(problem, likeliest.point, likeliest.noise, tolerance=0.5)
     independent = worth(problem, fitted.innovations)
-    scaled = addition(problem, plain, held, fitted, likeliest.variant.effect, independent)
+    bent = addition(problem, plain, held, fitted, likeliest.variant.effect, independent)
     named = _gain_of_all(problem, stages)
-    if not scaled.worth_naming or scaled.gain < max(_CERTAIN, named + _LIKELIER):
+    if not bent.worth_naming or bent.gain < max(_CERTAIN, named + _LIKELIER):
         return None
-    # Likelier though it removes less of the gap: it stands beside what was named, not in its place.
-    if scaled.removed < sum(s.added.removed for s in stages if s.added is not None):
+    if difference(problem, stages[-1].held_out, bent.held_out) < bent.least:
+        # Next to the same motion as what was named: the name stays.
         return None
-    left = scaled.held_out.mean_square / held.mean_square
+    smaller = bent.removed < sum(s.added.removed for s in stages if s.added is not None)
+    if smaller and _is_another_matter(problem, stages, bent, independent):
+        return None
+    left = bent.held_out.mean_square / held.mean_square
     block = likeliest.variant.block
-    rivals = {BLOCK_OF[j.effect]: _share(j, scaled) for j in reversed(stages[0].considered)}
+    rivals = {BLOCK_OF[j.effect]: _share(j, bent) for j in reversed(stages[0].considered)}
     ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
-    return Leftover(block, float(np.clip(1.0 - np.mean(left), 0.0, 1.0)), ((block, 1.0), *ranking))
+    share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))
+    return Leftover(block, share, ((block, 1.0), *ranking), note=_said(bent))
+
+
+def _said(bent: Judged) -> str:
+    """What the instrument does, and what else would look like it."""
+    percent = 100.0 * float(bent.value[0])
+    return _SAID[bent.effect].format(percent=percent, other="too low" if percent > 0.0 else "too high")
 
 
 def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:
@@ -64,6 +105,26 @@ def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:
     likelihood = log_likelihood_gained(first.fitted, first.held_out, last.fitted, last.held_out, independent)
     belief = belief_in(problem, last.fitted, independent) - belief_in(problem, first.fitted, independent)
     return likelihood - 0.5 * numbers * float(np.log(np.sum(independent))) + belief
+
+
+def _is_another_matter(problem: Problem, stages: list[Stage], bent: Judged, independent: FloatArray) -> bool:
+    """Whether what was named explains beside the reading much of what it explains without."""
+    first, last = stages[0], stages[-1]
+    reading = set(bent.variant.entries)
+    others = [v.effect for v in last.fitted.point.effects if not reading & set(v.entries)]
+    both = fit(
+        problem,
+        last.fitted.point.with_only(others).with_effect(bent.variant, tuple(bent.value)),
+        bent.fitted.noise,
+        tolerance=0.5,
+    )
+
+    def gained(before: Fitted, held_before: HeldOut, after: Fitted, held_after: HeldOut) -> float:
+        return log_likelihood_gained(before, held_before, after, held_after, independent)
+
+    alone = gained(first.fitted, first.held_out, last.fitted, last.held_out)
+    beside = gained(bent.fitted, bent.held_out, both, hold_out(problem, both))
+    return beside > min(_BESIDE * alone, _CERTAIN)
 
 
 def _share(judged: Judged, best: Judged) -> float:

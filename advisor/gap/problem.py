@@ -1,6 +1,6 @@
 """What is fitted to what: the data with the simulation, and a point of its numbers."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -56,6 +56,13 @@ class Point:
             effects=(*self.effects, effect),
             values=(*self.values, np.asarray(values, float)),
             sides=self.sides if sides is None else sides,
+        )
+
+    def with_only(self, names: Collection[str]) -> "Point":
+        """The model with some of its effects; what is part of every model stays."""
+        keep = [k for k, v in enumerate(self.effects) if v.always or v.effect in names]
+        return replace(
+            self, effects=tuple(self.effects[k] for k in keep), values=tuple(self.values[k] for k in keep)
         )
 
 

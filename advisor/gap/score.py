@@ -159,7 +159,7 @@ def addition(
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
         gain=likelihood - price + belief + odds,
-        removed=_difference(problem, seen_before, seen_after),
+        removed=difference(problem, seen_before, seen_after),
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant),
         belief=belief, value=value, unconfirmed=unconfirmed,
@@ -216,7 +216,7 @@ def least_change(problem: Problem) -> float:
     return max(least, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
 
 
-def _difference(problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted) -> float:
+def difference(problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted) -> float:
     """Mean over channels of the squared change of the prediction, beside the instruments' noise."""
     changed = rms_of(problem, [a - b for a, b in zip(before.left, after.left, strict=True)])
     noise = 1.0 if problem.instruments is None else problem.instruments

@@ -37,6 +37,7 @@ LANES = 8
     ALPHA_LAG, ALPHA_SCALE, ALPHA_BIAS, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY, A_Z_SCALE, THETA_SCALE,
+    A_Z_READ2, A_Z_READ3, ALPHA_READ2, ALPHA_READ3,
 ) = range(len(ENTRIES))  # fmt: skip
 # Rows of the slow inputs, one value a step.
 SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST = range(6)
@@ -220,13 +221,16 @@ def simulate(
                     x[VANE_OUT, m] = (x[VANE_DECAY, m] * (x[VANE_OUT, m] - x[VANE_BEFORE, m]) + vane
                                       - x[VANE_RAMP, m] * (vane - x[VANE_BEFORE, m]))  # fmt: skip
                 x[VANE_BEFORE, m] = vane
-                out[k, i, 0, m] = (
-                    alpha_trim + (1.0 + x[ALPHA_SCALE, m]) * (x[VANE_OUT, m] - alpha_trim) + x[ALPHA_BIAS, m]
-                )
+                turned = x[VANE_OUT, m] - alpha_trim
+                bent = (x[ALPHA_READ2, m] + x[ALPHA_READ3, m] * turned) * turned
+                out[k, i, 0, m] = alpha_trim + (1.0 + x[ALPHA_SCALE, m] + bent) * turned + x[ALPHA_BIAS, m]
                 out[k, i, 1, m] = ((1.0 + x[Q_SCALE, m]) * q + x[Q_BIAS, m] + x[MODE_GAIN, m] * x[BEND, m]
                                    + x[MODE_RATE_GAIN, m] * x[BEND_RATE, m] * x[SOFTNESS, m])  # fmt: skip
                 a_z = (V * x[NORMAL_0, m] + a_x * x[SIN_ALPHA, m]) / x[COS_ALPHA, m]
-                out[k, i, 2, m] = (1.0 + x[A_Z_SCALE, m]) * (a_z - x[IMU_ARM, m] * x[QDOT_0, m])
+                a_z -= x[IMU_ARM, m] * x[QDOT_0, m]
+                pulled = a_z + GRAVITY_M_S2
+                bent = (x[A_Z_READ2, m] + x[A_Z_READ3, m] * pulled) * pulled
+                out[k, i, 2, m] = (1.0 + x[A_Z_SCALE, m]) * a_z + bent * pulled
                 out[k, i, 3, m] = trim[1] + (1.0 + x[THETA_SCALE, m]) * (theta - trim[1])
                 # A search may try an unstable aircraft: its motion stays finite, and is rejected by its cost.
                 x[ALPHA, m] = min(max(alpha + h * x[KA, m], -1.5), 1.5)

@@ -165,10 +165,5 @@ def _rebuilt(
 
 
 def _only(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
-    """The model with some of its effects; what is part of every model stays."""
-    point = full.point
-    keep = [k for k, v in enumerate(point.effects) if v.always or v.effect in names]
-    start = replace(
-        point, effects=tuple(point.effects[k] for k in keep), values=tuple(point.values[k] for k in keep)
-    )
-    return fit(problem, start, full.noise, iterations=8, tolerance=0.5)
+    """The model with some of its effects, fitted."""
+    return fit(problem, full.point.with_only(names), full.noise, iterations=8, tolerance=0.5)

@@ -1,30 +1,37 @@
-"""An instrument that reads in proportion and has no name for it is unknown in that instrument."""
+"""An instrument that reads out of proportion and has no name for it is unknown in that instrument."""
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from tests.gap.generator import Setup, fly
 
+HARD = Setup(gust_std=0.12, coloured=0.5, jitter=0.004, speed_change=0.03, seed=37)
 
-def scaled(setup, channel, factor):
-    """The flight with one channel read too high or too low."""
+
+def misread(setup, channel, reading):
+    """The flight with one channel read as ``reading`` of what it is."""
     flown = []
     for maneuver in fly(setup):
         read = maneuver.channels[channel]
-        channels = {**maneuver.channels, channel: replace(read, y=factor * read.y)}
+        channels = {**maneuver.channels, channel: replace(read, y=reading(read.y))}
         flown.append(replace(maneuver, channels=channels))
     return flown
+
+
+def scaled(setup, channel, factor):
+    """The flight with one channel read too high or too low."""
+    return misread(setup, channel, lambda y: factor * y)
 
 
 @pytest.mark.parametrize(("channel", "factor", "block"), [
     ("a_z", 0.88, "accelerometer"), ("theta", 1.1, "attitude_sensor"),
 ])  # fmt: skip
 def test_a_scale_without_a_name_is_no_sum_of_named_effects_even_in_moving_air(channel, factor, block):
-    hard = Setup(gust_std=0.12, coloured=0.5, jitter=0.004, speed_change=0.03, seed=37)
-    found = diagnose(scaled(hard, channel, factor), Aircraft())
+    found = diagnose(scaled(HARD, channel, factor), Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == block
     # An attitude that reads a tenth high has its zero off, too.
@@ -35,3 +42,35 @@ def test_a_scale_without_a_name_is_no_sum_of_named_effects_even_in_moving_air(ch
 def test_where_a_named_instrument_is_off_no_other_is_suspected():
     found = diagnose(scaled(Setup(maneuvers=6, seed=38), "q", 1.08), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["pitch_rate_scale"]
+
+
+@pytest.mark.parametrize("setup", [HARD, Setup(seed=6, coloured=0.5, jitter=0.004)])
+def test_an_air_speed_that_is_off_is_not_blamed_on_the_aircraft_and_may_be_the_accelerometer(setup):
+    found = diagnose(scaled(setup, "airspeed", 1.08), Aircraft())
+    assert found.verdict == "unknown"
+    assert any("air speed that reads as much too high looks the same" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(("channel", "reading", "block"), [
+    ("alpha", lambda y: np.minimum(y, np.median(y) + 0.04), "alpha_sensor"),
+    ("a_z", lambda y: np.maximum(y, -14.0), "accelerometer"),
+    ("a_z", lambda y: y + 0.02 * (y + 9.8) ** 2, "accelerometer"),
+])  # fmt: skip
+def test_a_bent_reading_is_no_sum_of_bent_forces_even_in_moving_air(channel, reading, block):
+    found = diagnose(misread(HARD, channel, reading), Aircraft())
+    assert found.verdict == "unknown"
+    assert found.where.block == block
+    assert any("does not read in proportion" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("switches", [{"cl_a2": -9.0}, {"cl_a3": -120.0}, {"cm_a2": 4.0}, {"kink_at": 0.12}])
+def test_a_force_or_a_moment_that_bends_is_no_instruments_fault(switches):
+    found = diagnose(fly(replace(HARD, switches=switches)), Aircraft())
+    assert found.verdict == "effect"
+    assert found.where.block in ("force_equation", "moment_equation")
+
+
+def test_what_is_wrong_beside_a_reading_out_of_proportion_keeps_its_name():
+    both = misread(replace(HARD, q_bias=0.02), "a_z", lambda y: 1.07 * y)
+    found = diagnose(both, Aircraft())
+    assert found.causes[0].effect == "pitch_rate_bias"
