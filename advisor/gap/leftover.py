@@ -34,11 +34,8 @@ _LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
 _OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that."""
-_OF_PEAK_CLEARLY = 0.005
-"""The same for a motion at one frequency, like which no error of a model looks, and beside named effects
-that do not explain what is there ..."""
-_HARDLY = 0.3
-"""... for what is left is more than this share of what they took up."""
+_OF_PEAK_SWINGING = 0.005
+"""The same for a motion at one frequency: no error of a model looks like that."""
 _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
 _DOUBT = 2.5
@@ -103,6 +100,9 @@ def left_over(
     loud = telling & (rms_of(problem, last.left) > _DOUBT * stated)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - _instruments(problem) ** 2, 0.0))
+    peaks = problem.flights.peaks
+    if not np.any(telling & (beyond > _OF_PEAK * peaks)):
+        return None
     faint = best.explained < _LEAST_SHARE
     least_share = _LEAST_SHARE if moving_air else _FAINT_SHARE
     disturbed = best.gain >= _LEAST_GAIN and best.explained >= least_share and bool(np.any(loud))
@@ -110,13 +110,9 @@ def left_over(
     disturbed = disturbed and not problem.flights.alpha_is_smoothed
     if not disturbed and np.max(louder) < _RESTLESS:
         return None
+    plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
-    peaks = problem.flights.peaks
-    of_peak = _OF_PEAK_CLEARLY if last is not first and unexplained > _HARDLY * taken else _OF_PEAK
-    if not np.any(telling & (beyond > of_peak * peaks)):
-        return None
-    plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
     least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else _LEAST_OF_GAP
     if unexplained < least * taken and not plain:
         return None
@@ -131,7 +127,7 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) 
     if tone is None or tone.probes[0].gain < _LEAST_GAIN or tone.probes[0].block == "air":
         return None
     best = tone.probes[0]
-    least = _OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_CLEARLY
+    least = _OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
     if not np.any(tone.power > np.maximum(least * problem.flights.peaks, stated) ** 2):
         return None
     if float(np.mean(tone.power / instruments**2)) < _VISIBLE:

@@ -19,13 +19,13 @@ from advisor.gap.waterfall import Stage
 
 
 def _scale(name: str, block: str, channel: str) -> Variant:
-    """What is read is in proportion."""
+    """A factor of what is read."""
     entries = (f"{channel}_scale",)
     return Variant(name, block, ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.03, entries=entries)
 
 
 def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
-    """Factors of what is read, of its square and of its cube (IEEE Std 1293); ``unit``: a usual reading."""
+    """Factors of what is read, of its square and of its cube (IEEE Std 1293); ``unit``: a usual change."""
     return Variant(
         name, block, ("scale", "square", "cube"), ((0.0, 0.0, 0.0),),
         (0.002, 0.002 / unit, 0.002 / unit**2),
@@ -54,8 +54,9 @@ _CERTAIN = 30.0
 _LIKELIER = 10.0
 """... and by how much it must beat all that was named together."""
 _BESIDE = 0.5
-"""Share of what the named effects bring that they bring beside the reading, too, where they are another
-matter; what is certain beside it is another matter anyhow."""
+"""What the named effects bring beside the reading, of what they bring without, where they are another matter;
+certain is enough. And they must change that share of what the reading removes: a speed that is off has
+side effects."""
 
 
 def misread(problem: Problem, stages: list[Stage]) -> Leftover | None:
@@ -78,8 +79,7 @@ def misread(problem: Problem, stages: list[Stage]) -> Leftover | None:
     if difference(problem, stages[-1].held_out, bent.held_out) < bent.least:
         # Next to the same motion as what was named: the name stays.
         return None
-    smaller = bent.removed < sum(s.added.removed for s in stages if s.added is not None)
-    if smaller and _is_another_matter(problem, stages, bent, independent):
+    if len(stages) > 1 and _is_another_matter(problem, stages, bent, independent):
         return None
     left = bent.held_out.mean_square / held.mean_square
     block = likeliest.variant.block
@@ -108,7 +108,7 @@ def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:
 
 
 def _is_another_matter(problem: Problem, stages: list[Stage], bent: Judged, independent: FloatArray) -> bool:
-    """Whether what was named explains beside the reading much of what it explains without."""
+    """Whether what was named explains beside the reading much of what it explains without, and matters."""
     first, last = stages[0], stages[-1]
     reading = set(bent.variant.entries)
     others = [v.effect for v in last.fitted.point.effects if not reading & set(v.entries)]
@@ -122,9 +122,11 @@ def _is_another_matter(problem: Problem, stages: list[Stage], bent: Judged, inde
     def gained(before: Fitted, held_before: HeldOut, after: Fitted, held_after: HeldOut) -> float:
         return log_likelihood_gained(before, held_before, after, held_after, independent)
 
+    held = hold_out(problem, both)
     alone = gained(first.fitted, first.held_out, last.fitted, last.held_out)
-    beside = gained(bent.fitted, bent.held_out, both, hold_out(problem, both))
-    return beside > min(_BESIDE * alone, _CERTAIN)
+    beside = gained(bent.fitted, bent.held_out, both, held)
+    matters = difference(problem, bent.held_out, held) > _BESIDE * bent.removed
+    return matters and beside > min(_BESIDE * alone, _CERTAIN)
 
 
 def _share(judged: Judged, best: Judged) -> float:
