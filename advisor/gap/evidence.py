@@ -10,9 +10,6 @@ from advisor.gap.problem import Problem
 from advisor.gap.waterfall import Stage
 from advisor.gap.wind import Shear
 
-VISIBLE = 0.05
-"""Gap above the floor from which on there is something to explain."""
-
 
 @dataclass(frozen=True)
 class Evidence:

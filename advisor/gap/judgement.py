@@ -7,10 +7,10 @@ import numpy as np
 
 from advisor.flight.kinematics import KinematicCheck
 from advisor.gap.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
-from advisor.gap.evidence import VISIBLE, Evidence
+from advisor.gap.evidence import Evidence
 from advisor.gap.holdout import HeldOut
 from advisor.gap.measure import gap_of
-from advisor.gap.result import Cause, Value, Verdict
+from advisor.gap.result import VISIBLE, Cause, Value, Verdict
 from advisor.gap.score import file_is_off
 from advisor.gap.speed import airspeed_cause, speed_is_a_cause
 

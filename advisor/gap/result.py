@@ -8,6 +8,8 @@ from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.messages import FloatArray
 
 Verdict = Literal["none", "parameters", "effect", "unknown"]
+VISIBLE = 0.05
+"""Gap above the floor from which on there is something to explain."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """The diagnosis in a sentence, as a pilot hears it."""
 
-from advisor.gap.result import Cause, Diagnosis
+from advisor.gap.result import VISIBLE, Cause, Diagnosis
 
 _WHAT = {
     "transport_delay": "The simulator answers {delay_s_ms:.0f} ms too early: "
@@ -72,7 +72,8 @@ def place(block: str) -> str:
 def sentence_of(d: Diagnosis) -> str:
     """One sentence for the crew."""
     if d.verdict == "none":
-        return "The simulator flies like the aircraft: nothing is left above the noise."
+        left = "nothing" if d.gap.before < VISIBLE else "too little for a name"
+        return f"The simulator flies like the aircraft: {left} is left above the noise."
     removed = f"{max(d.shrink.percent, 0.0):.0f} % of the gap" if d.shrink is not None else "the gap"
     if d.verdict == "parameters":
         return f"The simulator has the right structure and wrong numbers: the fitted eight remove {removed}."

@@ -254,3 +254,11 @@ def test_an_attitude_that_leans_with_the_pitch_rate_is_no_wind():
     assert wind_shear(flown) is not None
     found = diagnose(flown, Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "attitude_sensor")
+
+
+def test_a_visible_gap_that_is_too_small_for_a_name_is_not_called_nothing():
+    wake = {"extra_cm": 0.1, "extra_cm_lag": 0.25}
+    found = diagnose(fly(Setup(switches=wake, noise=0.004, seed=3)), Aircraft())
+    assert found.verdict == "none"
+    assert found.gap.before > 0.2
+    assert "too little for a name is left" in found.sentence
