@@ -10,7 +10,7 @@ from advisor.aircraft import Aircraft
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.evidence import VISIBLE
+from advisor.gap.result import VISIBLE
 from advisor.gap.tone import line_of, tone_in
 from tests.gap.generator import Setup, fly
 
