@@ -158,7 +158,8 @@ def simulate(
                 for m in range(lanes):
                     if x[SCALE_H, m] != scale:
                         scale = x[SCALE_H, m]
-                        near = np.exp(-slow[HEIGHT, j] / max(scale, 1e-3)) if scale > 0.0 else 0.0
+                        # Heights count from a place that may lie above the ground; a trial scale may be tiny.
+                        near = np.exp(min(-slow[HEIGHT, j] / max(scale, 1e-3), 3.0)) if scale > 0.0 else 0.0
                     x[NEAR, m] = near
             for m in range(lanes):
                 d = delta[k, j, m] + x[DOSE, m] * d_delta

@@ -1,5 +1,7 @@
 """Effects of another shape than the simplest: lift that kinks or grows by a share, a servo with inertia."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.layout import ENTRIES, INDEX
 from advisor.gap.surface import surface
-from tests.gap.generator import Setup, fly
+from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 
 @pytest.mark.parametrize(("kink_rad", "seed"), [(0.07, 11), (0.10, 12)])
@@ -24,6 +26,20 @@ def test_a_lift_slope_that_grows_near_the_ground_is_the_ground():
     )
     assert found.causes[0].effect == "ground_effect"
     assert found.verdict == "effect"
+
+
+def test_a_large_aircraft_feels_the_ground_from_higher_up():
+    large = replace(LIGHT_AIRCRAFT, chord=3.0, mass=6000.0, iyy=25000.0, area=40.0, speed=70.0)
+    for share in (0.1, 0.2):
+        setup = Setup(large, maneuvers=6, heights_m=(27.0, 29.0, 24.0), switches={"ground": share}, seed=14)
+        found = diagnose(fly(setup), Aircraft())
+        assert found.verdict == "effect"
+        assert found.causes[0].effect == "ground_effect"
+
+
+def test_heights_that_count_from_a_place_above_the_ground_name_nothing_and_break_nothing():
+    found = diagnose(fly(Setup(maneuvers=6, heights_m=(-300.0, -250.0, -280.0), seed=16)), Aircraft())
+    assert found.verdict == "none"
 
 
 @pytest.mark.parametrize("moves_in", [(0, 1, 2, 3, 4, 5), (2,)])

@@ -6,9 +6,11 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import breaks, divide, ramps_and_steps
 from advisor.gap.data import Flights
 from advisor.gap.layout import DERIVATIVES, INDEX
+from advisor.gap.simulate import HEIGHT
 from advisor.gap.variant import Values, Variant
 
 BLOCK = "force_equation"
+_DECAYS_M = (0.1, 50.0)
 _ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
 
 
@@ -56,9 +58,9 @@ def variants(flights: Flights) -> list[Variant]:
                 "ground_effect",
                 BLOCK,
                 (lift, "M_h", "scale_m"),
-                ((0.0, 0.0, 1.0), (0.0, 0.0, 5.0)),
+                tuple((0.0, 0.0, scale) for scale in _heights_of_decay(flights)),
                 (0.02, 0.2, 0.1),
-                (bounds, (-500.0, 500.0), (0.1, 50.0)),
+                (bounds, (-500.0, 500.0), _DECAYS_M),
                 0.0,
                 entries=(lift, "M_h", "scale_m"),
                 needs=frozenset({"height"}),
@@ -66,6 +68,14 @@ def variants(flights: Flights) -> list[Variant]:
             for lift, bounds in (("lift_h", (-0.9, 3.0)), ("Z_h", (-50.0, 50.0)))
         ),
     ]
+
+
+def _heights_of_decay(flights: Flights) -> list[float]:
+    """Heights over which the ground's lift may fade, in m: a fifth of what was flown over, and two thirds."""
+    if "height" not in flights.has:
+        return []
+    flown = float(np.median([np.median(f.slow[HEIGHT]) for f in flights.flights]))
+    return [float(np.clip(share * flown, *_DECAYS_M)) for share in (0.2, 0.67)]
 
 
 def _stall(flights: Flights) -> list[Variant]:
