@@ -1,6 +1,7 @@
 """Which: every effect is screened, the few worth it are fitted fully, and the best judgement comes first."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from advisor.gap.belief import log_belief
 from advisor.gap.fit import Fitted, fit
@@ -14,6 +15,7 @@ from advisor.gap.score import (
     addition,
     belief_in,
     covariance,
+    predict_alike,
     size_of,
     smallest_of,
     worth,
@@ -65,12 +67,30 @@ def judge(
     for fitted in sorted(fits, key=lambda f: f.cost):
         likeliest.setdefault(fitted.point.effects[-1].effect, fitted)
     judged = [addition(problem, before, held_before, f, e, independent) for e, f in likeliest.items()]
-    first, *rest = sorted(judged, key=lambda j: -j.gain)
+    first, *rest = _evened(problem, judged)
     if first.fitted.iterations == _ITERATIONS:
         # Far from the plain model the search is long; only what comes out first is followed to its end.
         ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)
         first = addition(problem, before, held_before, ended, first.effect, independent)
     return [first, *rest]
+
+
+def _evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
+    """The best judgement first; what predicts the same motion as the best has its likelihood, too.
+
+    No description to low order is better than some share of the motion: where two differ by less, what the
+    likelihood prefers is which of them takes up more of the description's own error. What is known
+    beforehand decides: above all, which of them leaves the aircraft file's derivatives alone.
+    """
+    best = max(judged, key=lambda j: j.gain)
+    seen = best.gain - best.beforehand
+    alike = [
+        replace(j, gain=max(j.gain, seen + j.beforehand))
+        if j.worth_naming and predict_alike(problem, best.held_out, j.held_out)
+        else j
+        for j in judged
+    ]
+    return sorted(alike, key=lambda j: -j.gain)
 
 
 def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) -> list[Screened]:

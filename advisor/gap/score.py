@@ -65,6 +65,8 @@ class Judged:
     """Size below which it is not worth a name."""
     belief: float
     """Log probability gained because the derivatives it leaves agree better with the file's."""
+    beforehand: float
+    """The part of ``gain`` that is not the motion's: belief, the odds of an arm, less the price of its numbers."""
     value: FloatArray
     std: FloatArray
     unconfirmed: bool = False
@@ -155,14 +157,14 @@ def addition(
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
     odds = odds_of_arm(variant.effect, float(value[0]), problem.stated, problem.flights.alpha_is_derived)
-    least = least_change(problem)
+    least, beforehand = least_change(problem), belief + odds - price
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
-        gain=likelihood - price + belief + odds,
+        gain=likelihood + beforehand,
         removed=difference(problem, seen_before, seen_after),
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant),
-        belief=belief, value=value, unconfirmed=unconfirmed,
+        belief=belief, beforehand=beforehand, value=value, unconfirmed=unconfirmed,
         with_the_air=bool(variant.needs) and problem.knows_the_noise,
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
@@ -214,6 +216,12 @@ def least_change(problem: Problem) -> float:
     if problem.instruments is None:
         return least
     return max(least, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
+
+
+def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
+    """Whether two predictions differ, in every channel, by no more than a description to low order may err."""
+    apart = rms_of(problem, [a - b for a, b in zip(one.left, other.left, strict=True)])
+    return bool(np.all(apart < _OF_PEAK * problem.flights.peaks))
 
 
 def difference(problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted) -> float:

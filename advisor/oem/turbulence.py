@@ -33,6 +33,8 @@ def cost_of(rows: Sequence[Rows], system: FloatArray, air: AirModel) -> float:
 
 _STEPS = (0.7, 0.35, 0.15)
 """Of the search in the logarithms of the noise figures: from a factor of two to one of 1.16."""
+_RANGE = (1e-12, 1e3)
+"""Of every noise figure, SI: without noise the likelihood has no end."""
 _MEMORY_GAIN = 5.0
 """Log likelihood that noise with a memory must bring over white noise before moving air is looked for."""
 
@@ -101,13 +103,13 @@ def _descend(
 ) -> tuple[AirModel, float]:
     """Coordinate search in the logarithms of the noise figures, by ever smaller steps."""
     figures = [*start.white, *start.coloured, start.memory_s, start.gust, start.gust_memory_s]
-    x = np.log(np.maximum(figures, 1e-12))
+    x = np.log(np.clip(figures, *_RANGE))
     free = [*range(9), 9, 10] if moving else [*range(9)]
     present = {int(c) for r in rows for c in np.unique(r.channel)}
     free = [i for i in free if i >= 8 or i % 4 in present]
 
     def model(y: FloatArray) -> AirModel:
-        v = np.exp(y)
+        v = np.clip(np.exp(y), *_RANGE)
         return AirModel(v[:4], v[4:8], float(np.clip(v[8], 0.02, 5.0)), float(v[9]) if moving else 0.0,
                         float(np.clip(v[10], 0.05, 20.0)), start.seen_by_alpha)  # fmt: skip
 
@@ -120,7 +122,7 @@ def _descend(
                     moved = x.copy()
                     moved[i] += direction
                     cost = cost_of(rows, system, model(moved))
-                    if cost >= best - 0.5:
+                    if not cost < best - 0.5:
                         break
                     best, x = cost, moved
                 if best < before:

@@ -37,11 +37,6 @@ def test_a_large_aircraft_feels_the_ground_from_higher_up():
         assert found.causes[0].effect == "ground_effect"
 
 
-def test_heights_that_count_from_a_place_above_the_ground_name_nothing_and_break_nothing():
-    found = diagnose(fly(Setup(maneuvers=6, heights_m=(-300.0, -250.0, -280.0), seed=16)), Aircraft())
-    assert found.verdict == "none"
-
-
 @pytest.mark.parametrize("moves_in", [(0, 1, 2, 3, 4, 5), (2,)])
 def test_thrust_off_the_centre_of_gravity_is_named_even_if_the_throttle_moved_once_only(moves_in):
     setup = Setup(
