@@ -25,6 +25,10 @@ _QUIETER = 0.7
 """Share of that power which a model with one effect more may leave there, to be believed for this."""
 _AT_MOST = 2
 """Effects in that model."""
+_MAIN = [DERIVATIVES.index(name) for name in ("Z_alpha", "M_alpha", "M_delta_e")]
+"""Derivatives that a regression hardly ever misses by a factor of three ..."""
+_ALIKE = 1.0 / 3.0
+"""... so that within it the aircraft file's are the better start."""
 
 
 def base_entries(aircraft: Aircraft) -> FloatArray:
@@ -53,8 +57,12 @@ def stated_arms(aircraft: Aircraft) -> frozenset[str]:
     return frozenset(effect for effect, arm in arms.items() if arm is not None)
 
 
-def first_guess(flights: Flights, aircraft: Aircraft) -> Point:
-    """Derivatives by equation error (regression of the rates), or the aircraft file's own."""
+def first_guesses(flights: Flights, aircraft: Aircraft) -> list[Point]:
+    """Derivatives by equation error (regression of the rates), or the aircraft file's own.
+
+    The file's are nearer as a rule. But where a sign or a unit in it is wrong, no step leads away from them:
+    where the regression sees something else altogether, both are worth a try.
+    """
     own = np.zeros((len(flights), 4))
     own[:, 2] = [-GRAVITY_M_S2 / np.mean(f.slow[0]) for f in flights.flights]
     rows_q, rate_q, rows_a, rate_a = [], [], [], []
@@ -75,7 +83,12 @@ def first_guess(flights: Flights, aircraft: Aircraft) -> Point:
     guess[0] = min(guess[0], -0.1)
     guess[4] = min(guess[4], -0.05)
     believed = believed_derivatives(aircraft)
-    return Point(guess if believed is None else believed.copy(), own)
+    regressed = Point(guess, own)
+    if believed is None:
+        return [regressed]
+    stated = Point(believed.copy(), own)
+    agree = guess[_MAIN] * believed[_MAIN] > _ALIKE * np.maximum(guess[_MAIN] ** 2, believed[_MAIN] ** 2)
+    return [stated] if np.all(agree) else [stated, regressed]
 
 
 def _regression(f: Flight) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -117,7 +130,8 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )
-    fitted = fit(problem, everywhere(first_guess(flights, aircraft), flights, latency_s=0.001))
+    starts = [everywhere(guess, flights, latency_s=0.001) for guess in first_guesses(flights, aircraft)]
+    fitted = min((fit(problem, start) for start in starts), key=lambda found: found.cost)
     fitted = with_latency(problem, fitted)
     plain, seen = fitted, quietest(problem, fitted)
     problem, fitted = read_command(*_filtered(problem, fitted, seen, first_look=True))

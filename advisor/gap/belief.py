@@ -32,9 +32,9 @@ def scale_of(believed: FloatArray) -> FloatArray:
             max(z_alpha, 0.1),
             1.0,
             max(z_delta, 0.3 * z_alpha),
-            max(m_alpha, 0.1),
+            max(m_alpha, 0.1 * m_delta, 0.1),
             max(m_q, 0.3 * np.sqrt(m_alpha)),
-            max(m_delta, 0.1),
+            max(m_delta, 0.3 * m_alpha, 0.1),
         ]
     )
 

@@ -11,7 +11,12 @@ from advisor.gap.problem import Problem, counts
 from advisor.gap.screen import Screen
 
 _NEARLY = 0.25
-"""Share of all that a delay, a lag and the right reading explain which may stay unexplained without them."""
+"""Share of what a delay, a lag and the right reading explain which may stay unexplained without them ..."""
+_LOOKS_HELD = 0.3
+"""... and where delay and lag are half an interval together. A third would be left if they were real: the
+variance of edges anywhere in an interval, beside the square of half of it."""
+_HALF_S = 0.003
+"""How near to half an interval that is."""
 
 
 def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
@@ -43,7 +48,11 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     near = best_of_all + _NEARLY * (max(plain.values()) - best_of_all)
     price = 2.0 * float(np.log(np.sum(counts(linear))))
     is_held = plain[True] < min(near, plain[False], both[False] + price)
-    if is_held:
+    # Just half an interval is what a held command looks like when edges are free to take up the rest.
+    late = sum(float(values[0]) for values in both_linear.point.values[-2:])
+    nearly = best_of_all + _LOOKS_HELD * (max(plain.values()) - best_of_all)
+    looks_held = abs(late - half) < _HALF_S and plain[True] < min(nearly, plain[False])
+    if is_held or looks_held:
         return held, plainly_held
     return linear, fitted
 

@@ -19,6 +19,12 @@ STEP_S = 0.005
 LEAST_SAMPLES = 30
 DEPARTED_RAD = 1.0
 """Swing of the angle of attack that no equation about a trim describes any more."""
+_LOST = 1.5
+"""Intervals of the usual length from which on a stamp was lost."""
+_HOLE_S, _HOLE = 0.15, 3.5
+"""A hole of the command's log: this long, and so many of its usual intervals."""
+_ENOUGH = 4
+"""Manoeuvres without such a hole that are enough to leave the others out."""
 _QUIET_AFTER = 0.6
 """Share of the free response after which the motion has died down."""
 
@@ -44,6 +50,8 @@ class Flight:
     h: float
     n: int
     t_u: FloatArray
+    t_held: FloatArray
+    """From when on each value was held: its stamp, or in the middle of those that were lost before it."""
     u: FloatArray
     """The elevator command at its stamps, rad."""
     u_trim: float
@@ -53,7 +61,8 @@ class Flight:
     """Shape (4,): α and θ at the start, reference speed, 1 when derivatives scale with speed."""
     outputs: Mapping[str, Measured]
     edges: FloatArray
-    """Shape (m, 3). Jumps of the command: middle of the interval between stamps, jump × length, length."""
+    """Shape (m, 4). Jumps of the command: middle of the interval between stamps, jump × length, length, and
+    how much of that is for stamps that were lost."""
     stamps: FloatArray = field(default_factory=lambda: np.empty(0))
     """Shape (rows,): times of all outputs that are compared, one channel after another."""
     output: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
@@ -103,8 +112,15 @@ class Flights:
 
 
 def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed: bool = True) -> Flights:
-    """Make the manoeuvres ready; those without elevator or pitch rate, or that departed, are left out."""
+    """Make the manoeuvres ready.
+
+    Left out are those without elevator or pitch rate, those that departed, and, where enough others are
+    left, those in which a step of the command fell into a hole of the log.
+    """
     usable = [m for m in maneuvers if _usable(m)]
+    seen = [m for m in usable if not _steps_unseen(m)]
+    if len(seen) >= _ENOUGH:
+        usable = seen
     speeds = [
         m.channels["airspeed"].y
         for m in usable
@@ -163,6 +179,14 @@ def _usable(maneuver: Maneuver) -> bool:
     return "alpha" not in found or float(np.ptp(found["alpha"].y)) < DEPARTED_RAD
 
 
+def _steps_unseen(maneuver: Maneuver) -> bool:
+    """Whether the command changed while so many of its stamps were lost that nobody knows when."""
+    t = maneuver.channels["elevator"].t
+    edges = _edges(t, maneuver.channels["elevator"].y)
+    hole = max(_HOLE_S, _HOLE * float(np.median(np.diff(t))))
+    return bool(len(edges)) and float(np.max(edges[:, 2])) > hole
+
+
 def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, scaled: bool) -> Flight:
     start = max(m.channels["elevator"].t[0], m.channels["q"].t[0])
     end = min(m.channels["elevator"].t[-1], m.channels["q"].t[-1])
@@ -201,8 +225,8 @@ def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, sc
     if "theta" in outputs:
         trim[1] = float(np.mean(outputs["theta"].y[:3]))
     return Flight(
-        m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, u, u_trim, slow, trim,
-        outputs, _edges(t_u, u),
+        m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, _held_from(t_u), u, u_trim,
+        slow, trim, outputs, _edges(t_u, u),
     )  # fmt: skip
 
 
@@ -231,11 +255,23 @@ def _edges(t: FloatArray, u: FloatArray) -> FloatArray:
     jump = np.diff(u)
     size = np.ptp(u)
     if size <= 0.0:
-        return np.empty((0, 3))
+        return np.empty((0, 4))
     steep = np.flatnonzero(np.abs(jump) > 0.15 * size)
     # A jump may be spread over two intervals; each is uncertain by its own length.
     interval = t[steep + 1] - t[steep]
-    return np.column_stack([(t[steep] + t[steep + 1]) / 2.0, jump[steep] * interval, interval])
+    middle = (t[steep] + t[steep + 1]) / 2.0
+    return np.column_stack([middle, jump[steep] * interval, interval, _lost(t)[steep]])
+
+
+def _lost(t: FloatArray) -> FloatArray:
+    """Shape (n - 1,): by how much each interval between stamps is longer than usual, if a stamp was lost."""
+    interval = np.diff(t)
+    usual = float(np.median(interval))
+    return np.where(interval > _LOST * usual, interval - usual, 0.0)
+
+
+def _held_from(t: FloatArray) -> FloatArray:
+    return np.asarray(t - np.append(0.0, 0.5 * _lost(t)))
 
 
 def smooth(y: FloatArray, seconds: float) -> FloatArray:

@@ -74,7 +74,9 @@ def diagnose(
     if shear is not None and not _of_the_attitude(evidence.leftover):
         evidence = replace(evidence, shear=shear, leftover=of_the_wind(evidence.leftover))
     progress("measuring the gap", 0.9)
-    return answer(evidence, aircraft, kinematics, holdout)
+    diagnosis = answer(evidence, aircraft, kinematics, holdout)
+    left_out = [m.number for m in maneuvers if m.number not in numbers]
+    return replace(diagnosis, notes=(*diagnosis.notes, _left_out(left_out))) if left_out else diagnosis
 
 
 def _refuse(flights: Flights) -> None:
@@ -91,6 +93,13 @@ def _refuse(flights: Flights) -> None:
             "No angle of attack in the log.",
             "Log AOA_SSA, or set alpha.source in the aircraft file.",
         )
+
+
+def _left_out(numbers: Sequence[int]) -> str:
+    which = ", ".join(map(str, numbers))
+    return (
+        f"Left out: manoeuvre {which}. It departed, lacks a channel, or a step fell into a hole of the log."
+    )
 
 
 def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:

@@ -97,7 +97,9 @@ def measured_columns(
     alpha, q = ((lane(packs, k + 1 + j) - grid) / _START_STEP for j in range(len(_STARTS)))
     pulse = (lane(packs, len(rows) - 1) - grid) / _PULSE
     late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
-    begin = flight.edges[:, 0] + late + (0.5 * flight.edges[:, 2] if problem.held else 0.0)
+    begin = flight.edges[:, 0] + late
+    if problem.held:
+        begin += 0.5 * (flight.edges[:, 2] - flight.edges[:, 3])
     own = [
         (moved[:, k:] - base) / _START_STEP,
         problem.read_grids(flight, [_lift_trim(flight, alpha), _summed(flight, q)], p),
@@ -131,9 +133,10 @@ def _offsets(problem: Problem, flight: Flight) -> FloatArray:
 def _own_prior(problem: Problem, flight: Flight, own: int) -> FloatArray:
     """Shape (own,): inverse prior variances of a manoeuvre's own numbers, 0 for flat; its edges come last."""
     prior = np.zeros(own)
-    intervals = flight.edges[:, 2]
-    jitter = (np.hypot(_HELD_JITTER_S, problem.jitter_s) / intervals) ** 2
-    prior[own - len(intervals) :] = 1.0 / (jitter if problem.held else _EDGE_VARIANCE)
+    intervals, lost = flight.edges[:, 2], flight.edges[:, 3]
+    # Where stamps were lost, a held command may have changed at any of them.
+    held = (_HELD_JITTER_S**2 + problem.jitter_s**2 + _EDGE_VARIANCE * lost**2) / intervals**2
+    prior[own - len(intervals) :] = 1.0 / (held if problem.held else _EDGE_VARIANCE)
     return prior
 
 

@@ -141,7 +141,8 @@ class Problem:
 
         The disturbance, shape (4, n), enters each simulation by its dose, shape (k,).
         """
-        delta = surfaces(flight.h, flight.n, flight.t_u, flight.u, self.held, flight.u_trim, p, LANES)
+        stamps = flight.t_held if self.held else flight.t_u
+        delta = surfaces(flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim, p, LANES)
         doses = np.zeros(len(p)) if doses is None else doses
         return simulate(flight.h, delta, flight.slow, disturbance, doses, flight.trim, p)
 

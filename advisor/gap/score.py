@@ -66,7 +66,7 @@ class Judged:
     belief: float
     """Log probability gained because the derivatives it leaves agree better with the file's."""
     beforehand: float
-    """The part of ``gain`` that is not the motion's: belief, the odds of an arm, less the price of its numbers."""
+    """What of ``gain`` is not the motion's: belief, the odds of an arm, less the price of its numbers."""
     value: FloatArray
     std: FloatArray
     unconfirmed: bool = False
@@ -219,7 +219,7 @@ def least_change(problem: Problem) -> float:
 
 
 def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
-    """Whether two predictions differ, in every channel, by no more than a description to low order may err."""
+    """Whether two predictions differ by no more than a description to low order may err, in any channel."""
     apart = rms_of(problem, [a - b for a, b in zip(one.left, other.left, strict=True)])
     return bool(np.all(apart < _OF_PEAK * problem.flights.peaks))
 

@@ -187,7 +187,6 @@ class Setup:
     maneuvers: int = 9
     speed_change: float = 0.0
     rate_hz: float = 50.0
-    held: bool = False
     seed: int = 0
 
 

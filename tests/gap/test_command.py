@@ -1,10 +1,14 @@
 """Between its stamps a command was held or moved on, and half an interval lies between the two readings."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.data import prepare
+from advisor.gap.diagnose import diagnose
 from advisor.report.gap import maneuvers_of
 from sim.effects.fitting import flight_of
 from sim.record import record
@@ -32,3 +36,33 @@ def test_a_delay_of_nearly_an_interval_is_not_taken_for_a_held_command_that_is_h
     late = Setup(maneuvers=6, switches={"delay": 0.018}, jitter=0.002, seed=seed)
     problem, _ = fit_baseline(prepare(fly(late), Aircraft()), Aircraft())
     assert not problem.held
+
+
+def without(maneuver, lost):
+    """The manoeuvre with some stamps of its command lost on the way."""
+    elevator = maneuver.channels["elevator"]
+    kept = replace(elevator, t=elevator.t[~lost], y=elevator.y[~lost])
+    return replace(maneuver, channels={**maneuver.channels, "elevator": kept})
+
+
+def test_a_held_command_of_which_steps_were_lost_is_still_held(tmp_path):
+    (tmp_path / "uav.yaml").write_text(f"{UAV}input: held\n")
+    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
+    received = []
+    for maneuver in maneuvers_of([tmp_path / "uav.tlog"], Aircraft()):
+        command = maneuver.channels["elevator"].y
+        # The message with the new value is lost in every third step, the one after it has it.
+        steps = np.flatnonzero(np.abs(np.diff(command)) > 0.01) + 1
+        received.append(without(maneuver, np.isin(np.arange(len(command)), steps[::3])))
+    problem, _ = fit_baseline(prepare(received, Aircraft()), Aircraft())
+    assert problem.held
+
+
+def test_a_manoeuvre_with_a_step_in_a_hole_of_the_log_is_left_out_and_said_so():
+    flown = fly(Setup(maneuvers=6, seed=5))
+    elevator = flown[2].channels["elevator"]
+    step = elevator.t[int(np.argmax(np.abs(np.diff(elevator.y))))]
+    flown[2] = without(flown[2], np.abs(elevator.t - step) < 0.15)
+    found = diagnose(flown, Aircraft())
+    assert found.maneuvers == (1, 2, 4, 5, 6)
+    assert any("manoeuvre 3" in note for note in found.notes)

@@ -107,7 +107,7 @@ def test_of_two_effects_each_has_the_size_it_has_beside_the_other():
 
 
 def test_a_slow_servo_is_not_taken_for_a_late_one_though_its_response_has_kinks():
-    setup = Setup(maneuvers=6, switches={"rate_limit": 0.7}, held=True, seed=5)
+    setup = Setup(maneuvers=6, switches={"rate_limit": 0.7}, seed=5)
     found = diagnose(fly(setup), Aircraft())
     assert found.causes[0].effect == "actuator_rate_limit"
     assert found.causes[0].parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.1)
