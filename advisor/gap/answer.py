@@ -15,6 +15,7 @@ from advisor.gap.fit import Fitted
 from advisor.gap.foresee import unseen_effects
 from advisor.gap.holdout import hold_out
 from advisor.gap.judgement import judgement
+from advisor.gap.known import left_aside
 from advisor.gap.measure import gap_of
 from advisor.gap.numbers import (
     fidelity_of,
@@ -108,6 +109,12 @@ def _notes(e: Evidence, aircraft: Aircraft) -> tuple[str, ...]:
         notes.append(f"The wind changed with height, by {per_metre} a metre.")
     if e.leftover is not None and e.leftover.note:
         notes.append(e.leftover.note)
+    had = ", ".join(effect.replace("_", " ") for effect in aircraft.effects)
+    if had:
+        notes.append(f"The simulator has the aircraft file's effects ({had}); what is found is beyond them.")
+    passed = ", ".join(effect.replace("_", " ") for effect in left_aside(aircraft.effects))
+    if passed:
+        notes.append(f"Of them left aside, for they belong to the flight that showed them: {passed}.")
     missing = [c for c in ("a_z", "theta") if c not in flights.channels]
     if missing:
         notes.append(f"Without {' and '.join(missing)} several instrument effects cannot be seen.")

@@ -11,6 +11,7 @@ from advisor.gap.command import read_command, with_latency
 from advisor.gap.data import Flight, Flights
 from advisor.gap.fit import Fitted, fit
 from advisor.gap.floor import stated_floor
+from advisor.gap.known import with_known
 from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.gap.noise import loudness, whitening_of
 from advisor.gap.problem import Point, Problem
@@ -124,7 +125,7 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     instruments = stated_floor(flights)
     problem = Problem(
         flights,
-        base_entries(aircraft),
+        with_known(base_entries(aircraft), aircraft.effects, flights, variants_for(flights)),
         believed=believed_derivatives(aircraft),
         stated=stated_arms(aircraft),
         instruments=instruments,

@@ -19,6 +19,7 @@ from advisor.gap.evidence import Evidence
 from advisor.gap.fit import Fitted, solve_blocks
 from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.holdout import HeldOut, held_out
+from advisor.gap.known import beyond_known
 from advisor.gap.layout import DERIVATIVES
 from advisor.gap.leftover import Leftover, left_over, of_the_wind, other_than_air, swinging
 from advisor.gap.linear import linearise
@@ -58,6 +59,8 @@ def diagnose(
         Too few manoeuvres, or no angle of attack.
     """
     progress("checking the angle of attack against the motion", 0.0)
+    offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
+    maneuvers = [_without_offset(m, offset) for m in maneuvers]
     flights = prepare(maneuvers, aircraft)
     _refuse(flights)
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
@@ -112,7 +115,7 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
 
 def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Progress) -> Evidence:
     """Build the model up, then look at what is left: the air, and whatever the motion still predicts."""
-    variants = variants_for(problem.flights)
+    variants = beyond_known(aircraft.effects, variants_for(problem.flights))
     white = stated_floor(problem.flights)
     stages = build_up(problem, baseline, variants, progress)
     scale = misread(problem, stages)

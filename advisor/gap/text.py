@@ -60,6 +60,8 @@ def what(cause: Cause) -> str:
         sizes[f"{name}_deg"] = 57.29578 * value.value
         sizes[f"{name}_percent"] = 100.0 * value.value
         sizes[f"{name}_power"] = 2.0 + value.value
+    if cause.effect == "transport_delay" and cause.parameters["delay_s"].value < 0.0:
+        return f"The simulator answers {-sizes['delay_s_ms']:.0f} ms too late: its delay is too long"
     particular = f"{cause.effect} {list(cause.parameters)[-1]}" if cause.parameters else cause.effect
     return _WHAT.get(particular, _WHAT[cause.effect]).format(**sizes)
 

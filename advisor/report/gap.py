@@ -12,6 +12,7 @@ from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
+from advisor.gap.known import together
 from advisor.gap.result import Diagnosis
 from advisor.mavlink.logs import open_log
 from advisor.problems import UnusableInputError
@@ -65,7 +66,7 @@ def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]
     content["model"] = {name: _digits(v.value) for name, v in diagnosis.model.items()}
     content["effects"] = {
         effect: {name: _digits(value) for name, value in values.items()}
-        for effect, values in {**aircraft.effects, **diagnosis.effects}.items()
+        for effect, values in together(aircraft.effects, diagnosis.effects).items()
     }
     return content
 

@@ -1,0 +1,65 @@
+"""A simulator that has an effect already is judged with it: what is found is what is missing beyond it."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.data import prepare
+from advisor.gap.diagnose import diagnose
+from advisor.gap.known import together, with_known
+from advisor.gap.layout import ENTRIES, INDEX
+from tests.gap.generator import Setup, fly
+
+
+@pytest.fixture(scope="module")
+def late():
+    return fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=21))
+
+
+@pytest.mark.parametrize(("in_file_s", "missing_s"), [(0.06, 0.0), (0.035, 0.025), (0.09, -0.03)])
+def test_of_a_delay_only_what_the_file_lacks_is_found(late, in_file_s, missing_s):
+    found = diagnose(late, Aircraft(effects={"transport_delay": {"delay_s": in_file_s}}))
+    if missing_s == 0.0:
+        assert found.verdict == "none"
+        return
+    assert found.causes[0].effect == "transport_delay"
+    assert found.causes[0].parameters["delay_s"].value == pytest.approx(missing_s, abs=0.003)
+
+
+def test_an_offset_of_alpha_that_the_file_has_is_no_gap():
+    flown = fly(Setup(maneuvers=6, alpha_bias=0.02, seed=22))
+    assert diagnose(flown, Aircraft()).causes[0].effect == "alpha_bias"
+    assert diagnose(flown, Aircraft(effects={"alpha_bias": {"bias_rad": 0.02}})).verdict == "none"
+
+
+def test_what_belongs_to_one_flight_is_left_aside_and_said_so(late):
+    found = diagnose(late, Aircraft(effects={"icing": {"Z_alpha": -0.2}, "gust": {"amplitude_m_s": 2.0}}))
+    assert found.causes[0].effect == "transport_delay"
+    assert any("icing, gust" in note and "left aside" in note for note in found.notes)
+
+
+def test_numbers_of_the_file_become_the_simulations_own(late):
+    flights = prepare(late, Aircraft())
+    effects = {
+        "structural_mode": {"frequency_hz": 5.0, "damping": 0.1, "gain": 0.3, "displacement_gain": 0.05},
+        "actuator_rate_limit": {"rate_rad_s": 0.5},
+        "actuator_lag": {"lag_s": 0.04, "damping": 0.7},
+        "alpha_scale": {"scale": 0.1},
+    }
+    numbers = with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights))
+    expected = {
+        "mode_rad_s": 10.0 * np.pi, "mode_damping": 0.1, "mode_rate_gain": 0.3, "mode_gain": 0.05,
+        "slowness_s_rad": 2.0, "lag_s": 0.04, "lag_damping": 0.7, "alpha_scale": 0.1,
+    }  # fmt: skip
+    assert {name: numbers[INDEX[name]] for name in expected} == pytest.approx(expected)
+    assert np.count_nonzero(numbers) == len(expected)
+
+
+def test_what_is_found_beyond_a_number_of_the_file_is_added_to_it():
+    known = {"transport_delay": {"delay_s": 0.03}, "unsteady_lift": {"share": 0.3, "lag_s": 0.1}}
+    found = {"transport_delay": {"delay_s": 0.02}, "alpha_scale": {"scale": 0.1}}
+    both = together(known, found)
+    assert both["transport_delay"]["delay_s"] == pytest.approx(0.05)
+    assert both["unsteady_lift"] == known["unsteady_lift"]
+    assert both["alpha_scale"] == {"scale": 0.1}
