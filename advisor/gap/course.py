@@ -19,6 +19,8 @@ _LINE = 2.0
 """Half the width of such a line, over the inverse of a record's length (Hann's window)."""
 _LOUDER = 2.0
 """Power while the stick moves over that in quiet."""
+_FEW = 0.1
+"""Power in a usual manoeuvre over that in the loudest."""
 _SLOWEST_HZ = 0.1
 _POINTS = 512
 
@@ -31,6 +33,18 @@ def is_of_the_air(flights: Sequence[Flight], courses: Sequence[FloatArray]) -> b
 def has_tone(courses: Sequence[FloatArray]) -> bool:
     """Whether courses swing of themselves: nearly all of their power is in one line."""
     return tone_of(courses) >= _TONE
+
+
+def is_in_few(powers: FloatArray) -> bool:
+    """Whether most manoeuvres have next to nothing of it; what the stick sets off is in all.
+
+    Parameters
+    ----------
+    powers
+        Shape (manoeuvres,): mean square of what is left, beside the noise.
+    """
+    beyond = powers - np.min(powers)
+    return bool(np.median(beyond) < _FEW * np.max(beyond))
 
 
 def tone_of(courses: Sequence[FloatArray]) -> float:

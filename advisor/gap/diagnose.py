@@ -21,7 +21,7 @@ from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.known import beyond_known
 from advisor.gap.layout import DERIVATIVES
-from advisor.gap.leftover import Leftover, left_over, of_the_wind, other_than_air, swinging
+from advisor.gap.leftover import Leftover, is_the_gust, left_over, of_the_wind, other_than_air, swinging
 from advisor.gap.linear import linearise
 from advisor.gap.misread import misread
 from advisor.gap.noise import quiet_rms
@@ -138,7 +138,9 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     smooth = prefiltered(problem.flights)
     stated = np.array([white[k] if smooth[c] else 0.0 for k, c in enumerate(problem.channels)])
     leftover = left_over(problem, stages[0].fitted, last, stated, moving_air=air is not None)
-    if air is not None and (leftover is None or leftover.block == "air"):
+    if air is not None and air.gust and leftover is not None and is_the_gust(problem, last, leftover):
+        leftover = None
+    elif air is not None and (leftover is None or leftover.block == "air"):
         leftover = other_than_air(problem, stages[0].fitted, last)
     # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
     leftover = scale or swinging(problem, stages[0].fitted, last, stated) or leftover

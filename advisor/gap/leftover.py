@@ -12,8 +12,9 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.clock import is_of_the_clock
-from advisor.gap.course import is_of_the_air
+from advisor.gap.course import is_in_few, is_of_the_air
 from advisor.gap.fit import Fitted, rms_of
+from advisor.gap.holdout import mean_squares
 from advisor.gap.noise import unfiltered
 from advisor.gap.origin import stick_or_motion
 from advisor.gap.probes import SENSOR_CHANNELS, Probe, disturbance_course, probe_blocks
@@ -137,6 +138,16 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) 
     if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
         return None
     return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power)
+
+
+def is_the_gust(problem: Problem, last: Fitted, leftover: Leftover) -> bool:
+    """Whether what is left is the gust that was found, whose shape is known to low order only.
+
+    It is in few manoeuvres, and the air describes it nearly as well as any other block.
+    """
+    noise = _noise(problem)
+    powers = np.mean(mean_squares(problem, last.innovations) / noise**2, axis=1)
+    return dict(leftover.ranking).get("air", 0.0) * _BETTER_THAN_AIR >= 1.0 and is_in_few(powers)
 
 
 def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | None:

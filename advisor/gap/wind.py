@@ -19,6 +19,9 @@ _LEAST_SAMPLES = 10
 _LEAST_PER_S = 0.1
 """Change of the wind, m/s per metre, from which on it is felt: a knot in five metres."""
 _SIGMAS = 4.0
+_LEAST_SHARE = 0.17
+"""Of what the air speed has beyond the accelerations. In air that moves, and where thrust comes late, heights
+explain up to a seventh of it by chance; a wind that changes with height, a fifth and more."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,9 @@ def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     without = (np.sum(products) - products) / (np.sum(squares) - squares)
     n = len(pairs)
     std = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
-    if abs(gradient) < max(_LEAST_PER_S, _SIGMAS * std):
+    power = sum(float(speed @ speed) for _, speed in pairs)
+    share = gradient * float(np.sum(products)) / max(power, 1e-300)
+    if abs(gradient) < max(_LEAST_PER_S, _SIGMAS * std) or share < _LEAST_SHARE:
         return None
     return Shear(gradient, std)
 
