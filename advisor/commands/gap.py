@@ -1,6 +1,7 @@
 """``advisor gap``: why does the real aircraft not fly like our simulator."""
 
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -53,11 +54,17 @@ def command(
     """
     aircraft = read_aircraft(aircraft_file)
     if foresee:
+        if logs:
+            raise ConfigurationError(
+                f"advisor gap --foresee makes its flight up and reads no log: leave out {logs[0]}, "
+                "or leave out --foresee to diagnose it."
+            )
         from advisor.report.gap_plan import print_foresight
 
         return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
     if not logs:
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
+    _refuse_unwritable(out)
     from advisor.gap.document import gap_document
     from advisor.report.gap import diagnose_logs, improved_name, write_improved
 
@@ -77,6 +84,8 @@ def command(
     improved = None
     if found.verdict in ("effect", "parameters"):
         improved = str(write_improved(found, aircraft, out or Path(improved_name(found, aircraft_file))))
+    elif out is not None:
+        click.echo(f"{out} was not written: no cause was named and no number found wrong.", err=True)
     if as_json:
         click.echo(json.dumps(gap_document(found, (), improved), allow_nan=False, indent=1))
     else:
@@ -86,6 +95,19 @@ def command(
 
         Console(highlight=False).print(GapScreen(found, improved))
     return 0
+
+
+def _refuse_unwritable(out: Path | None) -> None:
+    """Refuse before the work what could not be written after it; None: a name of our own, in this folder."""
+    if out is None:
+        if not os.access(Path(), os.W_OK):
+            raise ConfigurationError("This folder cannot be written to: name a file in another with --out.")
+    elif out.is_dir():
+        raise ConfigurationError(f"--out: {out} is a folder; name a file in it.")
+    elif not out.parent.is_dir():
+        raise ConfigurationError(f"--out: there is no folder {out.parent}; make it, or name a file elsewhere.")
+    elif not os.access(out if out.exists() else out.parent, os.W_OK):
+        raise ConfigurationError(f"--out: {out} cannot be written to; name a file elsewhere.")
 
 
 def _progress(what: str, share: float) -> None:

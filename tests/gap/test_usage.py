@@ -1,0 +1,67 @@
+"""What `advisor gap` says of its call: mistakes before any work, and what it left undone."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from advisor import cli
+from advisor.gap.result import Diagnosis
+from advisor.report import gap
+from tests.gap.test_report_screen import diagnosis
+
+
+def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, *arguments: object) -> tuple:
+    """Exit code and what stands on stderr."""
+    monkeypatch.setattr("sys.argv", ["advisor", "gap", *map(str, arguments)])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    return ended.value.code, capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("out", "sentence"),
+    [
+        ("nowhere/x.yaml", "there is no folder"),
+        ("a-file/x.yaml", "there is no folder"),
+        (".", "is a folder; name a file in it"),
+    ],
+)
+def test_a_place_that_cannot_be_written_is_refused_before_the_log_is_read(
+    capsys, monkeypatch, tmp_path, out, sentence
+):
+    (tmp_path / "a-file").write_text("")
+    code, error = said(capsys, monkeypatch, tmp_path / "missing.tlog", "--out", tmp_path / out)
+    assert code == 2
+    assert sentence in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize("arguments", [["--out", "better.yaml"], []])
+def test_a_folder_without_permission_is_refused_before_the_log_is_read(
+    capsys, monkeypatch, tmp_path, arguments
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    code, error = said(capsys, monkeypatch, "missing.tlog", *arguments)
+    assert code == 2
+    assert "cannot be written to" in error
+
+
+def test_a_log_beside_foresee_is_refused_for_it_would_not_be_read(capsys, monkeypatch):
+    code, error = said(capsys, monkeypatch, "flight.tlog", "--foresee")
+    assert code == 2
+    assert "reads no log: leave out flight.tlog" in error
+
+
+@pytest.mark.parametrize("verdict", ["none", "unknown"])
+def test_where_there_is_nothing_to_improve_it_says_that_no_file_was_written(
+    capsys, monkeypatch, tmp_path, verdict
+):
+    found: Diagnosis = diagnosis(verdict=verdict)
+    monkeypatch.setattr(gap, "diagnose_logs", lambda *_: found)
+    out: Path = tmp_path / "better.yaml"
+    code, error = said(capsys, monkeypatch, "flight.tlog", "--out", out)
+    assert code == 0
+    assert "better.yaml was not written" in error
+    assert not out.exists()
