@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import yaml
 
 from advisor.aircraft import Aircraft
@@ -23,13 +24,18 @@ _KEPT_SECTIONS = ("elevator", "alpha", "accelerometer")
 def maneuvers_of(
     logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None
 ) -> list[Maneuver]:
-    """Every manoeuvre of all logs, numbered through.
+    """Every manoeuvre of all logs once, numbered through.
 
     Raises
     ------
     UnusableInputError
         A log cannot be read or cannot serve.
     """
+    return _each_once(_recorded(logs, aircraft, target_system))
+
+
+def _recorded(logs: Sequence[Path], aircraft: Aircraft, target_system: int | None) -> list[Maneuver]:
+    """What the logs hold, log by log."""
     found: list[Maneuver] = []
     for log in logs:
         stream = FlightStream(aircraft, target_system)
@@ -38,7 +44,24 @@ def maneuvers_of(
         for problem in stream.problems():
             raise UnusableInputError(problem.code, f"{log.name}: {problem.text}", problem.fix)
         found += [e.maneuver for e in events if isinstance(e, ManeuverFlown)]
-    return [replace(m, number=n) for n, m in enumerate(found, 1)]
+    return found
+
+
+def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
+    """Without what comes again, as from a copy of a log: it would confirm itself."""
+    found: list[Maneuver] = []
+    for maneuver in recorded:
+        if not any(_is_the_same(maneuver, other) for other in found):
+            found.append(replace(maneuver, number=len(found) + 1))
+    return found
+
+
+def _is_the_same(a: Maneuver, b: Maneuver) -> bool:
+    """Whether two records are of one manoeuvre: every channel at the same stamps, to the last digit."""
+    return a.channels.keys() == b.channels.keys() and all(
+        np.array_equal(channel.t, b.channels[name].t) and np.array_equal(channel.y, b.channels[name].y)
+        for name, channel in a.channels.items()
+    )
 
 
 def diagnose_logs(
@@ -50,7 +73,16 @@ def diagnose_logs(
 ) -> Diagnosis:
     """Read logs and diagnose their gap."""
     progress("reading", 0.0)
-    return diagnose(maneuvers_of(logs, aircraft, target_system), aircraft, holdout, progress)
+    recorded = _recorded(logs, aircraft, target_system)
+    maneuvers = _each_once(recorded)
+    found = diagnose(maneuvers, aircraft, holdout, progress)
+    again = len(recorded) - len(maneuvers)
+    if not again:
+        return found
+    note = (
+        f"{again} of {len(recorded)} manoeuvres came twice, as from the same log or a copy: they count once."
+    )
+    return replace(found, notes=(note, *found.notes))
 
 
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:

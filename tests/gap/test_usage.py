@@ -6,8 +6,11 @@ from pathlib import Path
 import pytest
 
 from advisor import cli
+from advisor.aircraft import Aircraft
+from advisor.flight.maneuver import Maneuver
 from advisor.gap.result import Diagnosis
 from advisor.report import gap
+from tests.flights import recorded
 from tests.gap.test_report_screen import diagnosis
 
 
@@ -65,3 +68,23 @@ def test_where_there_is_nothing_to_improve_it_says_that_no_file_was_written(
     assert code == 0
     assert "better.yaml was not written" in error
     assert not out.exists()
+
+
+def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
+    judged: list[Maneuver] = []
+
+    def diagnose(maneuvers: list[Maneuver], *_: object) -> Diagnosis:
+        judged.extend(maneuvers)
+        return diagnosis(notes=("The command was held.",))
+
+    monkeypatch.setattr(gap, "diagnose", diagnose)
+    once = gap.maneuvers_of([recorded("uav", 1.0)], Aircraft())
+    found = gap.diagnose_logs([recorded("uav", 1.0), recorded("uav", 1.0)], Aircraft())
+    assert [m.number for m in judged] == [m.number for m in once]
+    assert found.notes[0].startswith(f"{len(once)} of {2 * len(once)} manoeuvres came twice")
+
+
+def test_two_flights_of_the_same_plan_both_count():
+    flights = [recorded("uav", 1.0, seed) for seed in (11, 12)]
+    once = gap.maneuvers_of(flights[:1], Aircraft())
+    assert len(gap.maneuvers_of(flights, Aircraft())) == 2 * len(once)
