@@ -1,6 +1,7 @@
 """The aircraft file: YAML to :class:`advisor.aircraft.Aircraft`, every mistake listed at once."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from copy import deepcopy
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ import yaml
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
 from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.effects import mistakes_in
 from advisor.problems import ConfigurationError
 
 
@@ -69,15 +71,21 @@ def _without_empty(content: Any) -> Any:
 
 
 def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
-    if not isinstance(content, dict):
-        return content
-    kept = {k: dict(v) if isinstance(v, dict) else v for k, v in content.items()}
-    for section, *inside in locations:
-        if inside and isinstance(kept.get(section), dict):
-            kept[section].pop(inside[0], None)
-        else:
-            kept.pop(section, None)
+    kept = deepcopy(content)
+    for location in locations:
+        if isinstance(kept, dict) and location:
+            _take_out(kept, location)
     return kept
+
+
+def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
+    """Take out the innermost key that a location names; only that one, for its neighbours may be wrong, too."""
+    key, *inside = location
+    within = section.get(key)
+    if isinstance(within, dict) and inside and inside[0] in within:
+        _take_out(within, inside)
+    else:
+        section.pop(key, None)
 
 
 def _reader() -> TypeAdapter[Aircraft]:
@@ -162,6 +170,7 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     for name in aircraft.model:
         if name not in PARAMETERS:
             yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
+    yield from mistakes_in(aircraft.effects)
     plan = aircraft.campaign
     if plan.window < 2:
         yield f"campaign.window: must be at least 2, a scatter needs two values, is {plan.window}"

@@ -6,7 +6,10 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.config import load_aircraft, parse_aircraft
+from advisor.effects import LEAST
+from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.problems import ConfigurationError
+from sim.effects.terms import problems_with
 
 CONTRACT_EXAMPLE = """
 name: my aircraft
@@ -70,6 +73,35 @@ def test_every_mistake_is_listed_at_once_with_its_path() -> None:
         "wingspan: unknown key",
     ):
         assert part in message
+
+
+def test_wrong_effects_are_listed_beside_a_wrong_model() -> None:
+    with pytest.raises(ConfigurationError) as caught:
+        parse_aircraft(
+            {
+                "effects": {
+                    "transport_delay": {"delay_s": -3},
+                    "foo": {},
+                    "gust": {"length_m": "long", "height_m": 2.0},
+                    "alpha_scale": 0.1,
+                },
+                "model": {"M_alpha": "abc"},
+            }
+        )
+    for part in (
+        "model.M_alpha: ",
+        "effects.transport_delay.delay_s: must not be below 0, is -3",
+        "effects.foo: unknown effect",
+        "effects.gust.length_m: ",
+        "effects.gust.height_m: unknown key",
+        "effects.alpha_scale: ",
+    ):
+        assert part in str(caught.value)
+
+
+def test_the_effects_of_a_file_are_those_of_the_gap_analysis_and_the_simulator_flies_all_their_parameters() -> None:
+    assert set(LEAST) == set(BLOCK_OF)
+    assert problems_with(LEAST) == []
 
 
 @pytest.mark.parametrize(
