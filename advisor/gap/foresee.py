@@ -13,7 +13,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted
 from advisor.gap.layout import INDEX
 from advisor.gap.marks import Marks
-from advisor.gap.needs import NEEDS, OTHERWISE, hidden_from
+from advisor.gap.needs import NEEDS, OTHERWISE, hidden_from, need_of
 from advisor.gap.problem import Problem
 from advisor.gap.result import Unseen
 from advisor.gap.score import LEAST_GAIN, least_change
@@ -96,7 +96,7 @@ def foresee(
     ]
     found += others
     shares = _shares(problem, fitted)
-    return [_foreseen(mark, found, marks, shares, problem.channels) for mark in found]
+    return [_foreseen(mark, found, marks, shares) for mark in found]
 
 
 def unseen_effects(
@@ -108,15 +108,13 @@ def unseen_effects(
         tried.discard("alpha_bias")
     if not problem.flights.speed_measured or problem.flights.speed_moves < SPEED_CHANGE:
         tried.discard("airspeed_variation")
-    out = [
-        Unseen(effect, need.because, need.add)
-        for effect, need in NEEDS.items()
-        if effect not in tried and effect not in present
-    ]
+    flights = problem.flights
+    needed = {e: need_of(e, flights) for e in NEEDS if e not in tried and e not in present}
+    out = [Unseen(effect, need.because, need.add) for effect, need in needed.items()]
     for seen in foresee(problem, fitted, variants, noise, rounds=1):
         twins = [name for name, cosine in seen.confused_with if cosine > CONFUSED_AT]
         if not np.isfinite(seen.smallest):
-            out.append(Unseen(seen.effect, *hidden_from(seen.effect, problem.channels)))
+            out.append(Unseen(seen.effect, *hidden_from(seen.effect, flights)))
         elif twins and seen.effect not in present:
             alike = " or ".join(name.replace("_", " ") for name in twins)
             out.append(Unseen(seen.effect, f"when small it looks like {alike}", seen.add))
@@ -181,7 +179,7 @@ def _needed(marks: Marks, numbers: int) -> float:
 
 
 def _foreseen(
-    mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mapping[str, float], channels: Sequence[str]
+    mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mapping[str, float]
 ) -> Foreseen:
     smallest = max(marks.smallest(mark.vector, _needed(marks, mark.numbers)), mark.least)
     if smallest > mark.most:
@@ -195,7 +193,7 @@ def _foreseen(
     ways = [way for way in (breaking(mark.effect, other) for other in twins) if way]
     add = "; ".join(dict.fromkeys(ways)) or (OTHERWISE if twins else "")
     if not np.isfinite(smallest):
-        add = "; ".join(dict.fromkeys([hidden_from(mark.effect, channels)[1], *ways]))
+        add = "; ".join(dict.fromkeys([hidden_from(mark.effect, marks.problem.flights)[1], *ways]))
     share = None
     if mark.parameter in shares and np.isfinite(smallest):
         share = smallest * shares[mark.parameter]
@@ -204,7 +202,10 @@ def _foreseen(
 
 
 def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:
-    """Curved terms to their share of the linear one, per unit, at the largest motion there is."""
+    """Curved terms to their share of the linear one, per unit, at the largest motion there is.
+
+    A linear term of nothing has no shares.
+    """
     p = problem.driving(fitted.point)
     flights = problem.flights.flights
     reached = {
@@ -213,10 +214,8 @@ def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:
             float(np.max(np.abs(problem.fly(f, p[i])[0] - f.trim[0]))) for i, f in enumerate(flights)
         ),
     }
-    return {
-        term: reached[over] / max(abs(float(p[0, INDEX[linear]])), 1e-9)
-        for term, (linear, over) in _CURVES.items()
-    }
+    terms = {term: (abs(float(p[0, INDEX[linear]])), over) for term, (linear, over) in _CURVES.items()}
+    return {term: reached[over] / linear for term, (linear, over) in terms.items() if linear > 0.0}
 
 
 def _cosine(a: FloatArray, b: FloatArray) -> float:

@@ -18,12 +18,12 @@ from advisor.flight.kinematics import SMALLEST_BIAS_RAD
 from advisor.flight.messages import FloatArray
 from advisor.gap.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
 from advisor.gap.causes import OFFSET_SIGMAS
-from advisor.gap.data import Flight
+from advisor.gap.data import Flight, Flights
 from advisor.gap.fit import Fitted
 from advisor.gap.foresee import Foreseen, Mark
 from advisor.gap.linear import pulse_response
 from advisor.gap.marks import Marks
-from advisor.gap.needs import NEEDS
+from advisor.gap.needs import need_of
 from advisor.gap.probes import disturbance_columns
 from advisor.gap.problem import Problem
 from advisor.gap.simulate import DISTURB_AIR
@@ -59,7 +59,7 @@ class _Air:
 def foresee_air(problem: Problem, fitted: Fitted, marks: Marks, unit_s: float) -> list[Foreseen]:
     """Smallest spread of turbulence and smallest (1 − cos) gust, two time units of the input long."""
     if "alpha" not in problem.channels:
-        return [impossible("turbulence"), impossible("gust")]
+        return [impossible(effect, problem.flights) for effect in ("turbulence", "gust")]
     air = _air(problem, fitted, marks, 2.0 * unit_s)
     speed = problem.flights.reference_m_s
     spread = _first(lambda angle: air.expected(angle, 0.0))
@@ -87,7 +87,7 @@ def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
     """A constant offset of α against θ minus the climb angle; no derivative enters."""
     flights = problem.flights
     if not {"alpha", "theta"} <= set(flights.channels) or not {"climb_rate", "airspeed"} <= flights.has:
-        return impossible("alpha_bias")
+        return impossible("alpha_bias", flights)
     angles = [noise[flights.channels.index(c)] for c in ("alpha", "theta")]
     reading = float(np.hypot(np.hypot(*angles), CLIMB_RATE_STD_M_S / flights.reference_m_s))
     std = reading / np.sqrt(sum(f.duration_s for f in flights.flights))
@@ -95,9 +95,9 @@ def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
     return Foreseen("alpha_bias", "bias_rad", max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * std), (), way)
 
 
-def impossible(effect: str) -> Foreseen:
+def impossible(effect: str, flights: Flights) -> Foreseen:
     """An effect that the plan cannot show at any size, with what to add."""
-    need = NEEDS[effect]
+    need = need_of(effect, flights)
     return Foreseen(effect, need.parameter, float("inf"), (), need.add)
 
 

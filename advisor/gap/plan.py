@@ -106,7 +106,7 @@ def foresee_flights(
         foresee_offset(problem, noise),
     ]
     by_effect = {f.effect: f for f in found}
-    return [by_effect.get(effect) or impossible(effect) for effect in BLOCK_OF]
+    return [by_effect.get(effect) or impossible(effect, flights) for effect in BLOCK_OF]
 
 
 def _refuse(plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: Sequence[str]) -> None:

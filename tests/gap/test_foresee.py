@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from advisor.gap.baseline import believed_derivatives
 from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
+from advisor.gap.needs import need_of
 from advisor.gap.plan import foresee_flights, foresee_plan
 from advisor.problems import ConfigurationError
 from advisor.report.gap_plan import ForesightScreen, size_of
@@ -53,6 +55,39 @@ def test_without_its_channel_an_effect_is_invisible_and_the_message_is_named(wit
     found = {f.effect: f for f in foresee_plan(PLANE, PLAN, 50.0, 2.0, (without,))}[effect]
     assert not np.isfinite(found.smallest)
     assert message in found.add
+
+
+def flown_with(channel, reading):
+    """Two manoeuvres in which a channel reads always the same, or was not recorded (None)."""
+    maneuvers = fly(Setup(maneuvers=2, heights_m=(80.0, 80.0), thrust_amplitude=0.1))
+    return prepare([replace(m, channels=_altered(m.channels, channel, reading)) for m in maneuvers], PLANE)
+
+
+def _altered(channels, name, reading):
+    kept = {key: c for key, c in channels.items() if key != name}
+    if reading is None:
+        return kept
+    return {**kept, name: replace(channels[name], y=np.full(len(channels[name]), reading))}
+
+
+@pytest.mark.parametrize(
+    ("effect", "channel", "reading", "because", "add"),
+    [
+        ("airspeed_variation", "airspeed", 22.0, "the air speed was constant", "fly at two air speeds"),
+        ("airspeed_variation", "airspeed", 0.0, "reads next to nothing", "check the air speed sensor"),
+        ("airspeed_variation", "airspeed", None, "no air speed", "VFR_HUD at 10 Hz"),
+        ("thrust_moment", "throttle", 0.4, "the throttle did not move", "fly at two air speeds"),
+        ("thrust_moment", "throttle", None, "no throttle", "VFR_HUD at 10 Hz"),
+        ("ground_effect", "height", 80.0, "the height hardly varied", "fly low and high"),
+        ("ground_effect", "height", None, "no height", "range finder"),
+    ],
+)
+def test_a_channel_that_did_not_vary_is_told_from_one_that_was_not_recorded(
+    effect, channel, reading, because, add
+):
+    need = need_of(effect, flown_with(channel, reading))
+    assert because in need.because
+    assert add in need.add
 
 
 def test_changes_from_one_manoeuvre_to_the_next_need_three_of_them():
