@@ -15,8 +15,8 @@ from advisor.gap.fit import Fitted
 from advisor.gap.foresee import unseen_effects
 from advisor.gap.holdout import hold_out
 from advisor.gap.judgement import judgement
-from advisor.gap.known import left_aside
 from advisor.gap.measure import gap_of
+from advisor.gap.notes import notes_of
 from advisor.gap.numbers import (
     fidelity_of,
     gap_numbers,
@@ -67,7 +67,7 @@ def answer(
         reference_airspeed_m_s=problem.flights.reference_m_s if problem.flights.speed_measured else None,
         effects=_improvements(fitted, std, causes),
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
-        notes=_notes(e, aircraft), maneuvers=tuple(f.number for f in problem.flights.flights),
+        notes=notes_of(e, aircraft, holdout), maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
     return replace(diagnosis, sentence=sentence_of(diagnosis))
 
@@ -93,37 +93,3 @@ def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
     left = float(np.mean(gap_of(e.stages[-1].held_out.mean_square, e.floor)))
     block = next((c.block for c in causes if c.present), ranking[0][0] if ranking else "force_equation")
     return Where(block, float(np.clip(1.0 - left / total, 0.0, 1.0)) if causes else 0.0, ranking)
-
-
-def _notes(e: Evidence, aircraft: Aircraft) -> tuple[str, ...]:
-    notes = []
-    flights = e.problem.flights
-    notes.append(
-        "The command was held between its stamps." if e.problem.held
-        else "The command was taken as linear between its stamps, its edges anywhere between two."
-    )  # fmt: skip
-    if not flights.speed_measured:
-        notes.append("No air speed in the log: derivatives are taken as constant.")
-    if e.shear is not None:
-        per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
-        notes.append(f"The wind changed with height, by {per_metre} a metre.")
-    if e.leftover is not None and e.leftover.note:
-        notes.append(e.leftover.note)
-    had = ", ".join(effect.replace("_", " ") for effect in aircraft.effects)
-    if had:
-        notes.append(f"The simulator has the aircraft file's effects ({had}); what is found is beyond them.")
-    passed = ", ".join(effect.replace("_", " ") for effect in left_aside(aircraft.effects))
-    if passed:
-        notes.append(f"Of them left aside, for they belong to the flight that showed them: {passed}.")
-    missing = [c for c in ("a_z", "theta") if c not in flights.channels]
-    if missing:
-        notes.append(f"Without {' and '.join(missing)} several instrument effects cannot be seen.")
-    if len(flights) < 6:
-        notes.append(
-            f"Only {len(flights)} manoeuvres: intervals are wide, changes between manoeuvres hard to see."
-        )
-    if aircraft.elevator.lag_s is None:
-        notes.append(
-            "The servo's lag is not in the aircraft file: a lag found here may simply be the servo's."
-        )
-    return tuple(notes)

@@ -47,12 +47,17 @@ def foresee_plan(
     Raises
     ------
     ConfigurationError
-        The aircraft file has no complete ``model``, or the plan cannot be flown or sampled as it says.
+        The aircraft file has no complete ``model``, or one without an elevator; or the plan cannot be flown
+        or sampled as it says.
     """
     derivatives = believed_derivatives(aircraft)
     if derivatives is None:
         missing = ", ".join(name for name in PARAMETERS if name not in aircraft.model)
         raise ConfigurationError(f"foresee needs the aircraft file's model: {missing} missing.")
+    if aircraft.model["M_delta_e"] == 0.0:
+        raise ConfigurationError(
+            "model.M_delta_e: an elevator of no effect (0) shows nothing; give the moment it makes, in 1/s²."
+        )
     _refuse(plan, rate_hz, amplitude_deg, without)
     frequency = float(np.sqrt(max(-derivatives[3] + derivatives[0] * derivatives[4], 1.0)))
     unit = min(max(2.0 / frequency, 0.2), 1.5)

@@ -13,6 +13,7 @@ from rich.text import Text
 
 from advisor.aircraft import Aircraft
 from advisor.gap.foresee import CONFUSED_AT, Foreseen
+from advisor.gap.notes import unusual_signs
 from advisor.gap.plan import TYPICAL_NOISE, foresee_plan
 from advisor.report.gap_sizes import in_units, spelled
 
@@ -36,25 +37,28 @@ def print_foresight(
     inputs = [name.strip() for name in plan.split(",") if name.strip()]
     absent = [name.strip() for name in without.split(",") if name.strip()]
     found = foresee_plan(aircraft, inputs, rate_hz, amplitude_deg, absent)
+    notes = unusual_signs(aircraft.model)
     if as_json:
-        click.echo(json.dumps(_document(found), allow_nan=False, indent=1))
+        click.echo(json.dumps(_document(found, notes), allow_nan=False, indent=1))
         return 0
     kept = f", without {', '.join(absent)}" if absent else ""
     title = f"{len(inputs)} manoeuvres at {rate_hz:g} Hz, {amplitude_deg:g} deg of elevator{kept}"
-    Console(highlight=False).print(ForesightScreen(title, found))
+    Console(highlight=False).print(ForesightScreen(title, found, notes))
     return 0
 
 
 class ForesightScreen:
     """Sizes that would show, what tells twins apart, and what the plan cannot show at all."""
 
-    def __init__(self, title: str, found: Sequence[Foreseen]) -> None:
-        self.title, self.found = title, found
+    def __init__(self, title: str, found: Sequence[Foreseen], notes: Sequence[str] = ()) -> None:
+        self.title, self.found, self.notes = title, found, notes
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the table and the two lists."""
+        """Yield the notes, the table and the two lists."""
         yield Text(self.title, style="bold")
         yield Text(f"assumed noise: {_noise()}; speeds ±2 %, steps alternately 60 % of it", style="dim")
+        for note in self.notes:
+            yield Text(note)
         yield ""
         yield _table([f for f in self.found if math.isfinite(f.smallest)])
         ways = _ways(self.found)
@@ -126,7 +130,7 @@ def _whole(x: float) -> str:
     return f"{x:.0f}" if x >= 100.0 else f"{x:.2g}"
 
 
-def _document(found: Sequence[Foreseen]) -> dict[str, object]:
+def _document(found: Sequence[Foreseen], notes: Sequence[str]) -> dict[str, object]:
     return {
         "schema": "advisor.foresee/1",
         "effects": [
@@ -140,4 +144,5 @@ def _document(found: Sequence[Foreseen]) -> dict[str, object]:
             }
             for f in found
         ],
+        "notes": list(notes),
     }

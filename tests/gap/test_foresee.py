@@ -185,6 +185,28 @@ def test_a_plan_that_cannot_be_flown_is_refused_with_what_would_do(plan, rate_hz
         foresee_plan(PLANE, plan, rate_hz, 2.0, without)
 
 
+def test_an_elevator_without_effect_is_refused():
+    with pytest.raises(ConfigurationError, match=r"M_delta_e: an elevator of no effect"):
+        foresee_plan(replace(PLANE, model={**MODEL, "M_delta_e": 0.0}), PLAN, 50.0, 2.0)
+
+
+def test_a_curve_of_a_term_that_is_nothing_has_its_own_unit_for_it_is_no_share():
+    neutral = replace(PLANE, model={**MODEL, "M_alpha": 0.0})
+    found = {f.effect: f for f in foresee_plan(neutral, PLAN, 50.0, 2.0)}["nonlinear_pitching_moment"]
+    assert found.share is None
+    assert size_of(found).endswith("s⁻²rad⁻¹")
+
+
+@pytest.mark.parametrize(("sign", "unusual"), [(-1.0, False), (1.0, True)])
+def test_an_elevator_that_pitches_up_when_it_goes_down_is_foreseen_with_a_note(tmp_path, sign, unusual):
+    path = tmp_path / "plane.yaml"
+    path.write_text(json.dumps({"model": {**MODEL, "M_delta_e": sign * 52.0}}))
+    arguments = ["gap", "--foresee", "--aircraft", str(path), "--plan", "3211,rev"]
+    document = json.loads(CliRunner().invoke(advisor, [*arguments, "--json"]).stdout)
+    assert any("right for a canard" in note for note in document["notes"]) == unusual
+    assert ("right for a canard" in CliRunner().invoke(advisor, arguments).stdout) == unusual
+
+
 @pytest.mark.study
 @pytest.mark.timeout(1200)
 @pytest.mark.parametrize(

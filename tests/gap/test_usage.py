@@ -6,11 +6,13 @@ from pathlib import Path
 import pytest
 
 from advisor import cli
-from advisor.aircraft import Aircraft
+from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuver import Maneuver
+from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.report import gap
 from tests.flights import recorded
+from tests.gap.generator import Setup, fly
 from tests.gap.test_report_screen import diagnosis
 
 
@@ -73,11 +75,11 @@ def test_where_there_is_nothing_to_improve_it_says_that_no_file_was_written(
 def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
     judged: list[Maneuver] = []
 
-    def diagnose(maneuvers: list[Maneuver], *_: object) -> Diagnosis:
+    def noted(maneuvers: list[Maneuver], *_: object) -> Diagnosis:
         judged.extend(maneuvers)
         return diagnosis(notes=("The command was held.",))
 
-    monkeypatch.setattr(gap, "diagnose", diagnose)
+    monkeypatch.setattr(gap, "diagnose", noted)
     once = gap.maneuvers_of([recorded("uav", 1.0)], Aircraft())
     found = gap.diagnose_logs([recorded("uav", 1.0), recorded("uav", 1.0)], Aircraft())
     assert [m.number for m in judged] == [m.number for m in once]
@@ -88,3 +90,17 @@ def test_two_flights_of_the_same_plan_both_count():
     flights = [recorded("uav", 1.0, seed) for seed in (11, 12)]
     once = gap.maneuvers_of(flights[:1], Aircraft())
     assert len(gap.maneuvers_of(flights, Aircraft())) == 2 * len(once)
+
+
+def test_more_manoeuvres_to_keep_out_than_there_are_and_an_unusual_elevator_are_noted():
+    canard = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, 52.0), strict=True))
+    notes = diagnose(fly(Setup(maneuvers=3)), Aircraft(model=canard), holdout=3).notes
+    assert notes[0] == (
+        "3 manoeuvres cannot be kept out of 3: each was kept out in turn instead. Keep out 2 at most."
+    )
+    assert any("M_delta_e is 52, above zero: unusual" in note for note in notes)
+
+
+def test_what_can_be_kept_out_needs_no_note():
+    notes = diagnose(fly(Setup(maneuvers=3)), Aircraft(), holdout=2).notes
+    assert not any("kept out" in note for note in notes)

@@ -1,0 +1,71 @@
+"""What a reader should know beside the answer: what was assumed, missing, unusual, or could not be done."""
+
+from collections.abc import Mapping, Sequence
+
+from advisor.aircraft import Aircraft
+from advisor.gap.evidence import Evidence
+from advisor.gap.known import Effects, left_aside
+
+
+def notes_of(e: Evidence, aircraft: Aircraft, holdout: int | None) -> tuple[str, ...]:
+    """Every note that these flights and their aircraft file call for, a sentence each."""
+    notes = []
+    flights = e.problem.flights
+    if holdout is not None and holdout >= len(flights):
+        notes.append(
+            f"{holdout} manoeuvres cannot be kept out of {len(flights)}: each was kept out in turn instead. "
+            f"Keep out {len(flights) - 1} at most."
+        )
+    notes.append(
+        "The command was held between its stamps." if e.problem.held
+        else "The command was taken as linear between its stamps, its edges anywhere between two."
+    )  # fmt: skip
+    if not flights.speed_measured:
+        notes.append(
+            "No air speed in the log: derivatives are taken as constant. Without the true one, stated as "
+            "airspeed_m_s in the aircraft file, forces and angles do not agree."
+        )
+    if e.shear is not None:
+        per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
+        notes.append(f"The wind changed with height, by {per_metre} a metre.")
+    if e.leftover is not None and e.leftover.note:
+        notes.append(e.leftover.note)
+    notes += _known(aircraft.effects)
+    missing = [c for c in ("a_z", "theta") if c not in flights.channels]
+    if missing:
+        notes.append(f"Without {' and '.join(missing)} several instrument effects cannot be seen.")
+    if len(flights) < 6:
+        notes.append(
+            f"Only {len(flights)} manoeuvres: intervals are wide, changes between manoeuvres hard to see."
+        )
+    notes += unusual_signs(aircraft.model)
+    if aircraft.elevator.lag_s is None:
+        notes.append(
+            "The servo's lag is not in the aircraft file: a lag found here may simply be the servo's."
+        )
+    return tuple(notes)
+
+
+def _known(effects: Effects) -> list[str]:
+    """What was made of the effects that stand in the aircraft file."""
+    aside = left_aside(effects)
+    notes = []
+    if had := [effect for effect in effects if effect not in aside]:
+        notes.append(f"The simulator has the file's {_listed(had)}; what is found here is beyond that.")
+    if aside:
+        notes.append(f"The file's {_listed(aside)} belongs to the flight that showed it: left aside.")
+    return notes
+
+
+def _listed(effects: Sequence[str]) -> str:
+    return ", ".join(effect.replace("_", " ") for effect in effects)
+
+
+def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
+    """What of an aircraft file's model is right for few aircraft only."""
+    if model.get("M_delta_e", 0.0) <= 0.0:
+        return ()
+    return (
+        f"The aircraft file's M_delta_e is {model['M_delta_e']:g}, above zero: unusual, for an elevator is "
+        "positive trailing edge down and pitches the nose down; right for a canard.",
+    )
