@@ -79,7 +79,7 @@ def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
 
 
 def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
-    """Take out the innermost key that a location names; only that one, for its neighbours may be wrong, too."""
+    """Take out the innermost key that a location names, and no other: its neighbours may be wrong, too."""
     key, *inside = location
     within = section.get(key)
     if isinstance(within, dict) and inside and inside[0] in within:

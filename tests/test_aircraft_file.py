@@ -99,7 +99,7 @@ def test_wrong_effects_are_listed_beside_a_wrong_model() -> None:
         assert part in str(caught.value)
 
 
-def test_the_effects_of_a_file_are_those_of_the_gap_analysis_and_the_simulator_flies_all_their_parameters() -> None:
+def test_effects_of_a_file_are_those_of_the_gap_analysis_and_the_simulator_flies_them_all() -> None:
     assert set(LEAST) == set(BLOCK_OF)
     assert problems_with(LEAST) == []
 

@@ -105,7 +105,9 @@ def _refuse_unwritable(out: Path | None) -> None:
     elif out.is_dir():
         raise ConfigurationError(f"--out: {out} is a folder; name a file in it.")
     elif not out.parent.is_dir():
-        raise ConfigurationError(f"--out: there is no folder {out.parent}; make it, or name a file elsewhere.")
+        raise ConfigurationError(
+            f"--out: there is no folder {out.parent}; make it, or name a file elsewhere."
+        )
     elif not os.access(out if out.exists() else out.parent, os.W_OK):
         raise ConfigurationError(f"--out: {out} cannot be written to; name a file elsewhere.")
 

@@ -178,9 +178,7 @@ def _needed(marks: Marks, numbers: int) -> float:
     return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
 
 
-def _foreseen(
-    mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mapping[str, float]
-) -> Foreseen:
+def _foreseen(mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mapping[str, float]) -> Foreseen:
     smallest = max(marks.smallest(mark.vector, _needed(marks, mark.numbers)), mark.least)
     if smallest > mark.most:
         smallest = float("inf")

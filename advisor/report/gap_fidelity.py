@@ -45,12 +45,13 @@ def yardsticks(d: Diagnosis) -> Iterator[RenderableType]:
 
 
 def _yardsticks(d: Diagnosis) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for heading in ("", "gap", "Theil", "of error", "R²", "in band"):
+    # One column of padding, not two: with the largest numbers there are the table fills 80 columns.
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+    for heading in ("", "gap", "Theil", "of error", "R²", "in band, %"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
     for channel, (before, after) in d.yardsticks.items():
         inside = "" if after.within_tolerance is None or before.within_tolerance is None else (
-            f"{100 * before.within_tolerance:.0f} → {100 * after.within_tolerance:.0f} %"
+            f"{100 * before.within_tolerance:.0f} → {100 * after.within_tolerance:.0f}"
         )  # fmt: skip
         split = "/".join(f"{100 * share:.0f}" for share in (after.bias, after.variance, after.covariance))
         table.add_row(

@@ -1,4 +1,4 @@
-"""The diagnosis on a terminal: verdict, block picture, waterfall, ranking, error before and after."""
+"""The diagnosis on a terminal: verdict, where and when, waterfall, ranking, error before and after."""
 
 from collections.abc import Iterator, Sequence
 
@@ -11,9 +11,10 @@ from rich.text import Text
 
 from advisor.gap.result import Diagnosis
 from advisor.gap.text import place
-from advisor.report.gap_causes import ranking, unseen
+from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, worst_maneuver, yardsticks
 from advisor.report.gap_sizes import short, spelled
+from advisor.report.gap_where import whereabouts
 
 WIDEST = 120
 """Columns beyond which lines only become harder to read."""
@@ -32,6 +33,9 @@ _PICTURE = (
     (("air", "air"), ("force_equation", "lift"), ("alpha_sensor", "angle of attack")),
     (("timing", "time stamps"), ("accelerometer", "accelerometer"), ("attitude_sensor", "attitude")),
 )
+_SCORES = "per cent: how well a block would explain the gap on its own, the best 100 %"
+_AS_GOOD = "100 % beside the marked block: the data alone can hardly tell the two apart"
+_ROUNDS_TO_ALL = 0.995
 _BAR = 40
 _WORTH_SAYING = 0.005
 """Shares that round to nothing are left out."""
@@ -52,14 +56,15 @@ class GapScreen:
         d = self.diagnosis
         yield Panel(Text(d.sentence), title=_VERDICTS[d.verdict], title_align="left")
         yield _numbers(d)
-        yield Panel(_picture(d), title=_where(d), title_align="left")
+        yield Panel(Group(*_picture(d)), title=_where(d), title_align="left")
+        yield Panel(whereabouts(d.gap), title="where in the flight", title_align="left")
         if d.waterfall:
             title = "gap as effects are added, one after another"
             yield Panel(_waterfall(d), title=title, title_align="left")
         if d.causes:
             yield ""
             yield from ranking(d.causes)
-        title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap"
+        title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap (its size, no sign)"
         yield ""
         yield Panel(errors(d, width), title=title, title_align="left")
         yield ""
@@ -92,7 +97,7 @@ def _numbers(d: Diagnosis) -> Text:
     if d.shrink is not None:
         low, high = d.shrink.ci95_percent
         lines.append(
-            f"{d.shrink.percent:.1f} % less (95 %: {low:.0f} to {high:.0f}) on manoeuvres "
+            f"{d.shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on manoeuvres "
             f"kept out of the fit: {_counted(d.shrink.holdout)}"
         )
     return Text("\n".join(lines))
@@ -112,23 +117,35 @@ def _where(d: Diagnosis) -> str:
     return f"where: {place(d.where.block)}{share}"
 
 
-def _picture(d: Diagnosis) -> Table:
-    """The simulator as blocks, the guilty one between arrows; per cent: how well the best of each does."""
+def _picture(d: Diagnosis) -> Iterator[RenderableType]:
+    """The simulator as blocks: the guilty one between arrows, others that are named, how well the rest do."""
     table = Table.grid(expand=True, padding=(0, 1))
     guilty = d.where.block if d.verdict in ("effect", "unknown") else ""
-    scores = dict(d.where.ranking)
+    named = {c.block for c in d.causes if c.present} - {guilty}
+    scores = {
+        block: score
+        for block, score in d.where.ranking
+        if score >= _WORTH_SAYING and block != guilty and block not in named
+    }
     for row in _PICTURE:
         cells = []
         for block, label in row:
-            score = scores.get(block, 0.0)
             if block == guilty:
                 cells.append(Text(f"▶ {label.upper()} ◀", style="bold reverse"))
-            elif score >= _WORTH_SAYING:
-                cells.append(Text(f"[{label}] {100 * score:.0f} %"))
+            elif block in named:
+                cells.append(Text(f"[{label}] {PRESENT}", style="bold"))
+            elif block in scores:
+                cells.append(Text(f"[{label}] {100 * scores[block]:.0f} %"))
             else:
                 cells.append(Text(f"[{label}]", style="dim"))
         table.add_row(*cells)
-    return table
+    yield table
+    if named:
+        yield Text(f"{PRESENT} part of the improved simulator, too", style="dim")
+    if scores:
+        yield Text(_SCORES, style="dim")
+    if guilty and any(score >= _ROUNDS_TO_ALL for score in scores.values()):
+        yield Text(_AS_GOOD, style="dim")
 
 
 def _waterfall(d: Diagnosis) -> Text:

@@ -15,6 +15,8 @@ _ENDINGS = {
     "_m": (1.0, "m"),
 }
 """Ending of a parameter's name: factor from SI, unit. The longest that fits counts."""
+_LEAST, _ROUNDING = 1e-3, 1e-9
+"""Gap too small for a number, and too small to be anything but the rounding of nothing."""
 _SHARES = frozenset({"scale", "step", "change", "share", "damping", "lift_h"})
 _ICE = frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e"})
 """Changes of derivatives, as a share of them."""
@@ -38,7 +40,9 @@ def spelled(effect: str) -> str:
 
 
 def short(x: float) -> str:
-    """Three digits, never in powers of ten where people count in thousands."""
+    """Three digits, never in powers of ten where people count in thousands or it might as well be nothing."""
+    if abs(x) < _LEAST:
+        return "0" if abs(x) < _ROUNDING else "<0.001"
     return f"{x:,.0f}" if 1e3 <= abs(x) < 1e7 else f"{x:.3g}"
 
 

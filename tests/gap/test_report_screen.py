@@ -1,6 +1,7 @@
 """The diagnosis on a terminal: everything fits, sizes have units, nothing rests on colour."""
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -34,7 +35,9 @@ def diagnosis(**changes: object) -> Diagnosis:
         "verdict": "effect", "sentence": "The simulator answers 30 ms too early.",
         "gap": Gap(
             12345.6, 0.21, dict.fromkeys(CHANNELS, 0.01), "measured", dict.fromkeys(CHANNELS, 123456.7),
-            dict.fromkeys(CHANNELS, 0.0123), ((1, 2.0, 0.1), (2, 5.0, 0.2)), {}, (),
+            dict.fromkeys(CHANNELS, 0.0123), ((1, 2.0, 0.1), (2, 5.0, 0.2), (12, 123456.7, 2.2e-16)),
+            {"step edge": 234567.8, "plateau": 3.4, "free response": 0.0},
+            ((0.0, 0.5, 0.25), (4.0, 10.0, 0.75)),
         ),
         "where": Where("input", 0.97, (("input", 1.0), ("pitch_rate_sensor", 0.4))),
         "causes": (DELAY, CURVED, UNLIKELY), "shrink": Shrink((1, 2, 3), 12345.6, 0.21, 99.9, (99.0, 100.0)),
@@ -68,6 +71,62 @@ def test_nothing_is_cut_off_and_no_line_is_longer_than_the_terminal(columns):
     assert any("0.8123 → 0.9999" in line for line in lines)
 
 
+def test_the_largest_numbers_of_the_fidelity_fit_80_columns():
+    poor = Yardsticks(0.999, 0.33, 0.33, 0.34, -12.3456, 1.0)
+    gap = replace(diagnosis().gap, by_channel=dict.fromkeys(CHANNELS, 1.23e7))
+    lines = printed(diagnosis(gap=gap, yardsticks=dict.fromkeys(CHANNELS, (poor, poor))), 80)
+    assert sum("1.23e+07 → 0.0123" in line and "100 → 100" in line for line in lines) == len(CHANNELS)
+    assert not any("…" in line for line in lines)
+
+
+def test_where_in_the_flight_the_gap_lies_has_phases_beside_frequencies_with_bars():
+    lines = printed(diagnosis(), 80)
+    (edge,) = [line for line in lines if "step edge" in line]
+    assert edge.split() == [
+        "│",
+        "step",
+        "edge",
+        "234,568",
+        "█" * 12,
+        "0",
+        "to",
+        "0.5",
+        "Hz",
+        "25",
+        "%",
+        "███",
+        "│",
+    ]
+    (plateau,) = [line for line in lines if "plateau" in line]
+    assert plateau.split() == ["│", "plateau", "3.4", "4", "to", "10", "Hz", "75", "%", "█" * 9, "│"]
+
+
+def test_every_manoeuvre_has_its_gap_before_and_after():
+    (row,) = [line for line in printed(diagnosis(), 80) if "2 → 0.1 " in line]
+    assert row.split()[1:] == ["1", "2", "→", "0.1", "12", "█" * 12, "123,457", "→", "0", "│"]
+
+
+def test_a_gap_smaller_than_the_noise_has_no_long_bar():
+    quiet = replace(
+        diagnosis().gap, by_phase={"plateau": 0.04}, by_maneuver=((1, 0.03, 0.03),), by_band_hz=()
+    )
+    lines = printed(diagnosis(gap=quiet, verdict="none", causes=(), waterfall=(), shrink=None), 80)
+    between = lines[lines.index(next(x for x in lines if "where in the flight" in x)) : -1]
+    assert not any("██" in line for line in between)
+
+
+def test_the_interval_of_the_shrink_encloses_it_as_printed():
+    shrunk = Shrink((1, 2, 3), 100.0, 0.1, 99.9, (99.86, 99.94))
+    (line,) = [line for line in printed(diagnosis(shrink=shrunk), 80) if "% less" in line]
+    assert line.startswith("99.9 % less (95 %: 99.9 to 99.9)")
+
+
+def test_the_error_says_that_its_size_is_shown_and_a_standard_deviation_that_it_is_one():
+    text = " ".join(printed(diagnosis(), 140))
+    assert "the one with the largest gap (its size, no sign)" in text
+    assert text.count("±: one standard deviation") == 1
+
+
 def test_a_cause_takes_a_line_with_its_size_in_units_people_use():
     (line,) = [line for line in printed(diagnosis(), 80) if "transport delay" in line and "93 %" in line]
     assert line.startswith("●")
@@ -90,6 +149,24 @@ def test_the_guilty_block_is_marked_without_colour():
     (row,) = [line for line in printed(diagnosis(), 80) if "COMMAND" in line]
     assert "▶ COMMAND → SURFACE ◀" in row
     assert "[pitch rate] 40 %" in row
+
+
+def test_a_block_as_good_as_the_marked_one_is_explained():
+    where = Where("input", 0.97, (("input", 1.0), ("timing", 0.999), ("moment_equation", 0.4)))
+    lines = printed(diagnosis(where=where), 80)
+    assert any("[time stamps] 100 %" in line for line in lines)
+    assert any("can hardly tell the two apart" in line for line in lines)
+    assert any("how well a block would explain the gap on its own" in line for line in lines)
+    assert not any("hardly tell" in line for line in printed(diagnosis(), 80))
+
+
+def test_another_block_with_a_cause_is_marked_and_has_no_per_cent():
+    second = replace(CURVED, present=True)
+    where = Where("input", 0.97, (("input", 1.0), ("moment_equation", 1.0)))
+    lines = printed(diagnosis(where=where, causes=(DELAY, second)), 80)
+    (row,) = [line for line in lines if "COMMAND" in line]
+    assert "[pitching moment] ●" in row
+    assert not any("100 %" in line for line in lines[4:10])
 
 
 def test_no_block_is_guilty_when_there_is_no_gap():
@@ -140,3 +217,8 @@ def test_every_parameter_of_a_cause_has_a_unit(parameter):
 def test_thousands_are_written_out():
     assert short(12345.6) == "12,346"
     assert short(0.01234) == "0.0123"
+
+
+def test_what_is_as_good_as_nothing_is_written_so():
+    assert short(2.22e-16) == short(0.0) == "0"
+    assert short(0.0004) == "<0.001"
