@@ -52,6 +52,8 @@ class Air:
     """Vehicle time of its peak."""
     left: FloatArray
     """Shape (channels,): mean square that stays when the likeliest course of the air is taken out."""
+    lefts: tuple[FloatArray, ...]
+    """The same per manoeuvre, stacked channels, in their units."""
     power: float
     """What its course takes up, mean over channels of the mean square beside the instruments' noise."""
 
@@ -100,7 +102,7 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
         gust_angle=float(courses[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
-        left=left, power=float(np.mean(taken / floor**2)),
+        left=left, lefts=tuple(lefts), power=float(np.mean(taken / floor**2)),
     )  # fmt: skip
 
 

@@ -60,14 +60,16 @@ def answer(
     std = shared_std(problem, fitted, worth(problem, fitted.innovations))
     waterfall = waterfall_of(stages, floor, judged.apart, judged.speed, gap.before)
     present = {c.effect for c in causes if c.present}
+    effects = _improvements(fitted, std, causes)
     diagnosis = Diagnosis(
         verdict=verdict, sentence="", gap=gap, where=where, causes=causes, shrink=shrink, waterfall=waterfall,
         cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), floor, present),
         kinematics=kinematics, model=model_of(problem, fitted, std),
         reference_airspeed_m_s=problem.flights.reference_m_s if problem.flights.speed_measured else None,
-        effects=_improvements(fitted, std, causes),
+        effects=effects,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
-        notes=notes_of(e, aircraft, holdout), maneuvers=tuple(f.number for f in problem.flights.flights),
+        notes=notes_of(e, aircraft, holdout, effects.keys() - present),
+        maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
     return replace(diagnosis, sentence=sentence_of(diagnosis))
 

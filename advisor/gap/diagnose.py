@@ -26,6 +26,7 @@ from advisor.gap.linear import linearise
 from advisor.gap.misread import misread
 from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
+from advisor.gap.remainder import remainder
 from advisor.gap.result import Diagnosis
 from advisor.gap.score import worth
 from advisor.gap.speed import at_constant_speed
@@ -145,6 +146,8 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
     leftover = scale or swinging(problem, stages[0].fitted, last, stated) or leftover
     floor = np.minimum(quiet_rms(problem, last), np.sqrt(stages[-1].held_out.mean_square))
+    if leftover is None and air is None:
+        leftover = remainder(problem, stages, np.maximum(floor, stated))
     if leftover is not None and leftover.in_quiet is not None:
         floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, white**2))
     return Evidence(

@@ -15,6 +15,7 @@ from advisor.gap.clock import is_of_the_clock
 from advisor.gap.course import is_in_few, is_of_the_air
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.holdout import mean_squares
+from advisor.gap.jumps import jumping_sensor
 from advisor.gap.noise import unfiltered
 from advisor.gap.origin import stick_or_motion
 from advisor.gap.probes import SENSOR_CHANNELS, Probe, disturbance_course, probe_blocks
@@ -45,12 +46,6 @@ _VISIBLE = 0.05
 """Power of a swing, beside the instruments' noise, from which on there is something to explain."""
 _BETTER_THAN_AIR = 1.25
 """What another block must take up of a residual, beside what the air does; in moving air at most 1.15."""
-_FAR, _SURPRISE = 6.0, 4.0
-"""Standard deviations beyond which a change between two samples, and its innovation, are a jump ..."""
-_JUMPS = 0.005
-"""... share of them from which on a sensor jumps ..."""
-_SELDOM = 0.1
-"""... and what another sensor may have of that share."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +85,7 @@ def left_over(
     """
     noise = _noise(problem)
     probes = probe_blocks(problem, last, noise)
-    best, jumping = probes[0], _jumping_sensor(problem, last, stated)
+    best, jumping = probes[0], jumping_sensor(problem, last, stated)
     # What a disturbance with a memory describes did not jump.
     if jumping is not None and best.explained < _LEAST_SHARE:
         return Leftover(jumping, 1.0, _ranking(probes, jumping))
@@ -180,6 +175,13 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
     return Leftover(block, best.explained, _ranking(probes, block))
 
 
+def placed(problem: Problem, last: Fitted) -> Leftover:
+    """What is left, in the block whose unknown disturbance explains it best."""
+    probes = probe_blocks(problem, last, _noise(problem))
+    block = _block(problem, last, _instruments(problem), probes)
+    return Leftover(block, probes[0].explained, _ranking(probes, block))
+
+
 def _block(problem: Problem, last: Fitted, noise: FloatArray, probes: Sequence[Probe]) -> str:
     """The likeliest block, where its neighbours do not explain the same residual better by its course."""
     best = probes[0].block
@@ -219,32 +221,3 @@ def _ranking(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ..
     for p in probes:
         scores.setdefault(p.block, round(min(max(p.gain, 0.0) / best, 1.0), 4))
     return tuple(scores.items())
-
-
-def _jumping_sensor(problem: Problem, last: Fitted, stated: FloatArray) -> str | None:
-    """The one sensor that jumps now and then where nothing is flown; an autopilot's estimate is not judged.
-
-    What a model leaves is smooth, and what a gust leaves is no surprise to a filter that knows of it; no
-    step of the command falls into these stretches.
-    """
-    jumps = {}
-    for c, name in enumerate(problem.channels):
-        parts = []
-        flights = zip(problem.flights.flights, last.left, last.innovations, strict=True)
-        for flight, left, innovations in flights:
-            rows, quiet = problem.rows(flight)[c], flight.is_quiet(flight.outputs[name].t)
-            pair = np.column_stack([np.diff(left[rows]), innovations[rows][1:]])
-            parts.append(np.abs(pair[quiet[1:] & quiet[:-1]]))
-        changes, surprises = np.concatenate(parts).T
-        usual = [float(np.median(y)) / 0.6745 if len(y) else 0.0 for y in (changes, surprises)]
-        far = max(_FAR * usual[0], _DOUBT * float(stated[c]))
-        # Values that mostly repeat say nothing about how rough they are.
-        jumped = (changes > far) & (surprises > _SURPRISE * usual[1])
-        jumps[name] = float(np.mean(jumped)) if min(usual) > 0.0 else 0.0
-    worst = max(jumps, key=lambda name: jumps[name])
-    others = [share for name, share in jumps.items() if name != worst]
-    if jumps[worst] < _JUMPS or max(others, default=0.0) > _SELDOM * jumps[worst]:
-        return None
-    if worst == "alpha" and problem.flights.alpha_is_derived:
-        return None
-    return next(block for block, channel in SENSOR_CHANNELS.items() if channel == worst)

@@ -1,14 +1,19 @@
 """What a reader should know beside the answer: what was assumed, missing, unusual, or could not be done."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from advisor.aircraft import Aircraft
 from advisor.gap.evidence import Evidence
 from advisor.gap.known import Effects, left_aside
 
 
-def notes_of(e: Evidence, aircraft: Aircraft, holdout: int | None) -> tuple[str, ...]:
-    """Every note that these flights and their aircraft file call for, a sentence each."""
+def notes_of(
+    e: Evidence, aircraft: Aircraft, holdout: int | None, nobodys_fault: Collection[str]
+) -> tuple[str, ...]:
+    """Every note that these flights and their aircraft file call for, a sentence each.
+
+    ``nobodys_fault`` are effects that the improved simulator gets though they are no cause.
+    """
     notes = []
     flights = e.problem.flights
     if holdout is not None and holdout >= len(flights):
@@ -30,6 +35,21 @@ def notes_of(e: Evidence, aircraft: Aircraft, holdout: int | None) -> tuple[str,
         notes.append(f"The wind changed with height, by {per_metre} a metre.")
     if e.leftover is not None and e.leftover.note:
         notes.append(e.leftover.note)
+    if e.air is not None:
+        notes.append(
+            "What is shown as after has the likeliest course of the air in it: that belongs to the day, and "
+            "no file can hold it."
+        )
+        if flights.alpha_is_derived:
+            notes.append(
+                "The angle of attack is an estimate that sees no gust: this flight's derivatives are rough, "
+                "and the gusts read too strong."
+            )
+    if nobodys_fault:
+        notes.append(
+            f"The improved simulator has the propeller's share, too ({_listed(sorted(nobodys_fault))}): "
+            "part of every aircraft that has one, and no cause."
+        )
     notes += _known(aircraft.effects)
     missing = [c for c in ("a_z", "theta") if c not in flights.channels]
     if missing:

@@ -60,9 +60,13 @@ def over_maneuvers(held: HeldOut, kept: Sequence[int]) -> HeldOut:
 
 
 def without_air(held: HeldOut, air: Air) -> HeldOut:
-    """Held-out errors with the share of the moving air taken out, alike in every manoeuvre."""
+    """Held-out errors with the share of the moving air taken out, alike in every manoeuvre.
+
+    The courses of the errors are those that the air's likeliest course leaves.
+    """
     share = np.minimum(air.left / held.mean_square, 1.0)
-    return replace(held, mean_square=held.mean_square * share, by_maneuver=held.by_maneuver * share)
+    powers = held.by_maneuver * share
+    return replace(held, left=air.lefts, mean_square=held.mean_square * share, by_maneuver=powers)
 
 
 def shrink_of(e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut) -> Shrink:

@@ -1,0 +1,48 @@
+"""A name that leaves most of the gap only resembles what is there; the right one leaves next to nothing."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.baseline import fit_baseline
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.data import prepare
+from advisor.gap.fit import fit
+from advisor.gap.holdout import hold_out
+from advisor.gap.noise import quiet_rms
+from advisor.gap.remainder import remainder
+from advisor.gap.waterfall import Stage
+from tests.gap.generator import Setup, fly
+
+
+@pytest.fixture(scope="module")
+def gyro():
+    """A flight with a gyro that reads too much, and the plain model of it."""
+    flown = fly(Setup(maneuvers=6, q_scale=0.1, seed=41))
+    return fit_baseline(prepare(flown, Aircraft()), Aircraft())
+
+
+def left_beside(gyro, effect):
+    """What is left beside an effect that was put into the model."""
+    problem, plain = gyro
+    variant = next(v for v in variants_for(problem.flights) if v.effect == effect)
+    named = fit(problem, plain.point.with_effect(variant, variant.starts[0]), plain.noise, 25)
+    stages = [Stage(fitted, hold_out(problem, fitted), (), None) for fitted in (plain, named)]
+    floor = np.minimum(quiet_rms(problem, named), np.sqrt(stages[-1].held_out.mean_square))
+    return remainder(problem, stages, floor)
+
+
+def test_an_effect_that_leaves_most_of_the_gap_is_not_the_cause_but_something_unknown(gyro):
+    found = left_beside(gyro, "actuator_lag")
+    assert found is not None
+    assert found.block == "pitch_rate_sensor"
+
+
+def test_the_right_effect_leaves_nothing_to_ask_about(gyro):
+    assert left_beside(gyro, "pitch_rate_scale") is None
+
+
+def test_where_nothing_was_named_there_is_nothing_to_doubt(gyro):
+    problem, plain = gyro
+    stage = Stage(plain, hold_out(problem, plain), (), None)
+    assert remainder(problem, [stage], np.sqrt(stage.held_out.mean_square) / 10.0) is None
