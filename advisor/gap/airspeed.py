@@ -4,6 +4,8 @@ V̇ = a_x cos α + a_z sin α − g sin(θ − α) is integrated; a parabola in 
 air speed, takes the integral's drift out. The instrument gives the level, the accelerometers the shape.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from advisor.flight.maneuver import Maneuver
@@ -38,6 +40,29 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
 def speed_rate(a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray) -> FloatArray:
     """Rate of the speed, m/s², that the accelerometers know of: in air that moves steadily."""
     return a_x * np.cos(alpha) + a_z * np.sin(alpha) - GRAVITY_M_S2 * np.sin(theta - alpha)
+
+
+def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
+    """The air speed in m/s without an instrument for it: what turns specific force into rate of α.
+
+    α̇ − q = (a_z cos α − a_x sin α + g cos(θ − α))/V in integral form, over all manoeuvres; of each a
+    straight line in time is taken out, which offsets of gyro and accelerometer make. None where a channel
+    is missing, or the flight shows no force.
+    """
+    product, square = 0.0, 0.0
+    for maneuver in maneuvers:
+        found = maneuver.channels
+        if not all(name in found and len(found[name]) > 10 for name in ("alpha", "q", "a_z", "theta")):
+            return None
+        t, alpha = found["alpha"].t, found["alpha"].y
+        q, a_z, theta = (np.interp(t, found[name].t, found[name].y) for name in ("q", "a_z", "theta"))
+        a_x = np.interp(t, found["a_x"].t, found["a_x"].y) if "a_x" in found else np.zeros(len(t))
+        force = a_z * np.cos(alpha) - a_x * np.sin(alpha) + GRAVITY_M_S2 * np.cos(theta - alpha)
+        line = np.linalg.qr(np.vander(t - t[0], 2))[0]
+        turned, pushed = (y - line @ (line.T @ y) for y in (alpha - integrated(t, q), integrated(t, force)))
+        product += float(turned @ pushed)
+        square += float(pushed @ pushed)
+    return square / product if product > 0.0 else None
 
 
 def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:

@@ -10,6 +10,7 @@ from advisor.flight.kinematics import SMALLEST_BIAS_RAD, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.gap.air import moving_air
+from advisor.gap.airspeed import speed_of_the_motion
 from advisor.gap.answer import answer
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
@@ -60,6 +61,7 @@ def diagnose(
         Too few manoeuvres, or no angle of attack.
     """
     progress("checking the angle of attack against the motion", 0.0)
+    aircraft = _with_speed(maneuvers, aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = [_without_offset(m, offset) for m in maneuvers]
     flights = prepare(maneuvers, aircraft)
@@ -97,6 +99,14 @@ def _refuse(flights: Flights) -> None:
             "No angle of attack in the log.",
             "Log AOA_SSA, or set alpha.source in the aircraft file.",
         )
+
+
+def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
+    """The aircraft with the speed that its motion shows, where neither log nor file has one."""
+    known = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
+    if known or any("airspeed" in m.channels for m in maneuvers):
+        return aircraft
+    return replace(aircraft, airspeed_m_s=speed_of_the_motion(maneuvers))
 
 
 def _left_out(numbers: Sequence[int]) -> str:

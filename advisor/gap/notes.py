@@ -27,8 +27,8 @@ def notes_of(
     )  # fmt: skip
     if not flights.speed_measured:
         notes.append(
-            "No air speed in the log: derivatives are taken as constant. Without the true one, stated as "
-            "airspeed_m_s in the aircraft file, forces and angles do not agree."
+            f"No air speed in the log: derivatives are taken as constant, at {flights.reference_m_s:.1f} m/s, "
+            "as the aircraft file says or else the motion shows."
         )
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.gap.airspeed import speed_of_the_motion
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.data import prepare
@@ -16,7 +17,7 @@ from advisor.gap.score import LEAST_GAIN
 from advisor.gap.screen import Screen
 from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED, THRUST
 from advisor.gap.speed import swings, work
-from tests.gap.generator import Setup, fly
+from tests.gap.generator import UAV, Setup, fly
 
 HEIGHTS = (80.0, 90.0, 85.0)
 
@@ -101,3 +102,15 @@ def test_a_power_of_the_speed_is_not_looked_for_where_the_speed_hardly_moved():
     still = replace(flown, speed_moves=0.02)
     assert "airspeed_variation" in {variant.effect for variant in variants_for(flown)}
     assert "airspeed_variation" not in {variant.effect for variant in variants_for(still)}
+
+
+def test_without_an_air_speed_in_the_log_the_motion_shows_it():
+    flown = [
+        replace(m, channels={name: c for name, c in m.channels.items() if name != "airspeed"})
+        for m in fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=51))
+    ]
+    assert speed_of_the_motion(flown) == pytest.approx(UAV.speed, rel=0.04)
+    found = diagnose(flown, Aircraft())
+    assert found.causes[0].effect == "transport_delay"
+    assert found.shrink.percent > 95.0
+    assert any("No air speed in the log" in note for note in found.notes)
