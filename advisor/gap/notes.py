@@ -27,7 +27,7 @@ def notes_of(
     )  # fmt: skip
     if not flights.speed_measured:
         notes.append(
-            f"No air speed in the log: derivatives are taken as constant, at {flights.reference_m_s:.1f} m/s, "
+            f"No air speed in the log: derivatives are constant here, at {flights.reference_m_s:.1f} m/s, "
             "as the aircraft file says or else the motion shows."
         )
     if e.shear is not None:

@@ -109,8 +109,10 @@ def test_without_an_air_speed_in_the_log_the_motion_shows_it():
         replace(m, channels={name: c for name, c in m.channels.items() if name != "airspeed"})
         for m in fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=51))
     ]
-    assert speed_of_the_motion(flown) == pytest.approx(UAV.speed, rel=0.04)
-    found = diagnose(flown, Aircraft())
-    assert found.causes[0].effect == "transport_delay"
-    assert found.shrink.percent > 95.0
-    assert any("No air speed in the log" in note for note in found.notes)
+    assert speed_of_the_motion(flown) == pytest.approx(UAV.speed, rel=0.02)
+    shown, stated, wrong = (
+        diagnose(flown, Aircraft(airspeed_m_s=v)) for v in (None, UAV.speed, 1.5 * UAV.speed)
+    )
+    assert shown.gap.after == pytest.approx(stated.gap.after, rel=0.1)
+    assert wrong.gap.after > 5.0 * shown.gap.after
+    assert any("No air speed in the log" in note for note in shown.notes)
