@@ -52,9 +52,17 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     late = sum(float(values[0]) for values in both_linear.point.values[-2:])
     nearly = best_of_all + _LOOKS_HELD * (max(plain.values()) - best_of_all)
     looks_held = abs(late - half) < _HALF_S and plain[True] < min(nearly, plain[False])
-    if is_held or looks_held:
+    # The same with a lag besides: held, the lag is enough; linear, it takes half an interval of delay, too.
+    delays = {p.held: _delay_of(f) for p, f in ((linear, both_linear), (held, both_held))}
+    without_delay = delays[True] < _HALF_S and abs(delays[False] - half) < _HALF_S
+    if is_held or looks_held or (without_delay and both[True] < both[False] + price):
         return held, plainly_held
     return linear, fitted
+
+
+def _delay_of(fitted: Fitted) -> float:
+    names = [effect.effect for effect in fitted.point.effects]
+    return float(fitted.point.values[names.index("transport_delay")][0])
 
 
 def with_latency(problem: Problem, fitted: Fitted) -> Fitted:
