@@ -29,8 +29,9 @@ from advisor.gap.numbers import (
     without_air,
 )
 from advisor.gap.result import Cause, Diagnosis, Verdict, Where
-from advisor.gap.score import LEAST_SIGMA, shared_std, worth
+from advisor.gap.score import LEAST_SIGMA
 from advisor.gap.text import sentence_of
+from advisor.gap.uncertainty import shared_std, worth
 
 
 def answer(

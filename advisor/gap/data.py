@@ -10,6 +10,7 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.renewal import renewed
 from advisor.gap.airspeed import airspeed_on, along_the_path
+from advisor.gap.edges import edges_of, held_from, step_unseen
 from advisor.gap.layout import OUTPUTS
 from advisor.gap.provenance import is_estimate
 from advisor.gap.simulate import GRAVITY_M_S2, THRUST
@@ -19,10 +20,6 @@ STEP_S = 0.005
 LEAST_SAMPLES = 30
 DEPARTED_RAD = 1.0
 """Swing of the angle of attack that no equation about a trim describes any more."""
-_LOST = 1.5
-"""Intervals of the usual length from which on a stamp was lost."""
-_HOLE_S, _HOLE = 0.15, 3.5
-"""A hole of the command's log: this long, and so many of its usual intervals."""
 _ENOUGH = 4
 """Manoeuvres without such a hole that are enough to leave the others out."""
 _QUIET_AFTER = 0.6
@@ -118,7 +115,7 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
     left, those in which a step of the command fell into a hole of the log.
     """
     usable = [m for m in maneuvers if _usable(m)]
-    seen = [m for m in usable if not _steps_unseen(m)]
+    seen = [m for m in usable if not step_unseen(m)]
     if len(seen) >= _ENOUGH:
         usable = seen
     speeds = [
@@ -179,14 +176,6 @@ def _usable(maneuver: Maneuver) -> bool:
     return "alpha" not in found or float(np.ptp(found["alpha"].y)) < DEPARTED_RAD
 
 
-def _steps_unseen(maneuver: Maneuver) -> bool:
-    """Whether the command changed while so many of its stamps were lost that nobody knows when."""
-    t = maneuver.channels["elevator"].t
-    edges = _edges(t, maneuver.channels["elevator"].y)
-    hole = max(_HOLE_S, _HOLE * float(np.median(np.diff(t))))
-    return bool(len(edges)) and float(np.max(edges[:, 2])) > hole
-
-
 def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, scaled: bool) -> Flight:
     start = max(m.channels["elevator"].t[0], m.channels["q"].t[0])
     end = min(m.channels["elevator"].t[-1], m.channels["q"].t[-1])
@@ -225,8 +214,8 @@ def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, sc
     if "theta" in outputs:
         trim[1] = float(np.mean(outputs["theta"].y[:3]))
     return Flight(
-        m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, _held_from(t_u), u, u_trim,
-        slow, trim, outputs, _edges(t_u, u),
+        m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, held_from(t_u), u, u_trim,
+        slow, trim, outputs, edges_of(t_u, u),
     )  # fmt: skip
 
 
@@ -248,30 +237,6 @@ def _outputs(m: Maneuver, start: float, end: float) -> dict[str, Measured]:
         if len(t) >= LEAST_SAMPLES:
             outputs[name] = Measured(t, y)
     return outputs
-
-
-def _edges(t: FloatArray, u: FloatArray) -> FloatArray:
-    """Jumps of the command: where in the interval between two stamps they happened is not in the log."""
-    jump = np.diff(u)
-    size = np.ptp(u)
-    if size <= 0.0:
-        return np.empty((0, 4))
-    steep = np.flatnonzero(np.abs(jump) > 0.15 * size)
-    # A jump may be spread over two intervals; each is uncertain by its own length.
-    interval = t[steep + 1] - t[steep]
-    middle = (t[steep] + t[steep + 1]) / 2.0
-    return np.column_stack([middle, jump[steep] * interval, interval, _lost(t)[steep]])
-
-
-def _lost(t: FloatArray) -> FloatArray:
-    """Shape (n - 1,): by how much each interval between stamps is longer than usual, if a stamp was lost."""
-    interval = np.diff(t)
-    usual = float(np.median(interval))
-    return np.where(interval > _LOST * usual, interval - usual, 0.0)
-
-
-def _held_from(t: FloatArray) -> FloatArray:
-    return np.asarray(t - np.append(0.0, 0.5 * _lost(t)))
 
 
 def smooth(y: FloatArray, seconds: float) -> FloatArray:

@@ -29,8 +29,8 @@ from advisor.gap.noise import quiet_rms
 from advisor.gap.problem import Problem
 from advisor.gap.remainder import remainder
 from advisor.gap.result import Diagnosis
-from advisor.gap.score import worth
 from advisor.gap.speed import at_constant_speed
+from advisor.gap.uncertainty import worth
 from advisor.gap.waterfall import Progress, build_up, reduced_to
 from advisor.gap.wind import wind_shear
 from advisor.problems import UnusableInputError

@@ -11,8 +11,8 @@ from advisor.gap.evidence import Evidence
 from advisor.gap.holdout import HeldOut
 from advisor.gap.measure import gap_of
 from advisor.gap.result import VISIBLE, Cause, Value, Verdict
-from advisor.gap.score import file_is_off
 from advisor.gap.speed import airspeed_cause, speed_is_a_cause
+from advisor.gap.uncertainty import file_is_off
 
 _PLAIN = 0.5
 """Gap of the file's own derivatives beside fitted ones from which on it takes less to call them wrong."""

@@ -12,8 +12,9 @@ from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.leftover import Leftover
 from advisor.gap.problem import Problem
-from advisor.gap.score import Judged, addition, belief_in, difference, log_likelihood_gained, worth
+from advisor.gap.score import Judged, addition, difference, log_likelihood_gained
 from advisor.gap.screen import Screen, penalty
+from advisor.gap.uncertainty import belief_in, worth
 from advisor.gap.variant import Variant
 from advisor.gap.waterfall import Stage
 

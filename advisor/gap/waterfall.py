@@ -9,7 +9,8 @@ from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.problem import Problem
 from advisor.gap.ranking import candidates_for, judge
-from advisor.gap.score import LEAST_BELIEF, LEAST_GAIN, Judged, addition, shared_std, worth
+from advisor.gap.score import LEAST_BELIEF, LEAST_GAIN, Judged, addition
+from advisor.gap.uncertainty import shared_std, worth
 from advisor.gap.variant import Variant
 
 MOST_EFFECTS = 3

@@ -1,0 +1,47 @@
+"""Jumps of the command: where between two stamps they happened, and which stamps were lost on the way."""
+
+import numpy as np
+
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+
+_LOST = 1.5
+"""Intervals of the usual length from which on a stamp was lost."""
+_HOLE_S, _HOLE = 0.15, 3.5
+"""A hole of the command's log: this long, and so many of its usual intervals."""
+
+
+def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:
+    """Shape (m, 4), as ``Flight.edges``: where between two stamps a jump happened is not in the log.
+
+    ``t`` and ``u`` are the command's stamps and values, both shape (n,).
+    """
+    jump = np.diff(u)
+    size = np.ptp(u)
+    if size <= 0.0:
+        return np.empty((0, 4))
+    steep = np.flatnonzero(np.abs(jump) > 0.15 * size)
+    # A jump may be spread over two intervals; each is uncertain by its own length.
+    interval = t[steep + 1] - t[steep]
+    middle = (t[steep] + t[steep + 1]) / 2.0
+    return np.column_stack([middle, jump[steep] * interval, interval, _lost(t)[steep]])
+
+
+def held_from(t: FloatArray) -> FloatArray:
+    """From when on each value was held, shape (n,): its stamp, or the middle of those that were lost."""
+    return np.asarray(t - np.append(0.0, 0.5 * _lost(t)))
+
+
+def step_unseen(maneuver: Maneuver) -> bool:
+    """Whether the command changed while so many of its stamps were lost that nobody knows when."""
+    t = maneuver.channels["elevator"].t
+    edges = edges_of(t, maneuver.channels["elevator"].y)
+    hole = max(_HOLE_S, _HOLE * float(np.median(np.diff(t))))
+    return bool(len(edges)) and float(np.max(edges[:, 2])) > hole
+
+
+def _lost(t: FloatArray) -> FloatArray:
+    """Shape (n - 1,): by how much each interval between stamps is longer than usual, if a stamp was lost."""
+    interval = np.diff(t)
+    usual = float(np.median(interval))
+    return np.where(interval > _LOST * usual, interval - usual, 0.0)
