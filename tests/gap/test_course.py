@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.gap.course import is_of_the_air, louder_with_the_stick, tone_of
+from advisor.gap.course import is_in_few, is_of_the_air, louder_with_the_stick, tone_of
 from advisor.gap.data import prepare
 from advisor.gap.probes import KNOTS_S
 from tests.gap.generator import Setup, fly
@@ -50,3 +50,8 @@ def test_what_the_stick_sets_off_is_not(flights):
     ]
     assert louder_with_the_stick(flights, pushed) > 2.0
     assert not is_of_the_air(flights, pushed)
+
+
+def test_what_is_in_few_manoeuvres_is_told_from_what_all_have():
+    assert is_in_few(np.array([1.0, 1.2, 30.0, 0.9, 1.1, 12.0]))
+    assert not is_in_few(np.array([5.0, 8.0, 6.0, 9.0, 1.0, 7.0]))

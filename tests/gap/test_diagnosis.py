@@ -83,6 +83,18 @@ def test_wrong_numbers_in_the_file_are_told_from_missing_structure():
     assert found.model["M_alpha"].value == pytest.approx(-37.4, rel=0.03)
 
 
+@pytest.mark.parametrize(
+    "wrong", [{"M_alpha": 37.0}, {"M_delta_e": 52.0}, {"M_delta_e": 0.0}, {"M_delta_e": -0.9}]
+)
+def test_a_sign_or_a_unit_that_is_wrong_in_the_file_does_not_hide_the_cause(wrong):
+    flown = fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=3))
+    found = diagnose(flown, Aircraft(model={**MODEL, **wrong}))
+    assert found.causes[0].effect == "transport_delay"
+    assert found.causes[0].parameters["delay_s"].value == pytest.approx(0.06, abs=0.004)
+    (name,) = wrong
+    assert found.model[name].value == pytest.approx(MODEL[name], rel=0.1)
+
+
 def test_numbers_that_are_off_by_a_few_per_cent_each_are_told_where_they_leave_a_gap():
     names = ("M_alpha", "Z_alpha", "M_delta_e", "M_q")
     wrong = {**MODEL, **{n: f * MODEL[n] for n, f in zip(names, (0.94, 1.07, 0.93, 1.05), strict=True)}}

@@ -87,6 +87,17 @@ def test_errors_of_a_coloured_fit_are_wider_than_those_of_a_white_one():
     assert np.all(np.diag(coloured_covariance(jacobian, slow)) > 4 * np.diag(plain))
 
 
+def test_heights_that_explain_next_to_nothing_of_the_air_speeds_own_motion_are_no_wind():
+    rng, swung = np.random.default_rng(3), []
+    for maneuver in fly(Setup(maneuvers=5, seed=52)):
+        speed, climb = maneuver.channels["airspeed"], maneuver.channels["climb_rate"]
+        height = np.concatenate(([0.0], np.cumsum(np.diff(climb.t) * (climb.y[1:] + climb.y[:-1]) / 2.0)))
+        own = np.sin(2.0 * np.pi * (0.4 * speed.t + rng.random()))
+        y = speed.y + 0.15 * np.interp(speed.t, climb.t, height) + 1.2 * own
+        swung.append(replace(maneuver, channels={**maneuver.channels, "airspeed": replace(speed, y=y)}))
+    assert wind_shear(swung) is None
+
+
 def test_wind_that_changes_with_height_shows_in_the_air_speed_and_nowhere_else():
     still = fly(Setup(maneuvers=5, seed=51))
     assert wind_shear(still) is None

@@ -12,7 +12,7 @@ from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.filter_error import filter_error_estimate
-from advisor.oem.turbulence import turbulence_in
+from advisor.oem.turbulence import Rows, find_turbulence, turbulence_in
 from tests.oem.builders import UAV, Array, elevator_3211, maneuver, trim_alpha, trim_elevator
 
 KNOWN_SERVO = Aircraft(elevator=Elevator(lag_s=0.0, delay_s=0.0))
@@ -116,3 +116,11 @@ def test_the_verdict_carries_turbulence_and_the_second_opinion_and_still_air_car
     assert any("output error is out of its validity" in caution for caution in rough.cautions)
     assert calm.second_opinion is None
     assert not any("turbulence" in caution for caution in calm.cautions)
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-14, 1e9])
+def test_the_search_for_moving_air_ends_without_noise_and_with_absurd_noise(size):
+    t = np.arange(0.0, 6.0, 0.02)
+    rows = Rows(np.repeat(t, 4), np.tile(np.arange(4), len(t)), size * np.sin(np.arange(4.0 * len(t))), 25.0)
+    found = find_turbulence([rows], np.array([-4.0, 0.0, -40.0, -4.0]), np.full(4, 1e-3), True)
+    assert not found.present or size > 1.0
