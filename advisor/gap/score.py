@@ -40,6 +40,10 @@ TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
 """Parameters that are times."""
 _JITTERS = 3.0
 """Standard deviations of the stamps by which a time must exceed its physical minimum."""
+_PLAIN_GAIN, _PLAIN_CHANGE = 100.0, 10.0
+"""Log likelihood, and changes of the least size, from which on twice the physical minimum is enough."""
+_NOT_SEEN = 0.005
+"""Difference of two predictions, mean square beside the instruments' noise, that no flight shows."""
 LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
 _SUPPORT = 4.0
@@ -108,8 +112,10 @@ class Judged:
 
     @property
     def large_enough(self) -> bool:
-        """At or above the physical minimum."""
-        return size_of(self.variant, self.value) >= self.smallest
+        """At or above the physical minimum; stamps that jitter hide no time that is plain all the same."""
+        plain = self.gain >= _PLAIN_GAIN and self.removed >= _PLAIN_CHANGE * self.least
+        smallest = min(self.smallest, 2.0 * self.variant.smallest) if plain else self.smallest
+        return size_of(self.variant, self.value) >= smallest
 
 
 def size_of(variant: Variant, value: FloatArray) -> float:
@@ -210,9 +216,11 @@ def least_change(problem: Problem) -> float:
 
 
 def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
-    """Whether two predictions differ by no more than a description to low order may err, in any channel."""
+    """Whether two predictions differ by next to nothing, or by what a description to low order may err."""
     apart = rms_of(problem, [a - b for a, b in zip(one.left, other.left, strict=True)])
-    return bool(np.all(apart < _OF_PEAK * problem.flights.peaks))
+    return (
+        bool(np.all(apart < _OF_PEAK * problem.flights.peaks)) or difference(problem, one, other) < _NOT_SEEN
+    )
 
 
 def difference(problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted) -> float:

@@ -1,0 +1,58 @@
+"""What is worth a name, and which of two descriptions of the same motion gets it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.gap.baseline import fit_baseline
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.data import prepare
+from advisor.gap.diagnose import diagnose
+from advisor.gap.fit import fit
+from advisor.gap.holdout import hold_out
+from advisor.gap.score import addition, predict_alike
+from advisor.gap.uncertainty import worth
+from tests.gap.generator import Setup, fly
+
+
+@pytest.fixture(scope="module")
+def late():
+    """A flight with late accelerometers, its plain model, and the lateness as an addition to it."""
+    flights = prepare(fly(Setup(maneuvers=6, skew={"a_z": 0.02}, seed=61)), Aircraft())
+    problem, plain = fit_baseline(flights, Aircraft())
+    variant = next(v for v in variants_for(flights) if v.effect == "accelerometer_skew")
+    fitted = fit(problem, plain.point.with_effect(variant, variant.starts[0]), plain.noise, 25)
+    independent = worth(problem, fitted.innovations)
+    held = hold_out(problem, plain)
+    return problem, held, addition(problem, plain, held, fitted, variant.effect, independent)
+
+
+def test_stamps_that_jitter_hide_a_time_unless_it_is_plain(late):
+    *_, judged = late
+    hidden = replace(judged, value=np.array([0.012]), smallest=0.013)
+    assert replace(hidden, gain=200.0, removed=20.0 * judged.least).large_enough
+    assert not replace(hidden, gain=50.0, removed=20.0 * judged.least).large_enough
+    assert not replace(hidden, gain=200.0, removed=2.0 * judged.least).large_enough
+    assert not replace(hidden, gain=200.0, removed=20.0 * judged.least, value=np.array([0.006])).large_enough
+
+
+def test_predictions_are_alike_where_they_differ_by_less_than_any_description_errs(late):
+    problem, plain, judged = late
+    assert not predict_alike(problem, plain, judged.held_out)
+    nudged = replace(plain, left=(plain.left[0] + 1e-6, *plain.left[1:]))
+    assert predict_alike(problem, plain, nudged)
+
+
+@pytest.mark.parametrize("arm_m", [-0.5, 0.5])
+def test_of_two_arms_that_are_one_in_the_data_the_file_tells(arm_m):
+    still = diagnose(fly(Setup(maneuvers=6, seed=24)), Aircraft())
+    file = Aircraft(
+        model={name: still.model[name].value for name in PARAMETERS},
+        reference_airspeed_m_s=still.reference_airspeed_m_s,
+    )
+    for switch, effect in (("acc_arm", "accelerometer_offset"), ("vane_arm", "alpha_vane_offset")):
+        found = diagnose(fly(Setup(maneuvers=6, switches={switch: arm_m}, seed=62)), file)
+        assert found.causes[0].effect == effect
+        assert found.causes[0].parameters["arm_m"].value == pytest.approx(arm_m, rel=0.15)
