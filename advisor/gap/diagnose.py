@@ -102,9 +102,9 @@ def _refuse(flights: Flights) -> None:
 
 
 def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
-    """The aircraft with the speed that its motion shows, where neither log nor file has one."""
+    """The aircraft with the speed that its motion shows, where neither file nor every manoeuvre has one."""
     known = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
-    if known or any("airspeed" in m.channels for m in maneuvers):
+    if known or all("airspeed" in m.channels for m in maneuvers):
         return aircraft
     return replace(aircraft, airspeed_m_s=speed_of_the_motion(maneuvers))
 
