@@ -11,7 +11,7 @@ from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.measure import gap_of
 from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.score import TIMES, Judged
+from advisor.gap.score import TIME_DOUBT_S, TIMES, Judged
 from advisor.gap.ties import tied_with
 from advisor.gap.waterfall import Stage
 
@@ -20,8 +20,6 @@ TEMPERATURE = 3.0
 become probabilities. Set on development data so that stated and observed frequencies agree."""
 _SHAPE_DOUBT = 0.03
 """Relative error of a size for describing its effect to low order only."""
-_TIME_DOUBT_S = 0.0006
-"""Error of a delay, lag or skew for the simulation's grid and the stamps' resolution."""
 _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
 _SCALED_BY = 0.2
@@ -100,7 +98,7 @@ def with_doubt(cause: Cause, problem: Problem) -> Cause:
 
 def _doubt(name: str, value: float) -> float:
     """Standard deviation of a size beyond its fit's: a share of it, and for times part of a step."""
-    return float(np.hypot(_SHAPE_DOUBT * value, _TIME_DOUBT_S if name in TIMES else 0.0))
+    return float(np.hypot(_SHAPE_DOUBT * value, TIME_DOUBT_S if name in TIMES else 0.0))
 
 
 def _with_edge_doubt(cause: Cause, problem: Problem) -> Cause:

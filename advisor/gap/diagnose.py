@@ -78,7 +78,10 @@ def diagnose(
     evidence = _explain(problem, baseline, aircraft, progress)
     shear = wind_shear(flown)
     if shear is not None and not _of_the_attitude(evidence.leftover):
-        evidence = replace(evidence, shear=shear, leftover=of_the_wind(evidence.leftover))
+        # Air that moves swings the air speed, too: beside it the wind is worth a note, no more.
+        still = evidence.air is None
+        leftover = of_the_wind(evidence.leftover) if still else evidence.leftover
+        evidence = replace(evidence, shear=shear, leftover=leftover)
     progress("measuring the gap", 0.9)
     diagnosis = answer(evidence, aircraft, kinematics, holdout)
     left_out = [m.number for m in maneuvers if m.number not in numbers]

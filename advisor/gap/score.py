@@ -38,8 +38,10 @@ _DOUBT = 2.5
 """Where the noise of the instruments is stated, not measured, the change must exceed it this many times."""
 TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
 """Parameters that are times."""
+TIME_DOUBT_S = 0.0006
+"""Error of a delay, lag or skew for the simulation's grid and the stamps' resolution."""
 _JITTERS = 3.0
-"""Standard deviations of the stamps by which a time must exceed its physical minimum."""
+"""Standard deviations of the stamps by which a time must exceed its physical minimum, besides."""
 _PLAIN_GAIN, _PLAIN_CHANGE = 100.0, 10.0
 """Log likelihood, and changes of the least size, from which on twice the physical minimum is enough."""
 _NOT_SEEN = 0.005
@@ -128,7 +130,9 @@ def size_of(variant: Variant, value: FloatArray) -> float:
 
 def smallest_of(problem: Problem, variant: Variant) -> float:
     """Size of an effect's first parameter below which it is not worth a name, the stamps as they are."""
-    return variant.smallest + (_JITTERS * problem.jitter_s if variant.names[0] in TIMES else 0.0)
+    return variant.smallest + (
+        TIME_DOUBT_S + _JITTERS * problem.jitter_s if variant.names[0] in TIMES else 0.0
+    )
 
 
 def addition(
