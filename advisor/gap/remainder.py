@@ -10,10 +10,10 @@ from advisor.gap.measure import gap_of
 from advisor.gap.problem import Problem
 from advisor.gap.waterfall import Stage
 
-_MOST = 0.4
-"""Share of the gap that right names may leave. In still air they leave less than this share, or ..."""
+_MOST = 0.5
+"""Share of the gap that right names may leave, in still air, or else ..."""
 _SEEN = 0.3
-"""... less than this gap; an effect that is not in the catalogue leaves more beside its likeness."""
+"""... this gap: an effect that is not in the catalogue leaves more beside its likeness."""
 
 
 def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> Leftover | None:

@@ -40,6 +40,8 @@ TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
 """Parameters that are times."""
 TIME_DOUBT_S = 0.0006
 """Error of a delay, lag or skew for the simulation's grid and the stamps' resolution."""
+_ANY_TIME = 1.5
+"""Physical minima that a step must reach which may have come between any two manoeuvres."""
 _JITTERS = 3.0
 """Standard deviations of the stamps by which a time must exceed its physical minimum, besides."""
 _PLAIN_GAIN, _PLAIN_CHANGE = 100.0, 10.0
@@ -130,9 +132,9 @@ def size_of(variant: Variant, value: FloatArray) -> float:
 
 def smallest_of(problem: Problem, variant: Variant) -> float:
     """Size of an effect's first parameter below which it is not worth a name, the stamps as they are."""
-    return variant.smallest + (
-        TIME_DOUBT_S + _JITTERS * problem.jitter_s if variant.names[0] in TIMES else 0.0
-    )
+    if variant.names[0] in TIMES:
+        return variant.smallest + TIME_DOUBT_S + _JITTERS * problem.jitter_s
+    return variant.smallest * (_ANY_TIME if "at_s" in variant.fixed else 1.0)
 
 
 def addition(
