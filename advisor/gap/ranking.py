@@ -25,6 +25,8 @@ _GROSS = 300.0
 """Log likelihood promised by the best from which on the right model is far from where the screening looks."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
+_TELLS = 3.0
+"""Log probability beforehand by which one effect must be likelier than another to be believed for that."""
 
 
 def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]) -> list[Screened]:
@@ -57,7 +59,7 @@ def judge(
     for fitted in sorted(fits, key=lambda f: f.cost):
         likeliest.setdefault(fitted.point.effects[-1].effect, fitted)
     judged = [addition(problem, before, held_before, f, e, independent) for e, f in likeliest.items()]
-    first, *rest = _evened(problem, judged)
+    first, *rest = evened(problem, judged)
     if first.fitted.iterations == _ITERATIONS:
         # Far from the plain model the search is long; only what comes out first is followed to its end.
         ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)
@@ -65,22 +67,22 @@ def judge(
     return [first, *rest]
 
 
-def _evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
-    """The best judgement first; what predicts the same motion as the best has its likelihood, too.
+def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
+    """The best judgement first; what predicts the same motion has its likelihood, if likelier beforehand.
 
     No description to low order is better than some share of the motion: where two differ by less, what the
     likelihood prefers is which of them takes up more of the description's own error. What is known
     beforehand decides: above all, which of them leaves the aircraft file's derivatives alone.
     """
     best = max(judged, key=lambda j: j.gain)
-    seen = best.gain - best.beforehand
-    alike = [
-        replace(j, gain=max(j.gain, seen + j.beforehand))
-        if j.worth_naming and predict_alike(problem, best.held_out, j.held_out)
-        else j
-        for j in judged
-    ]
-    return sorted(alike, key=lambda j: -j.gain)
+
+    def at_its_worth(j: Judged) -> Judged:
+        likelier = j.beforehand > best.beforehand + _TELLS
+        if not (likelier and j.worth_naming and predict_alike(problem, best.held_out, j.held_out)):
+            return j
+        return replace(j, gain=best.gain - best.beforehand + j.beforehand)
+
+    return sorted((at_its_worth(j) for j in judged), key=lambda j: -j.gain)
 
 
 def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) -> list[Screened]:

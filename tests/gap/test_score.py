@@ -12,6 +12,7 @@ from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fit import fit
 from advisor.gap.holdout import hold_out
+from advisor.gap.ranking import evened
 from advisor.gap.score import addition, predict_alike
 from advisor.gap.uncertainty import worth
 from tests.gap.generator import Setup, fly
@@ -43,6 +44,24 @@ def test_predictions_are_alike_where_they_differ_by_less_than_any_description_er
     assert not predict_alike(problem, plain, judged.held_out)
     nudged = replace(plain, left=(plain.left[0] + 1e-6, *plain.left[1:]))
     assert predict_alike(problem, plain, nudged)
+
+
+@pytest.mark.parametrize(("likelier_by", "first"), [(0.0, 0), (2.0, 0), (4.0, 1)])
+def test_of_two_that_predict_the_same_motion_the_one_likelier_beforehand_comes_first(
+    late, likelier_by, first
+):
+    problem, _, judged = late
+    rival = replace(judged, gain=judged.gain - 20.0, beforehand=judged.beforehand + likelier_by)
+    ranked = evened(problem, [judged, rival])
+    assert ranked[0].beforehand == (judged, rival)[first].beforehand
+    if first:
+        assert ranked[0].gain == pytest.approx(judged.gain + likelier_by)
+
+
+def test_what_predicts_another_motion_keeps_its_own_likelihood(late):
+    problem, plain, judged = late
+    other = replace(judged, gain=judged.gain - 20.0, beforehand=judged.beforehand + 9.0, held_out=plain)
+    assert evened(problem, [judged, other])[0] is judged
 
 
 @pytest.mark.parametrize("arm_m", [-0.5, 0.5])
