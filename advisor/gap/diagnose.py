@@ -26,6 +26,7 @@ from advisor.gap.leftover import Leftover, is_the_gust, left_over, of_the_wind, 
 from advisor.gap.linear import linearise
 from advisor.gap.misread import misread
 from advisor.gap.noise import quiet_rms
+from advisor.gap.notes import left_out
 from advisor.gap.problem import Problem
 from advisor.gap.remainder import remainder
 from advisor.gap.result import Diagnosis
@@ -84,8 +85,8 @@ def diagnose(
         evidence = replace(evidence, shear=shear, leftover=leftover)
     progress("measuring the gap", 0.9)
     diagnosis = answer(evidence, aircraft, kinematics, holdout)
-    left_out = [m.number for m in maneuvers if m.number not in numbers]
-    return replace(diagnosis, notes=(*diagnosis.notes, _left_out(left_out))) if left_out else diagnosis
+    missing = left_out([m.number for m in maneuvers if m.number not in numbers])
+    return replace(diagnosis, notes=(*diagnosis.notes, *missing))
 
 
 def _refuse(flights: Flights) -> None:
@@ -110,13 +111,6 @@ def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
     if known or all("airspeed" in m.channels for m in maneuvers):
         return aircraft
     return replace(aircraft, airspeed_m_s=speed_of_the_motion(maneuvers))
-
-
-def _left_out(numbers: Sequence[int]) -> str:
-    which = ", ".join(map(str, numbers))
-    return (
-        f"Left out: manoeuvre {which}. It departed, lacks a channel, or a step fell into a hole of the log."
-    )
 
 
 def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:

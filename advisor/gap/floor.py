@@ -12,6 +12,8 @@ from advisor.gap.data import Flights
 
 TOLERANCE = 0.02
 """Of the channel's peak: what is called noise in a record that was filtered before it was stored."""
+DOUBT = 2.5
+"""How many times a floor that is stated, not measured, must be exceeded to count."""
 _SMOOTH = 1e-3
 """Share of its peak below which a channel has less white noise than any instrument."""
 

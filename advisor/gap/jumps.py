@@ -4,11 +4,10 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted
+from advisor.gap.floor import DOUBT
 from advisor.gap.probes import SENSOR_CHANNELS
 from advisor.gap.problem import Problem
 
-_DOUBT = 2.5
-"""Where the floor is stated, not measured, a jump must exceed it this many times."""
 _FAR, _SURPRISE = 6.0, 4.0
 """Standard deviations beyond which a change between two samples, and its innovation, are a jump ..."""
 _JUMPS = 0.005
@@ -34,7 +33,7 @@ def jumping_sensor(problem: Problem, last: Fitted, stated: FloatArray) -> str | 
             parts.append(np.abs(pair[quiet[1:] & quiet[:-1]]))
         changes, surprises = np.concatenate(parts).T
         usual = [float(np.median(y)) / 0.6745 if len(y) else 0.0 for y in (changes, surprises)]
-        far = max(_FAR * usual[0], _DOUBT * float(stated[c]))
+        far = max(_FAR * usual[0], DOUBT * float(stated[c]))
         # Values that mostly repeat say nothing about how rough they are.
         jumped = (changes > far) & (surprises > _SURPRISE * usual[1])
         jumps[name] = float(np.mean(jumped)) if min(usual) > 0.0 else 0.0

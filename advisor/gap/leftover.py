@@ -14,6 +14,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.clock import is_of_the_clock
 from advisor.gap.course import is_in_few, is_of_the_air
 from advisor.gap.fit import Fitted, rms_of
+from advisor.gap.floor import DOUBT
 from advisor.gap.holdout import mean_squares
 from advisor.gap.jumps import jumping_sensor
 from advisor.gap.noise import unfiltered
@@ -40,8 +41,6 @@ _OF_PEAK_SWINGING = 0.005
 """The same for a motion at one frequency: no error of a model looks like that."""
 _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
-_DOUBT = 2.5
-"""Where the floor is stated, not measured, an unknown cause must exceed it this many times."""
 _VISIBLE = 0.05
 """Power of a swing, beside the instruments' noise, from which on there is something to explain."""
 _BETTER_THAN_AIR = 1.25
@@ -93,7 +92,7 @@ def left_over(
     active, quiet = unrest(problem, last.innovations)
     # An autopilot's estimate of α is off by what its filter makes of the motion: no cause shows in it alone.
     telling = np.array([c != "alpha" or not problem.flights.alpha_is_derived for c in problem.channels])
-    loud = telling & (rms_of(problem, last.left) > _DOUBT * stated)
+    loud = telling & (rms_of(problem, last.left) > DOUBT * stated)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - _instruments(problem) ** 2, 0.0))
     peaks = problem.flights.peaks

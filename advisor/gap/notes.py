@@ -66,6 +66,16 @@ def notes_of(
     return tuple(notes)
 
 
+def left_out(numbers: Sequence[int]) -> tuple[str, ...]:
+    """Which manoeuvres were not used, and why that may be."""
+    if not numbers:
+        return ()
+    which = ", ".join(map(str, numbers))
+    return (
+        f"Left out: manoeuvre {which}. It departed, lacks a channel, or a step fell into a hole of the log.",
+    )
+
+
 def _known(effects: Effects) -> list[str]:
     """What was made of the effects that stand in the aircraft file."""
     aside = left_aside(effects)

@@ -7,7 +7,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.belief import odds_of_arm
 from advisor.gap.fit import Fitted, rms_of
-from advisor.gap.floor import prefiltered
+from advisor.gap.floor import DOUBT, prefiltered
 from advisor.gap.holdout import HeldOut, has_lone_witness, hold_out
 from advisor.gap.problem import Problem, counts
 from advisor.gap.uncertainty import belief_in, shared_std
@@ -34,8 +34,6 @@ _BY_NATURE = frozenset(
 twice the least, and steps that may have come between any two manoeuvres."""
 _OF_PEAK = 0.003
 """Share of each channel's peak that an effect must change."""
-_DOUBT = 2.5
-"""Where the noise of the instruments is stated, not measured, the change must exceed it this many times."""
 TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
 """Parameters that are times."""
 TIME_DOUBT_S = 0.0006
@@ -215,7 +213,7 @@ def least_change(problem: Problem) -> float:
     Where instruments are very good, what matters is no longer their noise: a description to low order is
     itself no better than a share of each channel's peak.
     """
-    least = LEAST_GAP * (_DOUBT**2 if any(prefiltered(problem.flights).values()) else 1.0)
+    least = LEAST_GAP * (DOUBT**2 if any(prefiltered(problem.flights).values()) else 1.0)
     if problem.instruments is None:
         return least
     return max(least, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
