@@ -35,6 +35,8 @@ class LinearTerms:
     M_alpha_dot: float = 0.0
     M_throttle: float = 0.0
     """rad/s² per unit of throttle away from trim."""
+    throttle_lag: float = 0.0
+    """s, of the engine behind its throttle; 0: it follows at once."""
     M_thrust: float = 0.0
     """rad/s²: the thrust's part of the trimmed moment, which does not grow with dynamic pressure."""
     washed_share: float = 0.0
@@ -75,9 +77,13 @@ MODEL_RECORD = np.dtype(
 
 @njit(cache=True)
 def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArray[np.float64]) -> None:
-    """Fill ``dx`` from x = [α, q, θ, h, φ, p, α_late] and u = [δe, throttle, aileron, w, V, ΔZ, ΔM, V̇]."""
+    """Fill ``dx`` from x = [α, q, θ, h, φ, p, α_late, P_late] and u = [δe, P, aileron, w, V, ΔZ, ΔM, V̇].
+
+    P is the throttle, and P_late what the engine makes of it.
+    """
     m = model[0]
     alpha, q, theta, height, phi, p, late = x[0], x[1], x[2], x[3], x[4], x[5], x[6]
+    throttle = x[7] if m.throttle_lag > 0.0 else u[1]
     elevator, speed = u[0], u[4]
     air = alpha + u[3] / speed
     lifting = air - m.unsteady_share * (air - late)
@@ -123,7 +129,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
             + m.M_delta3 * off_elevator**3
             + m.M_h * ground
         )
-        + m.M_throttle * (u[1] - m.throttle_ref)
+        + m.M_throttle * (throttle - m.throttle_ref)
         + (m.M_thrust + power * m.washed_share * m.M_delta_e * off_elevator) * (1.0 - ratio**2)
         + power * m.blown_share * m.M_delta_e * off_elevator * (u[7] / GRAVITY_M_S2 + math.sin(gamma))
         + u[6]
@@ -135,6 +141,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
     dx[4] = p
     dx[5] = (u[2] * ROLL_RATE_MAX - p) / ROLL_LAG_S
     dx[6] = (air - late) / m.unsteady_lag
+    dx[7] = (u[1] - x[7]) / m.throttle_lag if m.throttle_lag > 0.0 else 0.0
 
 
 @njit(cache=True)
@@ -180,7 +187,7 @@ class LinearAircraft:
         self.airspeed = airspeed_m_s
         """m/s; constant unless an effect or a replayed record moves it."""
         self.airspeed_dot = 0.0
-        self._state = np.array([alpha, 0.0, alpha, height_m, 0.0, 0.0, alpha])
+        self._state = np.array([alpha, 0.0, alpha, height_m, 0.0, 0.0, alpha, throttle])
         self._inputs = np.array([elevator, throttle, 0.0, 0.0, airspeed_m_s, 0.0, 0.0, 0.0])
         self._before = self._inputs.copy()
         self._rates = np.empty_like(self._state)
@@ -188,8 +195,8 @@ class LinearAircraft:
 
     def motion(self) -> Motion:
         """Return the motion now."""
-        alpha, q, theta, height, phi, p, _ = self._state.tolist()
-        alpha_dot, q_dot, _, climb, _, _, _ = self._rates.tolist()
+        alpha, q, theta, height, phi, p, _, _ = self._state.tolist()
+        alpha_dot, q_dot, _, climb, _, _, _, _ = self._rates.tolist()
         elevator, throttle, _, gust_up, speed, _, _, _ = self._inputs.tolist()
         turning = speed * (alpha_dot - q)
         along = self.airspeed_dot

@@ -28,7 +28,7 @@ def with_known(
         if effect in _OF_ITS_FLIGHT:
             continue
         meant = [v for v in variants if v.effect == effect and _says(v, parameters)]
-        for variant in sorted(meant, key=lambda v: -len(v.fixed))[:1]:
+        for variant in sorted(meant, key=lambda v: (-len(v.fixed), -len(v.names)))[:1]:
             variant.apply(row, _values(variant, parameters), flights)
     return np.asarray(row[0])
 
@@ -55,7 +55,7 @@ def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
     both = {effect: dict(values) for effect, values in known.items()}
     for effect, values in found.items():
         before = both.get(effect, {}) if effect not in _OF_ITS_FLIGHT and len(values) == 1 else {}
-        both[effect] = {name: value + before.get(name, 0.0) for name, value in values.items()}
+        both[effect] = before | {name: value + before.get(name, 0.0) for name, value in values.items()}
     return both
 
 

@@ -19,7 +19,7 @@ EFFECT_ENTRIES = (
     "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad",
     # moment equation
     "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_alpha_dot", "M_h",
-    "M_throttle", "M_thrust", "washed_share", "blown_share",
+    "M_throttle", "engine_lag_s", "M_thrust", "washed_share", "blown_share",
     # force equation
     "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s",
     "Z_h", "lift_h", "scale_m", "speed_power",

@@ -31,7 +31,7 @@ LANES = 8
 (
     Z_ALPHA, Z_Q, Z_DELTA, M_ALPHA, M_Q, M_DELTA, ALPHA_START, Q_START, Z_TRIM, M_TRIM,
     DELAY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL,
-    M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, M_THRUST, WASHED, BLOWN,
+    M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, ENGINE_LAG, M_THRUST, WASHED, BLOWN,
     Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, Z_H, LIFT_H, SCALE_H, SPEED_POWER,
     STEP_AT, STEP_Z_ALPHA, STEP_Z_DELTA, STEP_M_ALPHA, STEP_M_DELTA,
     ALPHA_LAG, ALPHA_SCALE, ALPHA_BIAS, VANE_ARM, Q_BIAS, Q_SCALE,
@@ -45,12 +45,12 @@ SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST = range(6)
 DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = range(4)
 # Rows of a pack behind the driving numbers: what follows from them once, the state, what a step hands on.
 (
-    DOSE, LIFT_DECAY, VANE_DECAY, VANE_RAMP, FADE, SWING_COS, SWING_SIN, SOFTNESS,
-    ALPHA, Q, THETA, LIFT, VANE_BEFORE, VANE_OUT, BEND, BEND_RATE,
+    DOSE, ENGINE_DECAY, LIFT_DECAY, VANE_DECAY, VANE_RAMP, FADE, SWING_COS, SWING_SIN, SOFTNESS,
+    ALPHA, Q, THETA, ENGINE, LIFT, VANE_BEFORE, VANE_OUT, BEND, BEND_RATE,
     NEAR, POWER, ATTACHED, COS_ALPHA, SIN_ALPHA, GRAVITY, LIFTING, WING_SLOPE, MOMENT_SLOPE, DEFLECTION,
     Z_REST, M_REST, KA, KQ, NORMAL_0, QDOT_0,
     ROWS,
-) = range(len(ENTRIES), len(ENTRIES) + 33)  # fmt: skip
+) = range(len(ENTRIES), len(ENTRIES) + 35)  # fmt: skip
 
 
 @njit(cache=True)
@@ -69,6 +69,7 @@ def _begin(
     x[DOSE, lane] = dose
     if p[STEP_AT] == 0.0:
         x[STEP_AT, lane] = np.inf
+    x[ENGINE_DECAY, lane] = np.exp(-h / max(p[ENGINE_LAG], 1e-3 * h))
     x[LIFT_DECAY, lane] = np.exp(-h / max(p[LIFT_LAG], 0.2 * h))
     # First order in the lag, so that the sensitivity to a lag exists at no lag at all.
     tau = p[ALPHA_LAG]
@@ -82,7 +83,7 @@ def _begin(
     x[SWING_SIN, lane] = np.sin(omega * damped * h) / damped
     x[SOFTNESS, lane] = 1.0 / omega if omega > 0.0 else 0.0
     x[ALPHA, lane], x[Q, lane], x[THETA, lane] = trim[0] + p[ALPHA_START], p[Q_START], trim[1]
-    x[LIFT, lane] = trim[0]
+    x[ENGINE, lane], x[LIFT, lane] = 0.0, trim[0]
     x[VANE_OUT, lane] = x[ALPHA, lane] - p[VANE_ARM] * x[Q, lane] / speed
     x[VANE_BEFORE, lane] = x[VANE_OUT, lane]
     x[BEND, lane], x[BEND_RATE, lane] = 0.0, 0.0
@@ -174,6 +175,7 @@ def simulate(
                 x[COS_ALPHA, m], x[SIN_ALPHA, m] = ca, sa
                 x[GRAVITY, m] = GRAVITY_M_S2 * per_speed * (ca * ct * cb + sa * st)
                 x[LIFTING, m] = lifting
+                x[ENGINE, m] = slow[THROTTLE, j] + x[ENGINE_DECAY, m] * (x[ENGINE, m] - slow[THROTTLE, j])
                 x[WING_SLOPE, m] = x[Z_ALPHA, m] * (1.0 + changed * x[STEP_Z_ALPHA, m])
                 x[MOMENT_SLOPE, m] = pressure * x[M_ALPHA, m] * (1.0 + changed * x[STEP_M_ALPHA, m])
                 x[DEFLECTION, m] = d
@@ -181,7 +183,7 @@ def simulate(
                 x[M_REST, m] = (
                     m_d * d
                     + pressure * (x[M_TRIM, m] + (x[M_DELTA2, m] + x[M_DELTA3, m] * d) * d * d)
-                    + pressure * x[M_H, m] * x[NEAR, m] + x[M_THROTTLE, m] * slow[THROTTLE, j]
+                    + pressure * x[M_H, m] * x[NEAR, m] + x[M_THROTTLE, m] * x[ENGINE, m]
                     + x[M_THRUST, m] * (1.0 - vv) + x[DOSE, m] * d_moment
                 )  # fmt: skip
                 # Outputs belong to the start of the step: there the deflection lies between the means of two.

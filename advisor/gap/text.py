@@ -12,6 +12,7 @@ _WHAT = {
     "elevator_nonlinearity": "The real elevator's moment is not proportional to its deflection",
     "nonlinear_pitching_moment": "The real pitching moment curves with angle of attack",
     "thrust_moment": "Thrust pitches the real aircraft",
+    "thrust_moment lag_s": "Thrust pitches the real aircraft, {lag_s_ms:.0f} ms behind the throttle",
     "cg_shift": "The centre of gravity moved during the flight",
     "alpha_dot": "The rate of angle of attack makes a moment that the simulator lacks",
     "nonlinear_lift": "The real lift curves with angle of attack",

@@ -97,9 +97,10 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
     ),
     "alpha_dot": (frozenset({"M_alpha_dot"}), _fields(M_alpha_dot="M_alpha_dot")),
     "thrust_moment": (
-        frozenset({"M_throttle", "M_thrust", "washed_share", "blown_share"}),
+        frozenset({"M_throttle", "lag_s", "M_thrust", "washed_share", "blown_share"}),
         _fields(
             M_throttle="M_throttle",
+            lag_s="throttle_lag",
             M_thrust="M_thrust",
             washed_share="washed_share",
             blown_share="blown_share",

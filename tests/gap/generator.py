@@ -170,6 +170,8 @@ class Setup:
     thrust_amplitude: float = 0.0
     thrust_moves_in: tuple[int, ...] = tuple(range(9))
     """Manoeuvres, counted from 0, in which the throttle moves."""
+    engine_lag_s: float = 0.0
+    """Of the thrust behind the throttle."""
     surge: float = 0.0
     """Thrust that comes and goes at 0.6 Hz of itself, relative; no throttle shows it."""
     heights_m: tuple[float, ...] = ()
@@ -233,7 +235,10 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
             frame.cl_q, frame.cl_de, frame.cd0, frame.induced, cm_alpha, frame.cm_q, frame.cm_de,
             frame.cm_alphadot,
         )  # fmt: skip
-        wave = throttle_wave(setup, i, t, start) + setup.surge * np.sin(2 * np.pi * 0.6 * t + i)
+        wave = throttle_wave(setup, i, t, start)
+        if setup.engine_lag_s:
+            wave = _soften(wave, setup.engine_lag_s)
+        wave = wave + setup.surge * np.sin(2 * np.pi * 0.6 * t + i)
         gust = _dryden(rng, n, setup.gust_std, body[4])
         if setup.gust_pulse and i % 3 == 1:
             at = start + rng.uniform(0.5, 5.0)

@@ -63,3 +63,10 @@ def test_what_is_found_beyond_a_number_of_the_file_is_added_to_it():
     assert both["transport_delay"]["delay_s"] == pytest.approx(0.05)
     assert both["unsteady_lift"] == known["unsteady_lift"]
     assert both["alpha_scale"] == {"scale": 0.1}
+
+
+def test_what_is_found_beyond_one_number_leaves_the_files_others_as_they_are():
+    both = together(
+        {"thrust_moment": {"M_throttle": 1.0, "lag_s": 0.5}}, {"thrust_moment": {"M_throttle": 0.2}}
+    )
+    assert both["thrust_moment"] == pytest.approx({"M_throttle": 1.2, "lag_s": 0.5})

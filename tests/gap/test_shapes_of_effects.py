@@ -47,6 +47,17 @@ def test_thrust_off_the_centre_of_gravity_is_named_even_if_the_throttle_moved_on
     assert found.causes[0].effect == "thrust_moment"
 
 
+def test_an_engine_that_lags_its_throttle_is_part_of_the_thrusts_moment():
+    setup = Setup(maneuvers=6, thrust_amplitude=0.5, engine_lag_s=0.6, switches={"thrust_arm": 0.05}, seed=4)
+    found = diagnose(fly(setup), Aircraft())
+    assert found.verdict == "effect"
+    cause = found.causes[0]
+    assert cause.effect == "thrust_moment"
+    lag = cause.parameters["lag_s"]
+    assert abs(lag.value - 0.6) < 3.0 * lag.std < 0.2
+    assert "ms behind the throttle" in found.sentence
+
+
 def test_a_throttle_that_moved_once_without_a_moment_names_nothing():
     found = diagnose(fly(Setup(maneuvers=6, thrust_amplitude=0.5, thrust_moves_in=(2,), seed=5)), Aircraft())
     assert found.verdict == "none"

@@ -82,6 +82,7 @@ def test_an_effect_in_the_aircraft_file_changes_the_flight(tmp_path):
         ("ground_effect", {"Z_h": -0.05, "M_h": 0.05, "scale_m": 100.0}),
         ("ground_effect", {"lift_h": 0.2, "scale_m": 100.0}),
         ("thrust_moment", {"M_throttle": 1.0}),
+        ("thrust_moment", {"M_throttle": 1.0, "lag_s": 0.5}),
         ("structural_mode", {"gain": 2.0, "frequency_hz": 3.0, "damping": 0.05}),
         ("alpha_skew", {"skew_s": -0.05}),
         ("turbulence", {"sigma_w_m_s": 1.0, "length_m": 100.0}),

@@ -80,6 +80,17 @@ def variants(flights: Flights) -> list[Variant]:
             needs=frozenset({"throttle"}),
         ),
         Variant(
+            "thrust_moment",
+            BLOCK,
+            ("M_throttle", "lag_s"),
+            ((0.0, 0.3), (0.0, 1.0)),
+            (0.05, 0.02),
+            ((-100.0, 100.0), (0.0, 5.0)),
+            0.0,
+            entries=("M_throttle", "engine_lag_s"),
+            needs=frozenset({"throttle"}),
+        ),
+        Variant(
             "alpha_dot",
             BLOCK,
             ("M_alpha_dot",),
