@@ -12,6 +12,7 @@ from advisor.commands.options import (
     aircraft_option,
     json_option,
     read_aircraft,
+    refuse_unwritable,
     target_system_option,
 )
 from advisor.problems import ConfigurationError, UnusableInputError
@@ -64,7 +65,10 @@ def command(
         return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
     if not logs:
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
-    _refuse_unwritable(out)
+    if out is not None:
+        refuse_unwritable("--out", out)
+    elif not os.access(Path(), os.W_OK):
+        raise ConfigurationError("This folder cannot be written to: name a file in another with --out.")
     from advisor.gap.document import gap_document
     from advisor.report.gap import diagnose_logs, improved_name, write_improved
 
@@ -95,21 +99,6 @@ def command(
 
         Console(highlight=False).print(GapScreen(found, improved))
     return 0
-
-
-def _refuse_unwritable(out: Path | None) -> None:
-    """Refuse before the work what could not be written after it; None: a name of our own, in this folder."""
-    if out is None:
-        if not os.access(Path(), os.W_OK):
-            raise ConfigurationError("This folder cannot be written to: name a file in another with --out.")
-    elif out.is_dir():
-        raise ConfigurationError(f"--out: {out} is a folder; name a file in it.")
-    elif not out.parent.is_dir():
-        raise ConfigurationError(
-            f"--out: there is no folder {out.parent}; make it, or name a file elsewhere."
-        )
-    elif not os.access(out if out.exists() else out.parent, os.W_OK):
-        raise ConfigurationError(f"--out: {out} cannot be written to; name a file elsewhere.")
 
 
 def _progress(what: str, share: float) -> None:

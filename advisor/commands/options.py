@@ -1,5 +1,6 @@
 """Options that commands share, so that they read and behave the same everywhere."""
 
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any, TypeVar
 import click
 
 from advisor.aircraft import Aircraft, Rule
+from advisor.problems import ConfigurationError
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -67,3 +69,21 @@ def read_aircraft(aircraft_file: Path | None, rule: Rule | None = None) -> Aircr
     if rule is None:
         return aircraft
     return replace(aircraft, campaign=replace(aircraft.campaign, rule=rule))
+
+
+def refuse_unwritable(option: str, path: Path) -> None:
+    """Refuse before the work what could not be written after it.
+
+    Raises
+    ------
+    ConfigurationError
+        The path is a folder, or lies in none, or may not be written.
+    """
+    if path.is_dir():
+        raise ConfigurationError(f"{option}: {path} is a folder; name a file in it.")
+    if not path.parent.is_dir():
+        raise ConfigurationError(
+            f"{option}: there is no folder {path.parent}; make it, or name a file elsewhere."
+        )
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise ConfigurationError(f"{option}: {path} cannot be written to; name a file elsewhere.")

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from advisor.commands.options import json_option
+from advisor.commands.options import json_option, refuse_unwritable
+from advisor.problems import ConfigurationError
 
 if TYPE_CHECKING:
     from advisor.study.flying import NoiseReading
@@ -52,7 +53,13 @@ def command(
     from rich.progress import Progress
 
     from advisor.study import run
+    from advisor.study.figure import refuse_undrawable
 
+    if figure is not None:
+        if advice or change:
+            raise ConfigurationError("--figure draws the campaigns: leave out --advice and --change.")
+        refuse_unwritable("--figure", figure)
+        refuse_undrawable(figure)
     with Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as progress:
         task = progress.add_task("flying campaigns", total=None)
 

@@ -37,8 +37,8 @@ def curve(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome]) -> Curv
     return Curve(rule, noise_percent, tuple(quantiles))
 
 
-def draw(curves: Sequence[Curve], path: Path) -> None:
-    """Write the figure; the ending of ``path`` (.png, .svg) says how.
+def refuse_undrawable(path: Path) -> None:
+    """Refuse before the work a figure that could not be drawn after it.
 
     Raises
     ------
@@ -46,13 +46,22 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
         matplotlib is not installed, or the ending is unknown to it.
     """
     try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-        from matplotlib.ticker import FixedLocator, FormatStrFormatter, NullLocator
+        from matplotlib.backend_bases import FigureCanvasBase
     except ImportError as error:
         raise ConfigurationError(
             "--figure needs matplotlib: pip install 'inflight-advisor[report]'."
         ) from error
+    known = FigureCanvasBase.get_supported_filetypes()
+    if path.suffix and path.suffix[1:].lower() not in known:
+        raise ConfigurationError(f"--figure: no picture ends in {path.suffix}; name a .png or .svg file.")
+
+
+def draw(curves: Sequence[Curve], path: Path) -> None:
+    """Write the figure; the ending of ``path`` (.png, .svg) says how."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import FixedLocator, FormatStrFormatter, NullLocator
+
     rules: list[Rule] = ["continuous", "separate"]
     figure = Figure(figsize=(9.0, 4.0), layout="constrained")
     FigureCanvasAgg(figure)
@@ -75,11 +84,8 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
         axis.grid(visible=True, alpha=0.2)
     axes[0].set_ylabel("criterion, Eq. (12), in %")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, fontsize=8)
-    try:
-        # Without a date the same study gives the same file.
-        figure.savefig(path, dpi=150, metadata={"Date": None} if path.suffix == ".svg" else None)
-    except ValueError as error:
-        raise ConfigurationError(f"--figure {path}: {error}") from error
+    # Without a date the same study gives the same file.
+    figure.savefig(path, dpi=150, metadata={"Date": None} if path.suffix == ".svg" else None)
 
 
 def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[str]:

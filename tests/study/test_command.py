@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from advisor.commands.study import command
+from advisor.problems import ConfigurationError
 from advisor.study import advised
 
 
@@ -30,6 +31,26 @@ def test_figure_five_is_written_as_a_picture(tmp_path: Path) -> None:
         path = tmp_path / name
         assert CliRunner().invoke(command, ["--campaigns", "10", "--figure", str(path)]).exit_code == 0
         assert path.read_bytes().startswith(begins)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--figure", "missing/figure.png"], "there is no folder missing"),
+        (["--figure", "."], "is a folder; name a file in it"),
+        (["--figure", "figure.doc"], "no picture ends in .doc; name a .png or .svg file"),
+        (["--figure", "figure.png", "--change"], "leave out --advice and --change"),
+    ],
+)
+def test_a_figure_that_cannot_be_drawn_is_refused_before_a_campaign_is_flown(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, arguments: list[str], sentence: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    # So many campaigns would take an hour.
+    result = CliRunner().invoke(command, ["--campaigns", "20000", *arguments])
+    assert isinstance(result.exception, ConfigurationError)
+    assert sentence in str(result.exception)
+    assert not list(tmp_path.iterdir())
 
 
 def test_following_the_advice_saves_manoeuvres() -> None:
