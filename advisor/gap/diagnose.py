@@ -31,6 +31,7 @@ from advisor.gap.problem import Problem
 from advisor.gap.remainder import remainder
 from advisor.gap.result import Diagnosis
 from advisor.gap.speed import at_constant_speed
+from advisor.gap.stamps import stamp_power
 from advisor.gap.uncertainty import worth
 from advisor.gap.waterfall import Progress, build_up, reduced_to
 from advisor.gap.wind import wind_shear
@@ -152,7 +153,9 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
         leftover = other_than_air(problem, stages[0].fitted, last)
     # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
     leftover = scale or swinging(problem, stages[0].fitted, last, stated) or leftover
-    floor = np.minimum(quiet_rms(problem, last), np.sqrt(stages[-1].held_out.mean_square))
+    # Stamps that jitter are the instruments', too, but show only where something moves.
+    measured = quiet_rms(problem, last) ** 2 + stamp_power(problem, last)
+    floor = np.sqrt(np.minimum(measured, stages[-1].held_out.mean_square))
     if leftover is None and air is None:
         leftover = remainder(problem, stages, np.maximum(floor, stated))
     if leftover is not None and leftover.in_quiet is not None:

@@ -59,7 +59,7 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     total_H += np.diag(pull)
     total_g += pull * missed
     lower, upper = bounds_of(fitted.point)
-    anchor = _ANCHOR * np.diag(total_H)
+    anchor = _ANCHOR * told_beside_others(total_H)
     anchor[:k] = 0.0
     lefts: list[FloatArray] = [np.empty(0)] * n
     innovations: list[FloatArray] = [np.empty(0)] * n
@@ -112,6 +112,14 @@ def solve_scaled(H: FloatArray, g: FloatArray) -> FloatArray:
     """H⁻¹ g with H scaled to a unit diagonal; directions the data say nothing about stay put."""
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     return np.asarray(np.linalg.lstsq(H / np.outer(scale, scale), g / scale, rcond=_INDIFFERENT)[0] / scale)
+
+
+def told_beside_others(H: FloatArray) -> FloatArray:
+    """Shape (k,): information on each number with all others unknown, 1 / (H⁻¹)_jj."""
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    widened = np.diag(np.linalg.pinv(H / np.outer(scale, scale), hermitian=True))
+    # Never less than one; it reads as less only where the data say nothing at all.
+    return np.asarray(scale**2 / np.maximum(widened, 1.0))
 
 
 def own_after(problem: Problem, i: int, block: Linear, weights: FloatArray, step: FloatArray) -> FloatArray:

@@ -86,10 +86,13 @@ def waterfall_of(
     speed: Cause | None,
     start: float,
 ) -> tuple[tuple[str, float], ...]:
-    """Effect and gap after adding it, in order."""
+    """Effect and gap after adding it, in order.
+
+    A simulator that is given the measured speed has its change already: ``start`` is what that one leaves.
+    """
     steps: list[tuple[str, float]] = []
     if speed is not None and speed not in extra:
-        steps.append((speed.effect, float(np.mean(gap_of(stages[0].held_out.mean_square, floor)))))
+        steps.append((speed.effect, start))
     for stage, following in pairwise(stages):
         assert stage.added is not None
         steps.append((stage.added.effect, float(np.mean(gap_of(following.held_out.mean_square, floor)))))

@@ -12,7 +12,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.data import STEP_S
 from advisor.gap.fit import Fitted
 from advisor.gap.layout import ENTRIES
-from advisor.gap.problem import Problem
+from advisor.gap.problem import Problem, counts
 
 _LEAST = {"q": 0.3, "a_z": 0.45}
 """Channels that move quickly and are measured well; for each, from which error through its stamps on, beside
@@ -31,6 +31,16 @@ def stamp_variance(problem: Problem, fitted: Fitted) -> list[FloatArray]:
         (problem.jitter_s * rate) ** 2 + 0.25 * jerk**2
         for rate, jerk in zip(rates_of(problem, fitted), _jerks_of(problem, fitted), strict=True)
     ]
+
+
+def stamp_power(problem: Problem, fitted: Fitted) -> FloatArray:
+    """Shape (channels,): mean square that stamps which jitter add to each channel, whatever the model."""
+    power = np.zeros(len(problem.channels))
+    if problem.jitter_s == 0.0:
+        return power
+    for flight, rate in zip(problem.flights.flights, rates_of(problem, fitted), strict=True):
+        power += [np.sum((problem.jitter_s * rate[rows]) ** 2) for rows in problem.rows(flight)]
+    return np.asarray(power / counts(problem))
 
 
 def rates_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:

@@ -75,8 +75,13 @@ def place(block: str) -> str:
 def sentence_of(d: Diagnosis) -> str:
     """One sentence for the crew."""
     if d.verdict == "none":
-        left = "nothing" if d.gap.before < VISIBLE else "too little for a name"
-        return f"The simulator flies like the aircraft: {left} is left above the noise."
+        if d.gap.before < VISIBLE:
+            left = "nothing is left above the noise"
+        elif d.gap.after < VISIBLE:
+            left = "its numbers are right to a few per cent, and fitted ones leave nothing above the noise"
+        else:
+            left = "too little for a name is left above the noise"
+        return f"The simulator flies like the aircraft: {left}."
     removed = f"{max(d.shrink.percent, 0.0):.0f} % of the gap" if d.shrink is not None else "the gap"
     if d.verdict == "parameters":
         return f"The simulator has the right structure and wrong numbers: the fitted eight remove {removed}."

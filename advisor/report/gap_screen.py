@@ -37,6 +37,8 @@ _SCORES = "per cent: how well a block would explain the gap on its own, the best
 _AS_GOOD = "100 % beside the marked block: the data alone can hardly tell the two apart"
 _ROUNDS_TO_ALL = 0.995
 _BAR = 40
+_SPEED = "airspeed_variation"
+"""Where the measured speed is in the simulator as it is, it is no step."""
 _WORTH_SAYING = 0.005
 """Shares that round to nothing are left out."""
 
@@ -58,9 +60,10 @@ class GapScreen:
         yield _numbers(d)
         yield Panel(Group(*_picture(d)), title=_where(d), title_align="left")
         yield Panel(whereabouts(d.gap), title="where in the flight", title_align="left")
-        if d.waterfall:
+        added = [step for step in d.waterfall if step != (_SPEED, d.gap.before)]
+        if added:
             title = "gap as effects are added, one after another"
-            yield Panel(_waterfall(d), title=title, title_align="left")
+            yield Panel(_waterfall(d.gap.before, added), title=title, title_align="left")
         if d.causes:
             yield ""
             yield from ranking(d.causes)
@@ -148,10 +151,10 @@ def _picture(d: Diagnosis) -> Iterator[RenderableType]:
         yield Text(_AS_GOOD, style="dim")
 
 
-def _waterfall(d: Diagnosis) -> Text:
-    largest = max(d.gap.before, *(after for _, after in d.waterfall), 1e-12)
+def _waterfall(before: float, added: Sequence[tuple[str, float]]) -> Text:
+    largest = max(before, *(after for _, after in added), 1e-12)
     lines = []
-    for name, value in (("as it is", d.gap.before), *d.waterfall):
+    for name, value in (("as it is", before), *added):
         bar = "█" * round(_BAR * float(np.log1p(max(value, 0.0)) / np.log1p(largest)))
         step = name if name == "as it is" else f"+ {spelled(name)}"
         lines.append(f"{step:27s}{short(value):>8s} {bar}")

@@ -95,6 +95,14 @@ def test_a_sign_or_a_unit_that_is_wrong_in_the_file_does_not_hide_the_cause(wron
     assert found.model[name].value == pytest.approx(MODEL[name], rel=0.1)
 
 
+def test_numbers_that_are_right_to_a_per_cent_are_no_gap_to_mend_and_the_sentence_says_what_they_leave():
+    nearly = {**MODEL, "M_alpha": 1.02 * MODEL["M_alpha"], "M_delta_e": 0.985 * MODEL["M_delta_e"]}
+    found = diagnose(fly(Setup(maneuvers=6, noise=0.01, seed=4)), Aircraft(model=nearly))
+    assert found.verdict == "none"
+    assert found.gap.before > 0.1
+    assert "its numbers are right to a few per cent" in found.sentence
+
+
 def test_numbers_that_are_off_by_a_few_per_cent_each_are_told_where_they_leave_a_gap():
     names = ("M_alpha", "Z_alpha", "M_delta_e", "M_q")
     wrong = {**MODEL, **{n: f * MODEL[n] for n, f in zip(names, (0.94, 1.07, 0.93, 1.05), strict=True)}}
