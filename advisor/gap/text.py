@@ -77,8 +77,9 @@ def sentence_of(d: Diagnosis) -> str:
     if d.verdict == "none":
         if d.gap.before < VISIBLE:
             left = "nothing is left above the noise"
-        elif d.gap.after < VISIBLE:
-            left = "its numbers are right to a few per cent, and fitted ones leave nothing above the noise"
+        elif d.gap.after < 0.5 * d.gap.before:
+            percent = 100.0 * (1.0 - d.gap.after / d.gap.before)
+            left = f"its numbers are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
         else:
             left = "too little for a name is left above the noise"
         return f"The simulator flies like the aircraft: {left}."
