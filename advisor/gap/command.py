@@ -17,6 +17,8 @@ _LOOKS_HELD = 0.3
 variance of edges anywhere in an interval, beside the square of half of it."""
 _HALF_S = 0.003
 """How near to half an interval that is."""
+_LIKELIER = 12.0
+"""Twice the log likelihood by which a whole diagnosis with a held command must be the better one."""
 
 
 def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
@@ -32,8 +34,7 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     if best is None:
         return linear, fitted
     other = lag if best.variant is delay else delay
-    held = replace(linear, held=True)
-    plainly_held = with_latency(held, fit(held, fitted.point, fitted.noise))
+    held, plainly_held = read_as_held(linear, fitted)
     both_linear = fit(linear, best.point.with_effect(other, (0.005,)), best.noise, 8)
     # A held command answers half an interval later than a linear one by itself.
     half = 0.5 * float(np.median(np.diff(linear.flights.flights[0].t_u)))
@@ -60,9 +61,32 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     return linear, fitted
 
 
+def may_be_held(problem: Problem, fitted: Fitted) -> bool:
+    """Whether a command read as linear has the delay that a held one has by itself.
+
+    That is half an interval, or up to a whole one before a servo that moves no faster than some rate: it
+    would have begun when the command left its old value. ``fitted`` has all effects that were named.
+    """
+    interval = float(np.median(np.diff(problem.flights.flights[0].t_u)))
+    return not problem.held and 0.5 * interval - _HALF_S < _delay_of(fitted) < interval + _HALF_S
+
+
+def read_as_held(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+    """The plain model with the command held between its stamps."""
+    held = replace(problem, held=True)
+    return held, with_latency(held, fit(held, fitted.point, fitted.noise))
+
+
+def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: Fitted) -> bool:
+    """Whether all that was named with a held command describes the data better, and without a delay."""
+    return _delay_of(named_held) == 0.0 and (
+        evidence_of(held, named_held) < evidence_of(linear, named) - _LIKELIER
+    )
+
+
 def _delay_of(fitted: Fitted) -> float:
-    names = [effect.effect for effect in fitted.point.effects]
-    return float(fitted.point.values[names.index("transport_delay")][0])
+    delays = zip(fitted.point.effects, fitted.point.values, strict=True)
+    return sum(float(values[0]) for effect, values in delays if effect.effect == "transport_delay")
 
 
 def with_latency(problem: Problem, fitted: Fitted) -> Fitted:

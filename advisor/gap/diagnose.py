@@ -15,6 +15,7 @@ from advisor.gap.answer import answer
 from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.causes import OFFSET_SIGMAS
+from advisor.gap.command import is_likelier_held, may_be_held, read_as_held
 from advisor.gap.data import Flights, prepare
 from advisor.gap.evidence import Evidence
 from advisor.gap.fit import Fitted, solve_blocks
@@ -127,6 +128,11 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     variants = beyond_known(aircraft.effects, variants_for(problem.flights))
     white = stated_floor(problem.flights)
     stages = build_up(problem, baseline, variants, progress)
+    if may_be_held(problem, stages[-1].fitted):
+        held, plain = read_as_held(problem, baseline)
+        others = build_up(held, plain, variants, progress)
+        if is_likelier_held(problem, stages[-1].fitted, held, others[-1].fitted):
+            problem, baseline, stages = held, plain, others
     scale = misread(problem, stages)
     if scale is not None:
         stages = reduced_to(problem, stages, [])

@@ -31,6 +31,17 @@ def test_a_command_is_read_as_it_was_flown(tmp_path, flown):
     assert problem.held == (flown == "held")
 
 
+@pytest.mark.parametrize("flown", ["held", "linear"])
+def test_a_servo_that_moves_no_faster_is_no_later_for_a_command_that_was_held(tmp_path, flown):
+    limited = f"{UAV}input: {flown}\neffects: {{actuator_rate_limit: {{rate_rad_s: 0.7}}}}\n"
+    (tmp_path / "uav.yaml").write_text(limited)
+    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
+    found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft()), Aircraft())
+    (cause,) = [c for c in found.causes if c.present]
+    assert cause.effect == "actuator_rate_limit"
+    assert cause.parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.03)
+
+
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_delay_of_nearly_an_interval_is_not_taken_for_a_held_command_that_is_half_as_late(seed):
     late = Setup(maneuvers=6, switches={"delay": 0.018}, jitter=0.002, seed=seed)
