@@ -7,7 +7,7 @@ chapter 10, "data compatibility"; here for the longitudinal motion.)
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -88,10 +88,11 @@ def check_alpha(
         missing.append("airspeed")
     if missing:
         listed = ", ".join(missing)
+        said = f"alpha cannot be checked against the motion: no {listed} in this log."
+        # What alpha is off on average takes the attitude and the climb rate only.
+        offset = _bias(maneuver, airspeed_m_s) if missing == ["a_z"] else (float("nan"), float("nan"))
         return KinematicCheck(
-            "not possible",
-            f"alpha cannot be checked against the motion: no {listed} in this log.",
-            tuple(missing),
+            "not possible", said, tuple(missing), bias_rad=offset[0], bias_std_rad=offset[1]
         )
     t_alpha, alpha = renewed(found["alpha"].t, found["alpha"].y)
     t = found["q"].t
@@ -115,17 +116,21 @@ def check_alpha(
         / speed
     )
     rebuilt = np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
-    return _compare(t, rebuilt, rate, t_alpha, alpha, _bias(maneuver, speed, t, theta))
+    return _compare(t, rebuilt, rate, t_alpha, alpha, _bias(maneuver, airspeed_m_s))
 
 
-def _bias(maneuver: Maneuver, speed: FloatArray, t: FloatArray, theta: FloatArray) -> tuple[float, float]:
+def _bias(maneuver: Maneuver, airspeed_m_s: float | None) -> tuple[float, float]:
     """Mean of α − (θ − γ) and its error, from the climb rate; NaN without one."""
     found = maneuver.channels
     if "climb_rate" not in found or len(found["climb_rate"]) < 3:
         return float("nan"), float("nan")
     climb = found["climb_rate"]
-    gamma = np.arcsin(np.clip(climb.y / np.interp(climb.t, t, speed), -0.9, 0.9))
-    apart = np.interp(climb.t, found["alpha"].t, found["alpha"].y) - (np.interp(climb.t, t, theta) - gamma)
+
+    def at(name: str) -> FloatArray:
+        return np.interp(climb.t, found[name].t, found[name].y)
+
+    speed = np.maximum(at("airspeed"), 1.0) if airspeed_m_s is None else airspeed_m_s
+    apart = at("alpha") - (at("theta") - np.arcsin(np.clip(climb.y / speed, -0.9, 0.9)))
     # The climb rate is slow and smoothed: count one independent reading a second.
     independent = max(2.0, climb.t[-1] - climb.t[0])
     return float(np.mean(apart)), float(np.std(apart) / np.sqrt(independent))
@@ -228,17 +233,18 @@ def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:
 
     The scatter between manoeuvres widens the error where it exceeds what each claims.
     """
-    usable = [c for c in checks if c.possible and np.isfinite(c.lag_std_s) and c.lag_std_s > 0.0]
-    if not usable:
-        return checks[0] if checks else KinematicCheck("not possible", "No manoeuvre to check alpha on.")
-    lag, lag_std = _weighted([c.lag_s for c in usable], [c.lag_std_s for c in usable])
-    scale, scale_std = _weighted([c.scale for c in usable], [c.scale_std for c in usable])
-    biased = [c for c in usable if np.isfinite(c.bias_rad)]
+    biased = [c for c in checks if np.isfinite(c.bias_rad)]
     bias = (
         _weighted([c.bias_rad for c in biased], [c.bias_std_rad for c in biased])
         if biased
         else (np.nan, np.nan)
     )
+    usable = [c for c in checks if c.possible and np.isfinite(c.lag_std_s) and c.lag_std_s > 0.0]
+    if not usable:
+        first = checks[0] if checks else KinematicCheck("not possible", "No manoeuvre to check alpha on.")
+        return replace(first, bias_rad=bias[0], bias_std_rad=bias[1])
+    lag, lag_std = _weighted([c.lag_s for c in usable], [c.lag_std_s for c in usable])
+    scale, scale_std = _weighted([c.scale for c in usable], [c.scale_std for c in usable])
     explained = float(np.median([c.explained for c in usable]))
     finding, sentence = _judge(lag, lag_std, scale, scale_std, explained)
     drift = float(np.mean([c.drift_rad_s for c in usable]))

@@ -46,6 +46,18 @@ def test_the_climb_rate_shows_a_constant_offset():
     assert checked(alpha_bias=0.01).bias_rad == pytest.approx(0.01, abs=0.001)
 
 
+def test_a_constant_offset_shows_without_an_accelerometer_too():
+    bare = [
+        replace(m, channels={name: c for name, c in m.channels.items() if name != "a_z"})
+        for m in flown(alpha_bias=0.01)
+    ]
+    found = combine([check_alpha(m) for m in bare])
+    assert found.finding == "not possible"
+    assert found.bias_rad == pytest.approx(0.01, abs=0.001)
+    named = diagnose(bare, Aircraft())
+    assert [c.effect for c in named.causes if c.present] == ["alpha_bias"]
+
+
 def test_a_known_accelerometer_arm_is_removed_and_an_unknown_one_is_not():
     maneuvers = flown(switches={"acc_arm": 0.4})
     known = combine([check_alpha(m, accelerometer_arm_m=0.4) for m in maneuvers])
