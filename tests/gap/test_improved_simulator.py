@@ -82,7 +82,7 @@ def test_the_power_of_the_speed_that_a_file_states_is_flown() -> None:
     record["speed_scaled"], record["speed_power"] = 1.0, -0.5
     answers = []
     for elevator in (0.0, 0.1):
-        x, u, dx = np.zeros(7), np.zeros(8), np.zeros(7)
+        x, u, dx = np.zeros(8), np.zeros(8), np.zeros(8)
         u[0], u[4] = elevator, faster * 50.0
         rates(x, u, record, dx)
         answers.append(dx[:2].copy())
