@@ -1,6 +1,7 @@
 """The main job, end to end: a log goes in, verdicts, parameters and a decision come out."""
 
 import json
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,14 @@ from advisor.aircraft import PARAMETERS
 from advisor.cli import advisor
 from tests.flights import SHIPPED, recorded, truth
 
+# The same few flights, analysed once for all that is said of them.
+pytestmark = pytest.mark.xdist_group("first flight")
+
 PAPER_ORDER = ["3-2-1-1", "reverse 3-2-1-1", "reverse 3-2-1-1", "3-2-1-1", "reverse 3-2-1-1"]
 PAPER_ORDER += ["3-2-1-1", "reverse 3-2-1-1"]
 
 
+@cache
 def analyzed(log: Path, *options: str) -> dict[str, Any]:
     result = CliRunner().invoke(advisor, ["analyze", str(log), "--json", *options], standalone_mode=False)
     assert result.exception is None
@@ -36,7 +41,8 @@ def test_the_seven_manoeuvres_of_the_paper_are_found_told_apart_and_judged() -> 
 
 
 def test_at_one_percent_noise_continuous_improvement_decides_each_manoeuvre_by_its_cost() -> None:
-    document = analyzed(recorded("linear", 1.0), "--rule", "continuous")
+    document = analyzed(recorded("linear", 1.0))
+    assert document["flight_test"]["rule"] == "continuous"
     for maneuver in document["maneuvers"]:
         limit = maneuver["rules"]["continuous"]["limit"]
         assert (maneuver["verdict"] == "accepted") == (limit is None or maneuver["cost"] < limit)
@@ -94,9 +100,8 @@ def test_the_document_has_every_key_of_the_contract() -> None:
 
 
 def test_people_get_the_same_verdicts_as_text() -> None:
-    result = CliRunner().invoke(
-        advisor, ["analyze", str(recorded("linear", 1.0))], standalone_mode=False, env={"COLUMNS": "100"}
-    )
+    words = ["analyze", str(recorded("linear", 1.0)), "--rule", "continuous"]
+    result = CliRunner().invoke(advisor, words, standalone_mode=False, env={"COLUMNS": "100"})
     assert result.exception is None
     assert result.stdout.count("ACCEPTED:") + result.stdout.count("REPEAT:") == 7
     assert "STOP TESTING" in result.stdout

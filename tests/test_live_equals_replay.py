@@ -1,5 +1,6 @@
 """What is decided in the air is decided again from the recording, to the last bit."""
 
+from copy import deepcopy
 from pathlib import Path
 
 import numpy as np
@@ -28,12 +29,23 @@ def facts(state: CampaignState) -> list[object]:
     return [*told, state.model.theta.tobytes()]
 
 
-def replayed(log: Path) -> CampaignState:
+def replayed(log: Path) -> Campaign:
     campaign = Campaign(Aircraft())
     for batch in open_log(log):
         campaign.feed(batch)
     campaign.finish()
-    return campaign.state
+    return campaign
+
+
+@pytest.fixture(scope="module")
+def once() -> Campaign:
+    return replayed(recorded("linear", 1.0))
+
+
+@pytest.fixture
+def campaign(once: Campaign) -> Campaign:
+    """A campaign of seven manoeuvres, to do with as one likes."""
+    return deepcopy(once)
 
 
 def test_a_flight_followed_live_and_its_own_recording_give_identical_verdicts(tmp_path: Path) -> None:
@@ -47,7 +59,7 @@ def test_a_flight_followed_live_and_its_own_recording_give_identical_verdicts(tm
             campaign.feed(columns)
     campaign.finish()
     assert len(campaign.state.maneuvers) == 7
-    assert facts(campaign.state) == facts(replayed(recording))
+    assert facts(campaign.state) == facts(replayed(recording).state)
 
 
 def one_by_one(columns: list[Columns]) -> list[Columns]:
@@ -67,21 +79,18 @@ def one_by_one(columns: list[Columns]) -> list[Columns]:
     return sorted(singles, key=lambda single: int(single.order[0]))
 
 
-def test_it_does_not_matter_how_the_stream_is_cut_into_batches() -> None:
-    log = recorded("linear", 1.0)
-    columns = [piece for batch in open_log(log) for piece in batch]
+def test_it_does_not_matter_how_the_stream_is_cut_into_batches(once: Campaign) -> None:
+    columns = [piece for batch in open_log(recorded("linear", 1.0)) for piece in batch]
     campaign = Campaign(Aircraft())
     for single in one_by_one(columns):
         campaign.feed([single])
     campaign.finish()
-    assert facts(campaign.state) == facts(replayed(log))
+    assert facts(campaign.state) == facts(once.state)
 
 
-def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_back_restores_it() -> None:
-    campaign = Campaign(Aircraft())
-    for batch in open_log(recorded("linear", 1.0)):
-        campaign.feed(batch)
-    campaign.finish()
+def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_back_restores_it(
+    campaign: Campaign,
+) -> None:
     before = facts(campaign.state)
     campaign.exclude(3, "a gust")
     state = campaign.state
@@ -95,10 +104,7 @@ def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_
     assert facts(campaign.state) == before
 
 
-def test_notes_and_marks_are_kept() -> None:
-    campaign = Campaign(Aircraft())
-    for batch in open_log(recorded("linear", 1.0)):
-        campaign.feed(batch)
+def test_notes_and_marks_are_kept(campaign: Campaign) -> None:
     campaign.note(2, "rough hands")
     campaign.mark("turning back")
     assert campaign.state.maneuvers[1].notes == ("rough hands",)
