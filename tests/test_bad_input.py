@@ -10,10 +10,12 @@ import pytest
 
 from advisor.flight.messages import Columns
 from advisor.mavlink.tlog import read_tlog
+from tests.conftest import Advisor
 from tests.flights import recorded
 
 
-def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+def process(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """The command as a program of its own."""
     command = [sys.executable, "-m", "advisor", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
 
@@ -45,11 +47,13 @@ BAD: dict[str, tuple[Callable[[Path], object], str]] = {
 
 
 @pytest.mark.parametrize("kind", BAD)
-def test_unusable_input_is_told_in_a_sentence_with_exit_code_3(kind: str, tmp_path: Path) -> None:
+def test_unusable_input_is_told_in_a_sentence_with_exit_code_3(
+    kind: str, advisor: Advisor, tmp_path: Path
+) -> None:
     make, expected = BAD[kind]
     log = tmp_path / "flight.tlog"
     make(log)
-    result = run("analyze", log)
+    result = advisor("analyze", log)
     assert result.returncode == 3
     assert expected in result.stderr
     assert "Traceback" not in result.stderr
@@ -57,11 +61,13 @@ def test_unusable_input_is_told_in_a_sentence_with_exit_code_3(kind: str, tmp_pa
 
 
 @pytest.mark.parametrize("kind", BAD)
-def test_with_json_the_document_still_comes_and_names_the_problem(kind: str, tmp_path: Path) -> None:
+def test_with_json_the_document_still_comes_and_names_the_problem(
+    kind: str, advisor: Advisor, tmp_path: Path
+) -> None:
     make, _ = BAD[kind]
     log = tmp_path / "flight.tlog"
     make(log)
-    result = run("analyze", log, "--json")
+    result = advisor("analyze", log, "--json")
     document = json.loads(result.stdout)
     assert result.returncode == 3
     assert document["usable"] is False
@@ -69,34 +75,34 @@ def test_with_json_the_document_still_comes_and_names_the_problem(kind: str, tmp
     assert document["problems"][0]["fix"]
 
 
-def test_a_log_cut_off_inside_a_frame_is_used_up_to_the_cut(tmp_path: Path) -> None:
+def test_a_log_cut_off_inside_a_frame_is_used_up_to_the_cut(advisor: Advisor, tmp_path: Path) -> None:
     data = recorded("linear", 1.0).read_bytes()
     cut = tmp_path / "cut.tlog"
     cut.write_bytes(data[: len(data) * 2 // 3 + 5])
-    result = run("analyze", cut, "--json")
+    result = advisor("analyze", cut, "--json")
     assert result.returncode == 0
     assert len(json.loads(result.stdout)["maneuvers"]) >= 4
 
 
-def test_without_measured_angle_of_attack_it_is_derived_and_said_so(tmp_path: Path) -> None:
+def test_without_measured_angle_of_attack_it_is_derived_and_said_so(advisor: Advisor, tmp_path: Path) -> None:
     log = without(recorded("uav", 1.0), "AOA_SSA", tmp_path / "no-alpha.tlog")
-    result = run("analyze", log, "--json")
+    result = advisor("analyze", log, "--json")
     document = json.loads(result.stdout)
     assert result.returncode == 0
     assert document["log"]["channels"]["alpha"]["provenance"] == "derived"
 
 
-def test_without_any_way_to_an_angle_of_attack_the_mend_is_named(tmp_path: Path) -> None:
+def test_without_any_way_to_an_angle_of_attack_the_mend_is_named(advisor: Advisor, tmp_path: Path) -> None:
     log = without(recorded("uav", 1.0), "AOA_SSA", tmp_path / "a.tlog")
     log = without(log, "VFR_HUD", tmp_path / "b.tlog")
-    result = run("analyze", log)
+    result = advisor("analyze", log)
     assert result.returncode == 3
     assert "AOA_SSA" in result.stderr
     assert "Traceback" not in result.stderr
 
 
 def test_a_missing_file_is_told(tmp_path: Path) -> None:
-    result = run("analyze", tmp_path / "none.tlog")
+    result = process("analyze", tmp_path / "none.tlog")
     assert result.returncode == 3
     assert "none.tlog" in result.stderr
 
@@ -104,7 +110,7 @@ def test_a_missing_file_is_told(tmp_path: Path) -> None:
 def test_an_unknown_key_in_the_aircraft_file_is_wrong_configuration(tmp_path: Path) -> None:
     aircraft = tmp_path / "aircraft.yaml"
     aircraft.write_text("elevator: {calibrations: []}\nwings: 2\n")
-    result = run("analyze", recorded("linear", 1.0), "--aircraft", aircraft)
+    result = process("analyze", recorded("linear", 1.0), "--aircraft", aircraft)
     assert result.returncode == 2
     assert "elevator.calibrations" in result.stderr
     assert "wings" in result.stderr
@@ -112,8 +118,8 @@ def test_an_unknown_key_in_the_aircraft_file_is_wrong_configuration(tmp_path: Pa
 
 
 @pytest.mark.parametrize("arguments", [["analyse"], ["analyze"], ["analyze", "x.tlog", "--rule", "best"]])
-def test_wrong_usage_has_exit_code_2(arguments: list[str]) -> None:
-    result = run(*arguments)
+def test_wrong_usage_has_exit_code_2(arguments: list[str], advisor: Advisor) -> None:
+    result = advisor(*arguments)
     assert result.returncode == 2
     assert "Traceback" not in result.stderr
 

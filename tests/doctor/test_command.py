@@ -7,12 +7,14 @@ from pathlib import Path
 
 import pytest
 
+from tests.conftest import Advisor
 from tests.link.builders import free_port
 
 LOGS = Path(__file__).parents[2] / "logs"
 
 
 def doctor(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """The command as a program of its own, beside a link's other end."""
     return subprocess.run(
         [sys.executable, "-c", "from advisor.cli import main; main()", "doctor", *arguments],
         capture_output=True,
@@ -21,8 +23,8 @@ def doctor(*arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_a_log_at_default_rates_ends_with_3_a_sentence_and_still_a_document() -> None:
-    run = doctor(str(LOGS / "arduplane-default-rates.tlog"), "--json")
+def test_a_log_at_default_rates_ends_with_3_a_sentence_and_still_a_document(advisor: Advisor) -> None:
+    run = advisor("doctor", LOGS / "arduplane-default-rates.tlog", "--json")
     assert run.returncode == 3
     document = json.loads(run.stdout)
     assert document["usable"] is False
@@ -33,8 +35,8 @@ def test_a_log_at_default_rates_ends_with_3_a_sentence_and_still_a_document() ->
     assert "Traceback" not in run.stderr
 
 
-def test_a_usable_log_is_told_in_words_verdict_first() -> None:
-    run = doctor(str(LOGS / "arduplane-calm.tlog"))
+def test_a_usable_log_is_told_in_words_verdict_first(advisor: Advisor) -> None:
+    run = advisor("doctor", LOGS / "arduplane-calm.tlog")
     assert run.returncode == 0
     assert run.stderr == ""
     first, *rest = run.stdout.splitlines()
@@ -52,8 +54,10 @@ def test_a_usable_log_is_told_in_words_verdict_first() -> None:
         ("udpin:127.0.0.1:notaport", 2, "no port"),
     ],
 )
-def test_what_cannot_be_examined_is_refused_in_one_sentence(target: str, code: int, word: str) -> None:
-    run = doctor(target)
+def test_what_cannot_be_examined_is_refused_in_one_sentence(
+    target: str, code: int, word: str, advisor: Advisor
+) -> None:
+    run = advisor("doctor", target)
     assert run.returncode == code
     assert word in run.stderr
     assert "Traceback" not in run.stderr
