@@ -6,17 +6,25 @@ from tempfile import mkdtemp
 
 from sim.flight import Flight
 from sim.record import record
-from sim.scenario import Noise, Scenario
+from sim.scenario import Maneuver, Noise, Scenario
 
 FOLDER = Path(mkdtemp(prefix="flights-"))
+TWO = (Maneuver("3211"), Maneuver("rev"))
+"""Enough where each manoeuvre is as good as another."""
 SHIPPED = Path(__file__).parent.parent / "logs"
 
 
 @cache
-def recorded(aircraft: str, noise_percent: float, seed: int = 11) -> Path:
-    """A log of the paper's seven manoeuvres."""
-    path = FOLDER / f"{aircraft}-{noise_percent}-{seed}.tlog"
-    record(Flight(Scenario(aircraft=aircraft, noise=Noise(percent=noise_percent), seed=seed)), path)
+def recorded(
+    aircraft: str,
+    noise_percent: float,
+    seed: int = 11,
+    maneuvers: tuple[Maneuver, ...] = Scenario().maneuvers,
+) -> Path:
+    """A log of the paper's seven manoeuvres, or of others."""
+    path = FOLDER / f"{aircraft}-{noise_percent}-{seed}-{len(maneuvers)}.tlog"
+    noise = Noise(percent=noise_percent)
+    record(Flight(Scenario(aircraft=aircraft, noise=noise, seed=seed, maneuvers=maneuvers)), path)
     return path
 
 

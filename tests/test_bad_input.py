@@ -11,7 +11,7 @@ import pytest
 from advisor.flight.messages import Columns
 from advisor.mavlink.tlog import read_tlog
 from tests.conftest import Advisor
-from tests.flights import recorded
+from tests.flights import TWO, recorded
 
 
 def process(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -85,7 +85,7 @@ def test_a_log_cut_off_inside_a_frame_is_used_up_to_the_cut(advisor: Advisor, tm
 
 
 def test_without_measured_angle_of_attack_it_is_derived_and_said_so(advisor: Advisor, tmp_path: Path) -> None:
-    log = without(recorded("uav", 1.0), "AOA_SSA", tmp_path / "no-alpha.tlog")
+    log = without(recorded("uav", 1.0, maneuvers=TWO), "AOA_SSA", tmp_path / "no-alpha.tlog")
     result = advisor("analyze", log, "--json")
     document = json.loads(result.stdout)
     assert result.returncode == 0

@@ -11,7 +11,7 @@ from advisor.flight.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.report import gap
-from tests.flights import recorded
+from tests.flights import TWO, recorded
 from tests.gap.generator import Setup, fly
 from tests.gap.test_report_screen import diagnosis
 
@@ -80,14 +80,15 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
         return diagnosis(notes=("The command was held.",))
 
     monkeypatch.setattr(gap, "diagnose", noted)
-    once = gap.maneuvers_of([recorded("uav", 1.0)], Aircraft())
-    found = gap.diagnose_logs([recorded("uav", 1.0), recorded("uav", 1.0)], Aircraft())
+    log = recorded("uav", 1.0, maneuvers=TWO)
+    once = gap.maneuvers_of([log], Aircraft())
+    found = gap.diagnose_logs([log, log], Aircraft())
     assert [m.number for m in judged] == [m.number for m in once]
     assert found.notes[0].startswith(f"{len(once)} of {2 * len(once)} manoeuvres came twice")
 
 
 def test_two_flights_of_the_same_plan_both_count():
-    flights = [recorded("uav", 1.0, seed) for seed in (11, 12)]
+    flights = [recorded("uav", 1.0, seed, TWO) for seed in (11, 12)]
     once = gap.maneuvers_of(flights[:1], Aircraft())
     assert len(gap.maneuvers_of(flights, Aircraft())) == 2 * len(once)
 
