@@ -4,15 +4,29 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 
 from advisor.commands.study import command
 from advisor.problems import ConfigurationError
 from advisor.study import advised
 
+# The study runs once for each figure.
+pytestmark = pytest.mark.xdist_group("study")
 
-def test_json_is_one_document_and_nothing_else() -> None:
-    result = CliRunner().invoke(command, ["--campaigns", "10", "--json"])
+
+@pytest.fixture(scope="module")
+def pictured(tmp_path_factory: pytest.TempPathFactory) -> dict[Path, Result]:
+    """What the same study printed beside each of two figures."""
+    folder = tmp_path_factory.mktemp("figures")
+    arguments = ["--campaigns", "10", "--seed", "4", "--json", "--figure"]
+    return {
+        path: CliRunner().invoke(command, [*arguments, str(path)])
+        for path in (folder / "figure.svg", folder / "figure.png")
+    }
+
+
+def test_json_is_one_document_and_nothing_else(pictured: dict[Path, Result]) -> None:
+    result = next(iter(pictured.values()))
     assert result.exit_code == 0
     document = json.loads(result.stdout)
     assert document["schema"] == "advisor.study/1"
@@ -21,16 +35,19 @@ def test_json_is_one_document_and_nothing_else() -> None:
     }
 
 
-def test_the_same_seed_gives_the_same_study() -> None:
-    runs = [CliRunner().invoke(command, ["--campaigns", "10", "--seed", "4"]).stdout for _ in range(2)]
-    assert runs[0] == runs[1]
+def test_the_same_seed_gives_the_same_study(pictured: dict[Path, Result]) -> None:
+    first, again = (result.stdout for result in pictured.values())
+    assert first == again
 
 
-def test_figure_five_is_written_as_a_picture(tmp_path: Path) -> None:
-    for name, begins in (("figure.svg", b"<?xml"), ("figure.png", b"\x89PNG")):
-        path = tmp_path / name
-        assert CliRunner().invoke(command, ["--campaigns", "10", "--figure", str(path)]).exit_code == 0
-        assert path.read_bytes().startswith(begins)
+def test_figure_five_is_written_as_a_picture(pictured: dict[Path, Result]) -> None:
+    assert [path.read_bytes()[:5] for path in pictured] == [b"<?xml", b"\x89PNG\r"]
+
+
+def test_without_json_it_is_told_in_lines() -> None:
+    told = CliRunner().invoke(command, ["--campaigns", "10"]).stdout
+    assert "continuous" in told
+    assert "schema" not in told
 
 
 @pytest.mark.parametrize(
