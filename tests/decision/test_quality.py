@@ -19,6 +19,9 @@ from sim.effects.fitting import flight_of
 from sim.record import write_tlog
 from sim.scenario import Air, Maneuver, Noise, Scenario
 
+# The flight of bad manoeuvres is flown once.
+pytestmark = pytest.mark.xdist_group("bad manoeuvres")
+
 AIRCRAFT = Aircraft(elevator=Elevator(calibration=((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))))
 RATES = {
     "ATTITUDE": 50.0,

@@ -19,6 +19,9 @@ from sim.modelled import modelled_flight
 from sim.record import record
 from sim.scenario import Scenario, scenario_from
 
+# One diagnosis writes the file that both tests of it read.
+pytestmark = pytest.mark.xdist_group("improved simulator")
+
 CAMPAIGN = Path(__file__).parents[2] / "sim" / "scenarios" / "late-command.yaml"
 
 

@@ -50,6 +50,9 @@ from benchmarks.second_generator.visibility import (
     sized,
 )
 
+# The two flights that most tests look at are flown once.
+pytestmark = pytest.mark.xdist_group("second generator")
+
 HEIGHT_M = 100.0
 SOURCES = sorted(Path(benchmarks.second_generator.__file__).parent.glob("*.py"))
 STEP_S = 0.002

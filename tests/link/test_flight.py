@@ -9,6 +9,9 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from tests.link.air import Record, flown, judged, records_of, through_a_poor_radio
 from tests.link.builders import Sender, attitude, heartbeat
 
+# One flight, read and judged once as it was.
+pytestmark = pytest.mark.xdist_group("flight through a link")
+
 HEARTBEAT, PARAM_VALUE = 0, 22
 
 
@@ -19,6 +22,11 @@ def flight(tmp_path_factory: pytest.TempPathFactory) -> list[Record]:
     command = ["-m", "sim", "record", "--aircraft", "linear", "--seed", "1", "--out", str(log)]
     subprocess.run([sys.executable, *command], check=True, capture_output=True, timeout=60)
     return records_of(log)
+
+
+@pytest.fixture(scope="module")
+def samples(flight: list[Record]) -> list[tuple[float, ...]]:
+    return flown(flight)
 
 
 @pytest.fixture(scope="module")
@@ -53,8 +61,10 @@ def amid(records: list[Record], strangers: list[bytes]) -> list[Record]:
     return mixed
 
 
-def test_how_the_stream_is_cut_into_batches_changes_no_digit(flight: list[Record]) -> None:
-    assert flown(flight, batch=23) == flown(flight, batch=len(flight))
+def test_how_the_stream_is_cut_into_batches_changes_no_digit(
+    flight: list[Record], samples: list[tuple[float, ...]]
+) -> None:
+    assert flown(flight, batch=len(flight)) == samples
 
 
 def test_a_fifth_of_the_packets_lost_and_200_ms_of_jitter_change_no_verdict(
@@ -71,7 +81,9 @@ def test_a_fifth_of_the_packets_lost_and_200_ms_of_jitter_change_no_verdict(
     ]
 
 
-def test_strangers_on_the_link_change_no_sample_of_any_manoeuvre(flight: list[Record]) -> None:
+def test_strangers_on_the_link_change_no_sample_of_any_manoeuvre(
+    flight: list[Record], samples: list[tuple[float, ...]]
+) -> None:
     intruder = Sender(system=9)
     strangers = [
         intruder.pack(message)
@@ -88,10 +100,12 @@ def test_strangers_on_the_link_change_no_sample_of_any_manoeuvre(flight: list[Re
     ]
     known = next(i for i, record in enumerate(flight) if message_id(record) == HEARTBEAT)
     disturbed = flight[: known + 1] + amid(flight[known + 1 :], strangers)
-    assert flown(disturbed) == flown(flight)
+    assert flown(disturbed) == samples
 
 
-def test_with_a_key_even_who_claims_to_be_the_vehicle_changes_no_sample(flight: list[Record]) -> None:
+def test_with_a_key_even_who_claims_to_be_the_vehicle_changes_no_sample(
+    flight: list[Record], samples: list[tuple[float, ...]]
+) -> None:
     key = bytes(range(32))
     genuine, impostor = Sender(system=1, key=key), Sender(system=1)
     strangers = [impostor.pack(attitude(5, pitch=1.5)), impostor.pack(heartbeat())]
@@ -99,4 +113,4 @@ def test_with_a_key_even_who_claims_to_be_the_vehicle_changes_no_sample(flight: 
         Record(record.stamp_us, genuine.pack(dialect.MAVLink(None).decode(bytearray(record.frame))))
         for record in flight
     ]
-    assert flown(amid(signed, strangers), key=key) == flown(flight)
+    assert flown(amid(signed, strangers), key=key) == samples

@@ -67,6 +67,13 @@ def test_an_effect_in_the_aircraft_file_changes_the_flight(tmp_path):
     assert min(by_shift, key=by_shift.get) == 5
 
 
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """Readings of the aircraft without any effect."""
+    path = aircraft_file(tmp_path_factory.mktemp("plain") / "plain.yaml")
+    return [s.reading for s in modelled_flight(QUIET, path).samples()]
+
+
 @pytest.mark.parametrize(
     ("effect", "sizes"),
     [
@@ -88,8 +95,7 @@ def test_an_effect_in_the_aircraft_file_changes_the_flight(tmp_path):
         ("turbulence", {"sigma_w_m_s": 1.0, "length_m": 100.0}),
     ],
 )
-def test_every_kind_of_added_term_can_be_flown(tmp_path, effect, sizes):
-    plain = [s.reading for s in modelled_flight(QUIET, aircraft_file(tmp_path / "a.yaml")).samples()]
+def test_every_kind_of_added_term_can_be_flown(plain, tmp_path, effect, sizes):
     path = aircraft_file(tmp_path / "b.yaml", effects={effect: sizes})
     changed = [s.reading for s in modelled_flight(QUIET, path).samples()]
     moved = max(abs(a.q - b.q) + abs(a.alpha - b.alpha) for a, b in zip(plain, changed, strict=True))
