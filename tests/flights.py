@@ -11,6 +11,7 @@ from sim.scenario import Maneuver, Noise, Scenario
 FOLDER = Path(mkdtemp(prefix="flights-"))
 TWO = (Maneuver("3211"), Maneuver("rev"))
 """Enough where each manoeuvre is as good as another."""
+FOUR = Scenario().maneuvers[:4]
 SHIPPED = Path(__file__).parent.parent / "logs"
 
 

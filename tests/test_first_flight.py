@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from advisor.aircraft import PARAMETERS
 from advisor.cli import advisor
-from tests.flights import SHIPPED, recorded, truth
+from tests.flights import SHIPPED, TWO, recorded, truth
 
 # The same few flights, analysed once for all that is said of them.
 pytestmark = pytest.mark.xdist_group("first flight")
@@ -28,7 +28,7 @@ def analyzed(log: Path, *options: str) -> dict[str, Any]:
 
 
 def test_without_noise_every_parameter_of_the_linear_aircraft_comes_back_within_a_thousandth() -> None:
-    document = analyzed(recorded("linear", 0.0))
+    document = analyzed(recorded("linear", 0.0, maneuvers=TWO))
     for name, true in truth("linear").items():
         assert document["model"][name]["value"] == pytest.approx(true, rel=1e-3)
 

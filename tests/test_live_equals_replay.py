@@ -13,7 +13,7 @@ from advisor.demo import Demonstration
 from advisor.flight.messages import Columns
 from advisor.mavlink.logs import open_log
 from advisor.oem.estimate import Estimate
-from tests.flights import TWO, recorded
+from tests.flights import FOUR, TWO, recorded
 
 pytestmark = pytest.mark.xdist_group("links")
 
@@ -39,12 +39,12 @@ def replayed(log: Path) -> Campaign:
 
 @pytest.fixture(scope="module")
 def flown() -> Campaign:
-    return replayed(recorded("linear", 1.0))
+    return replayed(recorded("linear", 1.0, maneuvers=FOUR))
 
 
 @pytest.fixture
 def campaign(flown: Campaign) -> Campaign:
-    """A campaign of seven manoeuvres, to do with as one likes."""
+    """A campaign of four manoeuvres, to do with as one likes."""
     return deepcopy(flown)
 
 
