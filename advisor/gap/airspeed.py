@@ -65,6 +65,29 @@ def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
     return square / product if product > 0.0 else None
 
 
+def speed_without_instrument(
+    grid: FloatArray, maneuver: Maneuver, start_s: float, level_m_s: float
+) -> FloatArray:
+    """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), as the accelerometers show its change.
+
+    Before the first step the aircraft is trimmed and its speed steady, at ``level_m_s``: what is read there
+    is an offset of the accelerometers or the attitude. Constant where a channel is missing.
+    """
+    found = maneuver.channels
+    level = np.full(len(grid), level_m_s)
+    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
+        return level
+
+    def at(name: str) -> FloatArray:
+        return np.interp(grid, found[name].t - start_s, found[name].y)
+
+    rate = speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"))
+    trimmed = grid < maneuver.span.start_s - start_s
+    if not np.any(trimmed):
+        return level
+    return np.maximum(level + integrated(grid, rate - np.mean(rate[trimmed])), 0.5 * level)
+
+
 def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:
     """Trapezoidal running integral, 0 at the first sample."""
     return np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))

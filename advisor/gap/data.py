@@ -9,7 +9,7 @@ from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.renewal import renewed
-from advisor.gap.airspeed import airspeed_on, along_the_path
+from advisor.gap.airspeed import airspeed_on, along_the_path, speed_without_instrument
 from advisor.gap.edges import edges_of, held_from, step_unseen
 from advisor.gap.layout import OUTPUTS
 from advisor.gap.provenance import is_estimate
@@ -129,8 +129,7 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
         moves = float(max(np.max(np.abs(s / np.mean(np.concatenate(speeds)) - 1.0)) for s in speeds))
     else:
         reference, moves = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 20.0, 0.0
-    scaled = measured and scale_with_speed
-    flights = _about_their_mean(_ready(m, aircraft, reference, measured, scaled) for m in usable)
+    flights = _about_their_mean(_ready(m, aircraft, reference, measured, scale_with_speed) for m in usable)
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
     flights = tuple(_with_rows(f, channels) for f in flights)
@@ -189,7 +188,7 @@ def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, sc
             return np.full(n, otherwise)
         return np.asarray(np.interp(grid, channel.t - start, channel.y))
 
-    speed = airspeed_on(grid, m, start) if measured else np.full(n, reference)
+    speed = airspeed_on(grid, m, start) if measured else speed_without_instrument(grid, m, start, reference)
     theta_at = on_grid("theta", 0.0)
     a_x = smooth(on_grid("a_x", GRAVITY_M_S2 * float(np.sin(theta_at[0]))), 0.05)
     bank = smooth(on_grid("bank", 0.0), 0.1)

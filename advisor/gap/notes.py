@@ -26,9 +26,11 @@ def notes_of(
         else "The command was taken as linear between its stamps, its edges anywhere between two."
     )  # fmt: skip
     if not flights.speed_measured:
+        shown = "a_x" in flights.has and {"alpha", "a_z", "theta"} <= set(flights.channels)
+        from_there = "from there it is what the accelerometers make of it" if shown else "it stays there"
         notes.append(
-            f"No air speed in the log: derivatives are constant here, at {flights.reference_m_s:.1f} m/s, "
-            "as the aircraft file says or else the motion shows."
+            f"No air speed in the log: {flights.reference_m_s:.1f} m/s before each manoeuvre, as the aircraft "
+            f"file says or else the motion shows; {from_there}."
         )
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"

@@ -104,11 +104,24 @@ def test_a_power_of_the_speed_is_not_looked_for_where_the_speed_hardly_moved():
     assert "airspeed_variation" not in {variant.effect for variant in variants_for(still)}
 
 
-def test_without_an_air_speed_in_the_log_the_motion_shows_it():
-    flown = [
-        replace(m, channels={name: c for name, c in m.channels.items() if name != "airspeed"})
-        for m in fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=51))
+def without_instrument(flown):
+    return [
+        replace(m, channels={name: c for name, c in m.channels.items() if name != "airspeed"}) for m in flown
     ]
+
+
+def test_without_an_air_speed_in_the_log_the_accelerometers_show_how_it_changes():
+    flown = fly(Setup(maneuvers=2, seed=51))
+    measured = prepare(flown, Aircraft()).flights
+    shown = prepare(without_instrument(flown), Aircraft(airspeed_m_s=UAV.speed)).flights
+    for one, other in zip(measured, shown, strict=True):
+        swing = np.ptp(one.slow[SPEED])
+        assert swing > 1.0
+        assert np.max(np.abs(one.slow[SPEED] - other.slow[SPEED])) < 0.25 * swing
+
+
+def test_without_an_air_speed_in_the_log_the_motion_shows_it():
+    flown = without_instrument(fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=51)))
     assert speed_of_the_motion(flown) == pytest.approx(UAV.speed, rel=0.02)
     shown, stated, wrong = (
         diagnose(flown, Aircraft(airspeed_m_s=v)) for v in (None, UAV.speed, 1.5 * UAV.speed)
@@ -116,3 +129,4 @@ def test_without_an_air_speed_in_the_log_the_motion_shows_it():
     assert shown.gap.after == pytest.approx(stated.gap.after, rel=0.1)
     assert wrong.gap.after > 5.0 * shown.gap.after
     assert any("No air speed in the log" in note for note in shown.notes)
+    assert [c.effect for c in shown.causes if c.present] == ["transport_delay"]
