@@ -8,13 +8,14 @@ from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import everywhere, variants_for
 from advisor.gap.command import read_command, with_latency
-from advisor.gap.data import Flight, Flights
+from advisor.gap.data import Flights
 from advisor.gap.fit import Fitted, fit
 from advisor.gap.floor import stated_floor
 from advisor.gap.known import with_known
 from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.gap.noise import loudness, whitening_of
 from advisor.gap.problem import Point, Problem
+from advisor.gap.regression import regressions
 from advisor.gap.screen import Screen
 from advisor.gap.simulate import GRAVITY_M_S2
 from advisor.gap.stamps import rates_of, stamp_jitter
@@ -66,58 +67,13 @@ def first_guesses(flights: Flights, aircraft: Aircraft) -> list[Point]:
     """
     own = np.zeros((len(flights), 4))
     own[:, 2] = [-GRAVITY_M_S2 / np.mean(f.slow[0]) for f in flights.flights]
-    rows_q, rate_q, rows_a, rate_a = [], [], [], []
-    for f in flights.flights:
-        r, y, ra, ya = _regression(f)
-        rows_q.append(r)
-        rate_q.append(y)
-        rows_a.append(ra)
-        rate_a.append(ya)
-    ridge = 1e-6
-    moment = _ridge(np.vstack(rows_q), np.concatenate(rate_q), ridge)
-    force = (
-        _ridge(np.vstack(rows_a), np.concatenate(rate_a), ridge)
-        if "alpha" in flights.channels
-        else np.zeros(2)
-    )
-    guess = np.array([force[0], 0.0, force[1], moment[0], moment[1], moment[2]])
-    guess[0] = min(guess[0], -0.1)
-    guess[4] = min(guess[4], -0.05)
+    guesses = regressions(flights)
     believed = believed_derivatives(aircraft)
-    regressed = Point(guess, own)
-    if believed is None:
-        return [regressed]
-    stated = Point(believed.copy(), own)
-    agree = guess[_MAIN] * believed[_MAIN] > _ALIKE * np.maximum(guess[_MAIN] ** 2, believed[_MAIN] ** 2)
-    return [stated] if np.all(agree) else [stated, regressed]
-
-
-def _regression(f: Flight) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Rows and rates of both equations on a 20 ms grid, in integral form over 0.2 s to spare derivatives."""
-    t = np.arange(0.0, f.duration_s, 0.02)
-    q = np.interp(t, f.outputs["q"].t, f.outputs["q"].y)
-    d = np.interp(t, f.t_u, f.u) - f.u_trim
-    if "alpha" in f.outputs:
-        a = np.interp(t, f.outputs["alpha"].t, f.outputs["alpha"].y) - f.trim[0]
-    else:
-        a = np.concatenate(([0.0], np.cumsum(q[1:] * 0.02))) * 0.0
-    span = 10
-
-    def windowed(y: FloatArray) -> FloatArray:
-        total = np.concatenate(([0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * 0.02)))
-        return total[span:] - total[:-span]
-
-    X = np.column_stack([windowed(a), windowed(q), windowed(d)])
-    X = X - X.mean(axis=0)
-    dq, da = q[span:] - q[:-span], a[span:] - a[:-span]
-    ya = da - windowed(q)
-    return X, dq - dq.mean(), X[:, [0, 2]], ya - ya.mean()
-
-
-def _ridge(X: FloatArray, y: FloatArray, ridge: float) -> FloatArray:
-    scale = np.sqrt(np.mean(X**2, axis=0)) + 1e-12
-    Xs = X / scale
-    return np.asarray(np.linalg.solve(Xs.T @ Xs + ridge * len(X) * np.eye(X.shape[1]), Xs.T @ y) / scale)
+    if believed is not None:
+        last = guesses[-1][_MAIN]
+        agree = last * believed[_MAIN] > _ALIKE * np.maximum(last**2, believed[_MAIN] ** 2)
+        guesses = [believed.copy()] if np.all(agree) else [believed.copy(), *guesses]
+    return [Point(guess, own) for guess in guesses]
 
 
 def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]:

@@ -52,7 +52,9 @@ def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> 
     gusts = gusts_in(problem, fitted, still, first_look)
     if air is not None or gusts:
         airs = [gusts.get(i, still) for i in range(len(problem.flights))]
-        return filters_for(problem.flights, problem.driving(fitted.point), airs, extra)
+        filters = filters_for(problem.flights, problem.driving(fitted.point), airs, extra)
+        if filters.is_sound:
+            return filters
     white = stated_floor(problem.flights) ** 2
     weights = tuple(1.0 / np.sqrt(1.0 + e / row_weights(problem, i, white)) for i, e in enumerate(extra))
     return Weighting(weights) if min(float(np.min(w)) for w in weights) < _NO_LESS else None

@@ -45,6 +45,11 @@ class Filters:
     order: tuple[np.ndarray, ...]
     """Per manoeuvre: rows of the stacked channels in order of time."""
 
+    @property
+    def is_sound(self) -> bool:
+        """False for an aircraft so unstable that rounding outgrows all noise within a manoeuvre."""
+        return all(np.all(np.isfinite(g.root)) and np.all(np.isfinite(g.gain)) for g in self.gains)
+
     def innovations(self, i: int, columns: FloatArray) -> FloatArray:
         """Columns passed through the filter, in units of each innovation's standard deviation."""
         return self.gains[i].innovations(columns, self.order[i])

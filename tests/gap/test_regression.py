@@ -1,0 +1,40 @@
+"""Where the search begins: a channel late by a radian of the short period leads no regression astray."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap import baseline
+from advisor.gap.data import prepare
+from advisor.gap.diagnose import diagnose
+from advisor.gap.regression import regressions
+from tests.gap.generator import Setup, fly
+
+UNSTABLE = np.array([0.04, 0.0, -0.28, 17.0, 0.14, 79.0])
+
+
+def test_channels_that_belong_together_need_one_regression():
+    (found,) = regressions(prepare(fly(Setup(maneuvers=3, seed=72)), Aircraft()))
+    assert found[3] == pytest.approx(-37.4, rel=0.2)
+    assert found[5] == pytest.approx(-53.0, rel=0.2)
+
+
+@pytest.mark.parametrize("late", [{"q": -0.14}, {"q": 0.12}, {"alpha": 0.14}, {"alpha": -0.12}])
+def test_with_one_channel_shifted_the_regression_has_the_right_signs_again(late):
+    flights = prepare(fly(Setup(maneuvers=3, skew=late, seed=71)), Aircraft())
+    plain, shifted = regressions(flights)
+    assert np.all(shifted[[0, 3, 5]] < 0.0)
+    assert shifted[3] == pytest.approx(-37.4, rel=0.4)
+    assert abs(plain[3] + 37.4) > abs(shifted[3] + 37.4)
+
+
+def test_a_pitch_rate_early_by_a_radian_of_the_short_period_is_named_with_its_size():
+    found = diagnose(fly(Setup(maneuvers=4, skew={"q": -0.14}, seed=71)), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["pitch_rate_skew"]
+    assert found.causes[0].parameters["skew_s"].value == pytest.approx(-0.14, abs=0.002)
+
+
+def test_a_search_that_begins_with_an_unstable_aircraft_ends_without_a_fault(monkeypatch):
+    monkeypatch.setattr(baseline, "regressions", lambda flights: [UNSTABLE])
+    found = diagnose(fly(Setup(maneuvers=4, skew={"q": -0.14}, seed=71)), Aircraft())
+    assert found.verdict in ("effect", "unknown")
