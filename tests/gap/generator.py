@@ -180,6 +180,8 @@ class Setup:
     gust_pulse: float = 0.0
     cg_drift: float = 0.0
     """Relative change of Cm_α from first to last manoeuvre."""
+    cg_step: float = 0.0
+    """The same halfway."""
     mass_step: float = 0.0
     """Relative change of mass and inertia halfway."""
     ice_after: int = 99
@@ -227,8 +229,10 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
         sw[ICET] = 1e9 if i < setup.ice_after else -1.0
         if setup.heights_m:
             sw[HEIGHT] = setup.heights_m[i % len(setup.heights_m)]
-        mass_factor = 1.0 + (setup.mass_step if i >= setup.maneuvers // 2 else 0.0)
-        cm_alpha = frame.cm_alpha * (1.0 + setup.cg_drift * i / max(setup.maneuvers - 1, 1))
+        halfway = i >= setup.maneuvers // 2
+        mass_factor = 1.0 + (setup.mass_step if halfway else 0.0)
+        moved = setup.cg_drift * i / max(setup.maneuvers - 1, 1) + setup.cg_step * halfway
+        cm_alpha = frame.cm_alpha * (1.0 + moved)
         body = (
             frame.mass * mass_factor, frame.iyy * mass_factor, frame.area, frame.chord,
             frame.speed * (1.0 + setup.speed_change * rng.uniform(-1, 1)), frame.cl0, frame.cl_alpha,

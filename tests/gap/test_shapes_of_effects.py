@@ -37,6 +37,12 @@ def test_a_large_aircraft_feels_the_ground_from_higher_up():
         assert found.causes[0].effect == "ground_effect"
 
 
+def test_stability_that_drops_by_a_third_with_nothing_else_is_the_centre_of_gravity_and_no_ice():
+    found = diagnose(fly(Setup(maneuvers=6, cg_step=-0.35, seed=16)), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["cg_shift"]
+    assert found.causes[0].parameters["step"].value == pytest.approx(-0.35, abs=0.02)
+
+
 @pytest.mark.parametrize("moves_in", [(0, 1, 2, 3, 4, 5), (2,)])
 def test_thrust_off_the_centre_of_gravity_is_named_even_if_the_throttle_moved_once_only(moves_in):
     setup = Setup(

@@ -23,6 +23,11 @@ def shift_moments(p: FloatArray, by: FloatArray) -> None:
         p[:, INDEX[moment]] += arm * p[:, INDEX[force]]
 
 
+def shift_stability(p: FloatArray, by: FloatArray) -> None:
+    """The same as textbooks have it: far behind the wing, tail and elevator hardly notice."""
+    p[:, INDEX["M_alpha"]] *= 1.0 + by
+
+
 def divide(*entries: str) -> Change:
     """Divide these derivatives by 1 + change, as more mass does."""
     columns = [INDEX[name] for name in entries]

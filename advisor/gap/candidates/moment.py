@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates.between import ramps_and_steps, shift_moments
+from advisor.gap.candidates.between import ramps_and_steps, shift_moments, shift_stability
 from advisor.gap.data import Flights
 from advisor.gap.simulate import GRAVITY_M_S2
 from advisor.gap.variant import Variant
@@ -102,4 +102,5 @@ def variants(flights: Flights) -> list[Variant]:
             twin=_without_rate_of_alpha,
         ),
         *ramps_and_steps("cg_shift", BLOCK, flights, shift_moments),
+        *ramps_and_steps("cg_shift", BLOCK, flights, shift_stability),
     ]
