@@ -17,6 +17,8 @@ _LOOKS_HELD = 0.3
 variance of edges anywhere in an interval, beside the square of half of it."""
 _HALF_S = 0.003
 """How near to half an interval that is."""
+_BEND = frozenset({"actuator_rate_limit", "actuator_backlash", "actuator_deadband"})
+"""What lies between command and surface and is not linear."""
 _LIKELIER = 12.0
 """Twice the log likelihood by which a whole diagnosis with a held command must be the better one."""
 
@@ -78,9 +80,14 @@ def read_as_held(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
 
 
 def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: Fitted) -> bool:
-    """Whether all that was named with a held command describes the data better, and without a delay."""
-    return _delay_of(named_held) == 0.0 and (
-        evidence_of(held, named_held) < evidence_of(linear, named) - _LIKELIER
+    """Whether all that was named with a held command describes the data better, and without a delay.
+
+    It must have named what no delay or lag imitates: between those two readings ``read_command`` decides.
+    """
+    bends = any(effect.effect in _BEND for effect in named_held.point.effects)
+    without_delay = _delay_of(named_held) == 0.0
+    return (
+        bends and without_delay and (evidence_of(held, named_held) < evidence_of(linear, named) - _LIKELIER)
     )
 
 
