@@ -1,5 +1,6 @@
 """Between its stamps: was the command held, or did it move linearly?"""
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -63,14 +64,16 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     return linear, fitted
 
 
-def may_be_held(problem: Problem, fitted: Fitted) -> bool:
+def may_be_held(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool:
     """Whether a command read as linear has the delay that a held one has by itself.
 
     That is half an interval, or up to a whole one before a servo that moves no faster than some rate: it
-    would have begun when the command left its old value. ``fitted`` has all effects that were named.
+    would have begun when the command left its old value. ``fitted`` has all effects that were named,
+    ``seen`` are those and what came near to being the first.
     """
     interval = float(np.median(np.diff(problem.flights.flights[0].t_u)))
-    return not problem.held and 0.5 * interval - _HALF_S < _delay_of(fitted) < interval + _HALF_S
+    late = 0.5 * interval - _HALF_S < _delay_of(fitted) < interval + _HALF_S
+    return late and not problem.held and not _BEND.isdisjoint(seen)
 
 
 def read_as_held(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:

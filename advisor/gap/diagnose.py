@@ -128,7 +128,8 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     variants = beyond_known(aircraft.effects, variants_for(problem.flights))
     white = stated_floor(problem.flights)
     stages = build_up(problem, baseline, variants, progress)
-    if may_be_held(problem, stages[-1].fitted):
+    seen = stages[0].rivals | {s.added.effect for s in stages if s.added is not None}
+    if may_be_held(problem, stages[-1].fitted, seen):
         held, plain = read_as_held(problem, baseline)
         others = build_up(held, plain, variants, progress)
         if is_likelier_held(problem, stages[-1].fitted, held, others[-1].fitted):

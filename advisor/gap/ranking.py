@@ -49,8 +49,9 @@ def judge(
 ) -> list[Judged]:
     """Full fits of the best variants of the best effects; the best judgement first."""
     fits = [
-        fit(problem, s.point, s.noise, iterations=_ITERATIONS, tolerance=0.5)
+        fit(problem, point, s.noise, iterations=_ITERATIONS, tolerance=0.5)
         for s in shortlist(problem, before, candidates)
+        for point in _described(s.point)
     ]
     if not fits:
         return []
@@ -65,6 +66,12 @@ def judge(
         ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)
         first = addition(problem, before, held_before, ended, first.effect, independent)
     return [first, *rest]
+
+
+def _described(point: Point) -> list[Point]:
+    """The point, and the same with its last effect described another way, where there is one."""
+    other = point.effects[-1].likewise
+    return [point] if other is None else [point, replace(point, effects=(*point.effects[:-1], other))]
 
 
 def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:

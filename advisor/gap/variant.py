@@ -47,6 +47,8 @@ class Variant:
     """For what derivatives imitate exactly: how all shared numbers, shape (k,), change per unit of the size
     while the motion stays the same, given the derivatives, the effects in the model and the reference speed.
     It is fitted with the aircraft file's derivatives trusted."""
+    likewise: "Variant | None" = None
+    """Another description by the same numbers, so near to this one that the full fit alone decides."""
     inverted: bool = False
     """The aircraft file has the reciprocal of the first parameter (a rate limit, searched as slowness)."""
 

@@ -14,6 +14,8 @@ from advisor.gap.uncertainty import shared_std, worth
 from advisor.gap.variant import Variant
 
 MOST_EFFECTS = 3
+_NEAR = 0.5
+"""Share of the best candidate's gain from which on another one is a rival."""
 _CLEARLY = 20.0
 """Cost by which another companion must beat the one that was found first."""
 
@@ -31,6 +33,12 @@ class Stage:
     """Candidates for the next addition, best first."""
     added: Judged | None
     """What was added to this stage's model to reach the next one."""
+
+    @property
+    def rivals(self) -> frozenset[str]:
+        """Effects that gained at least half as much as the best."""
+        best = self.considered[0].gain if self.considered else 0.0
+        return frozenset(judged.effect for judged in self.considered if judged.gain > _NEAR * best)
 
 
 def build_up(

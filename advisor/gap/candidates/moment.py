@@ -1,6 +1,7 @@
 """The moment equation: curved moments, thrust line, rate of α, a wandering centre of gravity."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -101,6 +102,12 @@ def variants(flights: Flights) -> list[Variant]:
             entries=("M_alpha_dot",),
             twin=_without_rate_of_alpha,
         ),
-        *ramps_and_steps("cg_shift", BLOCK, flights, shift_moments),
-        *ramps_and_steps("cg_shift", BLOCK, flights, shift_stability),
+        *(
+            replace(moments, likewise=stability)
+            for moments, stability in zip(
+                ramps_and_steps("cg_shift", BLOCK, flights, shift_moments),
+                ramps_and_steps("cg_shift", BLOCK, flights, shift_stability),
+                strict=True,
+            )
+        ),
     ]
