@@ -34,7 +34,8 @@ from advisor.gap.result import Diagnosis
 from advisor.gap.speed import at_constant_speed
 from advisor.gap.stamps import stamp_power
 from advisor.gap.uncertainty import worth
-from advisor.gap.waterfall import Progress, build_up, reduced_to
+from advisor.gap.variant import Variant
+from advisor.gap.waterfall import Progress, Stage, build_up, reduced_to
 from advisor.gap.wind import wind_shear
 from advisor.problems import UnusableInputError
 
@@ -127,13 +128,7 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     """Build the model up, then look at what is left: the air, and whatever the motion still predicts."""
     variants = beyond_known(aircraft.effects, variants_for(problem.flights))
     white = stated_floor(problem.flights)
-    stages = build_up(problem, baseline, variants, progress)
-    seen = stages[0].rivals | {s.added.effect for s in stages if s.added is not None}
-    if may_be_held(problem, stages[-1].fitted, seen):
-        held, plain = read_as_held(problem, baseline)
-        others = build_up(held, plain, variants, progress)
-        if is_likelier_held(problem, stages[-1].fitted, held, others[-1].fitted):
-            problem, baseline, stages = held, plain, others
+    problem, stages = _named(problem, baseline, variants, progress)
     scale = misread(problem, stages)
     if scale is not None:
         stages = reduced_to(problem, stages, [])
@@ -173,10 +168,24 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
         leftover,
         air,
         np.maximum(floor, stated),
-        _file_model(problem, baseline, aircraft),
+        _file_model(problem, stages[0].fitted, aircraft),
         at_constant_speed(problem, last),
         stated,
     )
+
+
+def _named(
+    problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
+) -> tuple[Problem, list[Stage]]:
+    """The model built up, with the command held instead of linear where that names the likelier effects."""
+    stages = build_up(problem, baseline, variants, progress)
+    seen = stages[0].rivals | {s.added.effect for s in stages if s.added is not None}
+    if may_be_held(problem, stages[-1].fitted, seen):
+        held, plain = read_as_held(problem, baseline)
+        others = build_up(held, plain, variants, progress)
+        if is_likelier_held(problem, stages[-1].fitted, held, others[-1].fitted):
+            return held, others
+    return problem, stages
 
 
 def _of_the_attitude(leftover: Leftover | None) -> bool:
