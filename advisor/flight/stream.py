@@ -5,6 +5,7 @@ messages were batched: a live link, message by message, and a log, whole, end in
 events. Memory is bounded by two minutes of channels.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -86,6 +87,7 @@ class FlightStream:
         """Names of the messages the vehicle has sent."""
         self._best: dict[str, ChannelStatus] = {}
         self._earlier_s = 0.0
+        self._autopilots: Counter[str] = Counter()
 
     def _start_boot(self) -> None:
         self._tracks.clear()
@@ -139,7 +141,9 @@ class FlightStream:
     def problems(self) -> list[Problem]:
         """Why this stream cannot be used, as far as it has been heard; empty when it can."""
         self._note_rates()
-        return problems(self.vehicle, self.other_systems, self.elevator, self._best, self.maneuvers)
+        return problems(
+            self.vehicle, self.other_systems, self.elevator, self._best, self.maneuvers, self._autopilots
+        )
 
     def recent(self, name: str, seconds: float) -> Channel | None:
         """The newest stretch of a channel; None when nothing of it has arrived."""
@@ -188,7 +192,9 @@ class FlightStream:
                 order = min(int(c.order[0]) for c in piece)
                 earliest_s = max(self._heartbeat_s, self._master_s - _HEARTBEAT_S)
                 self._watch.mode_changed(earliest_s, order)
-                self._modes.append((self._master_s, self._who.mode))
+                # Who takes over and flies an input at once did so before the heartbeat that tells of it.
+                closed = closes_pitch_loop(self._who.mode)
+                self._modes.append((self._master_s if closed else earliest_s, self._who.mode))
             else:
                 self._modes = [(-np.inf, self._who.mode)]
         mine = [c for c in piece if c.system == vehicle.system]
@@ -290,6 +296,7 @@ class FlightStream:
             ]
         if closes_pitch_loop(maneuver.mode) and not is_3211(span.kind):
             # In such a mode steps are the autopilot's own, unless their timing shows a test input.
+            self._autopilots[maneuver.mode] += 1
             return []
         self.maneuvers += 1
         self._note_rates()

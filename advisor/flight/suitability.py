@@ -37,6 +37,7 @@ def problems(
     elevator: Surface | Problem,
     channels: Mapping[str, ChannelStatus],
     maneuvers: int,
+    autopilots: Mapping[str, int],
 ) -> list[Problem]:
     """Everything that keeps a stream from being used, the most fundamental first.
 
@@ -50,21 +51,29 @@ def problems(
         How every channel arrived, at its best.
     maneuvers
         How many manoeuvres were found.
+    autopilots
+        How many inputs were left out as the autopilot's own, by flight mode.
     """
     if vehicle is None:
         return [_no_vehicle(other_systems)]
     found = [*_missing(elevator, channels, vehicle), *_too_slow(channels, vehicle)]
     if not found and maneuvers == 0:
-        found.append(
-            Problem(
-                "no_maneuver",
-                "No test manoeuvre was found: the elevator never left its quiet level in steps and returned.",
-                "Fly a 3-2-1-1 on the elevator in MANUAL, the stick still for some seconds before and after.",
-            )
-        )
+        found.append(_no_maneuver(autopilots))
     if found and other_systems:
         found.insert(0, _perhaps_another(vehicle, other_systems))
     return found
+
+
+def _no_maneuver(autopilots: Mapping[str, int]) -> Problem:
+    seen = "the elevator never left its quiet level in steps and returned"
+    if autopilots:
+        counted = " and ".join(f"{n} in {mode}" for mode, n in autopilots.items())
+        seen = f"the only inputs ({counted}) came where the autopilot moves the elevator itself"
+    return Problem(
+        "no_maneuver",
+        f"No test manoeuvre was found: {seen}.",
+        "Fly a 3-2-1-1 on the elevator in MANUAL, the stick still for some seconds before and after.",
+    )
 
 
 def _perhaps_another(vehicle: Vehicle, other_systems: Collection[int]) -> Problem:

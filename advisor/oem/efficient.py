@@ -116,13 +116,18 @@ def _chance(change: FloatArray, covariance: FloatArray, unit: FloatArray) -> flo
 
 
 def _remembering(solution: Solution, weighing: Weighing) -> list[float]:
-    """For each output the chance that white noise seems to remember as much as its whitened residual."""
+    """For each output the chance that white noise seems to remember as much as its whitened residual.
+
+    An output of few samples has no say.
+    """
     white = weighing.forward(solution.residual[:, None])[:, 0]
     lags = np.arange(1, LAGS + 1)
     chances = []
     for output in solution.noise.colours:
         stretches = [white[named[output]] for named in solution.assembly.rows if output in named]
         samples = sum(len(e) for e in stretches)
+        if samples <= 2 * LAGS:
+            continue
         products = [sum(float(e[lag:] @ e[:-lag]) for e in stretches) for lag in lags]
         correlation = np.array(products) / sum(float(e @ e) for e in stretches)
         statistic = samples * (samples + 2) * float(np.sum(correlation**2 / (samples - lags)))

@@ -284,6 +284,22 @@ def test_a_pulse_in_a_mode_that_closes_the_pitch_loop_is_the_autopilots_own(mode
     assert len(maneuvers(flown(wire)[1])) == listed
 
 
+@pytest.mark.parametrize(("taken_over_s", "listed"), [(1003.5, 1), (1004.1, 0)])
+def test_an_input_flown_as_soon_as_the_pilot_took_over_is_the_pilots(taken_over_s, listed):
+    wire = Wire()
+    heartbeat(wire, 1000.0, mode=7)
+    parameter(wire, 1000.0, "SERVO2_FUNCTION", 19.0)
+    for k in range(600):
+        boot = 50.0 + k / 50
+        attitude(wire, 1000.01 + k / 50, boot)
+        aoa(wire, 1000.011 + k / 50, boot, 2.0)
+        servo(wire, 1000.012 + k / 50, boot, {2: 1520 if 54.0 <= boot < 54.4 else 1500})
+    # The last heartbeat of the autopilot's own mode comes before or after the input has begun.
+    heartbeat(wire, taken_over_s + 0.05, mode=7)
+    heartbeat(wire, taken_over_s + 0.95, mode=0)
+    assert len(maneuvers(flown(wire)[1])) == listed
+
+
 def test_an_assumed_scale_of_the_elevator_is_said_once():
     wire = Wire()
     fly(wire, 1000.0, 50.0, ONE, 14.0)

@@ -73,6 +73,20 @@ def test_a_flight_without_test_inputs_says_what_to_fly():
     assert "3-2-1-1" in problem.fix
 
 
+def test_inputs_flown_in_a_mode_that_moves_the_elevator_itself_are_counted_and_the_mode_is_named():
+    # A pulse, which any autopilot makes, too.
+    wire = flight(onsets=(), mode=7)
+    wire._sent = [
+        (*m[:5], {**m[5], "servo2_raw": 1530 if 1004.0 <= m[0] < 1004.5 else 1500})
+        if m[2] == "SERVO_OUTPUT_RAW" else m
+        for m in wire._sent
+    ]  # fmt: skip
+    (problem,) = problems(wire)
+    assert problem.code == "no_maneuver"
+    assert "1 in CRUISE" in problem.text
+    assert "MANUAL" in problem.fix
+
+
 def test_slow_streams_are_named_with_their_rate_and_the_parameter_to_set():
     found = problems(flight(rate_hz=4.0))
     assert {p.code for p in found} == {"rate"}

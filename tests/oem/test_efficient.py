@@ -150,3 +150,13 @@ def test_every_parameter_keeps_its_place():
     step = efficient_step(solution(clean()[2], coloured_noise(1)))
     assert step.change.shape == (len(PARAMETERS),)
     assert step.covariance.shape == (len(PARAMETERS), len(PARAMETERS))
+
+
+def test_an_output_of_a_few_samples_has_no_say_in_what_the_noise_remembers():
+    t, u, response = clean()
+    measured = response + coloured_noise(1)
+    few = np.linspace(0, len(t) - 1, 20).astype(int)
+    outputs = {"alpha": Signal(t[few], measured[few, 0]), "q": Signal(t, measured[:, 1])}
+    with_few = efficient_step(solve(Problem((Record(Signal(t, u), outputs),))))
+    assert np.all(np.isfinite(with_few.chances))
+    assert len(with_few.chances) == len(efficient_step(solution(response, coloured_noise(1))).chances) - 1
