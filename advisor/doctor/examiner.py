@@ -83,7 +83,7 @@ class Examiner:
             if name in paced or name != "elevator"
         }
         autopilot = vehicle.autopilot if vehicle else ""
-        found = problems(vehicle, self._stream.other_systems, self._stream.elevator, channels, maneuvers=1)
+        found = problems(vehicle, self._stream.other_systems, self._stream.elevator, channels, 1, {})
         limits = [_stopping(problem) for problem in found if problem.code != "rate"]
         complete = {"elevator", "q", "alpha"} <= paced.keys()
         speed = self._airspeed(paced)
