@@ -12,6 +12,12 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulate import GRAVITY_M_S2
 
+_LEAST_SAMPLES = 6
+"""Of the instrument in a manoeuvre, from which on a parabola may be fitted to them ..."""
+_LEAST_SPARE = 10
+"""... and in all, beyond three a manoeuvre, for its noise to be known."""
+_LONGEST_MEMORY = 0.95
+"""Correlation from one sample to the next that is taken for the instrument's: beyond it is the aircraft's."""
 _SLOW_S = 1.0
 """Over which the thrust's excess is averaged: quicker than the speed it changes, slower than the noise."""
 
@@ -28,7 +34,7 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
 
     shape = integrated(grid, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha")))
     inside = (t >= grid[0]) & (t <= grid[-1])
-    if np.count_nonzero(inside) < 6:
+    if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return _smoothed(grid, t, y)
     drift = np.polyfit(t[inside], y[inside] - np.interp(t[inside], grid, shape), 2)
     rebuilt = shape + np.polyval(drift, grid)
@@ -86,6 +92,38 @@ def speed_without_instrument(
     if not np.any(trimmed):
         return level
     return np.maximum(level + integrated(grid, rate - np.mean(rate[trimmed])), 0.5 * level)
+
+
+def speed_doubts(
+    stamps: Sequence[FloatArray], left: Sequence[FloatArray], durations_s: Sequence[float]
+) -> list[FloatArray]:
+    """By how much level, slope and bow of each manoeuvre's speed may be wrong for the instrument's noise.
+
+    Parameters
+    ----------
+    stamps, left
+        Per manoeuvre, shape (n,): seconds since the record's start, and what the instrument reads there
+        beyond the speed that was made of it. Its size and its memory are taken from all manoeuvres.
+    durations_s
+        Lengths of the records.
+
+    Returns
+    -------
+    Per manoeuvre a factor of the covariance of the three, shape (3, 3), m/s: of a parabola in time from -1 at
+    the record's start to 1 at its end. Shape (0, 0) where too few samples were taken to tell.
+    """
+    spare = sum(max(len(e) - 3, 0) for e in left)
+    power = sum(float(e @ e) for e in left)
+    if spare < _LEAST_SPARE or power == 0.0:
+        return [np.empty((0, 0))] * len(left)
+    memory = np.clip(sum(float(e[1:] @ e[:-1]) for e in left) / power, 0.0, _LONGEST_MEMORY)
+    sigma = float(np.sqrt(power / spare * (1.0 + memory) / (1.0 - memory)))
+    doubts = []
+    for t, duration in zip(stamps, durations_s, strict=True):
+        parabola = np.vander(2.0 * t / duration - 1.0, 3, increasing=True)
+        enough = len(t) >= _LEAST_SAMPLES
+        doubts.append(sigma * np.linalg.inv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
+    return doubts
 
 
 def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:

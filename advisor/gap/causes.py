@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.kinematics import SMALLEST_BIAS_RAD, KinematicCheck
+from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.measure import gap_of
@@ -25,6 +25,11 @@ _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 _SCALED_BY = 0.2
 """Share of what a scale error makes of the trimmed angle that an offset may depart from it."""
 _BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
+_OF_INTERVAL = 0.2
+"""Share of the interval between an estimate's samples that its lag must reach to be named."""
+_LEAST_OFFSET_RAD = 0.006
+"""Smaller offsets get no name: neither a vane's zero nor the attitude's, from which the path is taken, is set
+to better than a few tenths of a degree."""
 OFFSET_SIGMAS = 5.0
 """Standard deviations that an offset of α must have to be named."""
 
@@ -152,7 +157,7 @@ def alpha_bias_cause(
     """
     if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
         return None
-    least = max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * check.bias_std_rad)
+    least = max(_LEAST_OFFSET_RAD, OFFSET_SIGMAS * check.bias_std_rad)
     trim = float(np.mean([flight.trim[0] for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
     # The trim was read with the offset taken out already: what a scale makes of it is no offset.
@@ -169,9 +174,16 @@ def alpha_bias_cause(
 def alpha_lag_cause(
     check: KinematicCheck, problem: Problem, named: Sequence[Judged], left: float
 ) -> Cause | None:
-    """A late α that the motion shows and the fit cannot: an autopilot's estimate is smooth and coarse."""
+    """A late α that the motion shows and the fit cannot: an autopilot's estimate is smooth and coarse.
+
+    A lag far below the interval of its samples is none: their stamps are not known that well.
+    """
+    intervals = [np.diff(f.outputs["alpha"].t) for f in problem.flights.flights if "alpha" in f.outputs]
+    least_s = _OF_INTERVAL * float(np.median(np.concatenate(intervals))) if intervals else 0.0
     found_there = any(BLOCK_OF[j.effect] in ("alpha_sensor", "accelerometer") for j in named)
     if not problem.flights.alpha_is_derived or found_there or check.finding != "late":
+        return None
+    if check.lag_s < least_s:
         return None
     return Cause(
         "alpha_lag", "alpha_sensor", 0.9, {"lag_s": Value(check.lag_s, check.lag_std_s)},

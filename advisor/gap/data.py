@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import compress
 
 import numpy as np
 
@@ -9,19 +10,20 @@ from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.renewal import renewed
-from advisor.gap.airspeed import airspeed_on, along_the_path, speed_without_instrument
+from advisor.gap.airspeed import airspeed_on, along_the_path, speed_doubts, speed_without_instrument
 from advisor.gap.edges import edges_of, held_from, step_unseen
 from advisor.gap.layout import OUTPUTS
 from advisor.gap.provenance import is_estimate
-from advisor.gap.simulate import GRAVITY_M_S2, THRUST
+from advisor.gap.simulate import GRAVITY_M_S2, SPEED, THRUST
 from advisor.gap.smoothness import is_filtered, is_smoothed, white_part
 
 STEP_S = 0.005
-LEAST_SAMPLES = 30
+LEAST_SAMPLES = 15
+"""Of a channel in a manoeuvre: what a derived α of 8 Hz brings in the shortest."""
 DEPARTED_RAD = 1.0
 """Swing of the angle of attack that no equation about a trim describes any more."""
 _ENOUGH = 4
-"""Manoeuvres without such a hole that are enough to leave the others out."""
+"""Manoeuvres with all that is needed that are enough to leave the others out."""
 _QUIET_AFTER = 0.6
 """Share of the free response after which the motion has died down."""
 
@@ -64,6 +66,8 @@ class Flight:
     """Shape (rows,): times of all outputs that are compared, one channel after another."""
     output: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     """Shape (rows,), int64: index into ``OUTPUTS`` of each row."""
+    speed_doubt: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    """Shape (3, 3), m/s, as ``airspeed.speed_doubts`` gives it; (0, 0) where nothing is known of it."""
 
     @property
     def duration_s(self) -> float:
@@ -112,7 +116,7 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
     """Make the manoeuvres ready.
 
     Left out are those without elevator or pitch rate, those that departed, and, where enough others are
-    left, those in which a step of the command fell into a hole of the log.
+    left, those without an angle of attack or in which a step of the command fell into a hole of the log.
     """
     usable = [m for m in maneuvers if _usable(m)]
     seen = [m for m in usable if not step_unseen(m)]
@@ -130,6 +134,11 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
     else:
         reference, moves = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 20.0, 0.0
     flights = _about_their_mean(_ready(m, aircraft, reference, measured, scale_with_speed) for m in usable)
+    with_alpha = tuple("alpha" in f.outputs for f in flights)
+    if sum(with_alpha) >= _ENOUGH:
+        usable, flights = list(compress(usable, with_alpha)), tuple(compress(flights, with_alpha))
+    if measured:
+        flights = _with_doubt(flights, usable)
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
     flights = tuple(_with_rows(f, channels) for f in flights)
@@ -166,6 +175,19 @@ def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:
         for flight in found:
             flight.slow[THRUST] -= mean
     return found
+
+
+def _with_doubt(flights: Sequence[Flight], maneuvers: Sequence[Maneuver]) -> tuple[Flight, ...]:
+    """The same with what is to be doubted of their air speed."""
+    stamps, left = [], []
+    for flight, maneuver in zip(flights, maneuvers, strict=True):
+        read = maneuver.channels["airspeed"].cut(flight.started_s, flight.started_s + flight.duration_s)
+        t = read.t - flight.started_s
+        grid = (np.arange(flight.n) + 0.5) * flight.h
+        stamps.append(t)
+        left.append(read.y - np.interp(t, grid, flight.slow[SPEED]))
+    doubts = speed_doubts(stamps, left, [flight.duration_s for flight in flights])
+    return tuple(replace(f, speed_doubt=doubt) for f, doubt in zip(flights, doubts, strict=True))
 
 
 def _usable(maneuver: Maneuver) -> bool:

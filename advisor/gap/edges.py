@@ -5,6 +5,9 @@ import numpy as np
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 
+_STEEP, _SHORT_S = 0.15, 0.02
+"""Share of the command's range by which it must jump between two stamps no further apart than this; where
+they are, what matters is the jump times the interval."""
 _LOST = 1.5
 """Intervals of the usual length from which on a stamp was lost."""
 _HOLE_S, _HOLE = 0.15, 3.5
@@ -20,9 +23,11 @@ def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:
     size = np.ptp(u)
     if size <= 0.0:
         return np.empty((0, 4))
-    steep = np.flatnonzero(np.abs(jump) > 0.15 * size)
     # A jump may be spread over two intervals; each is uncertain by its own length.
-    interval = t[steep + 1] - t[steep]
+    interval = np.diff(t)
+    least = _STEEP * size * min(float(np.median(interval)), _SHORT_S)
+    steep = np.flatnonzero(np.abs(jump) * interval > least)
+    interval = interval[steep]
     middle = (t[steep] + t[steep + 1]) / 2.0
     return np.column_stack([middle, jump[steep] * interval, interval, _lost(t)[steep]])
 

@@ -34,6 +34,8 @@ EFFECT_ENTRIES = (
     "latency_s",
     # instruments whose reading is a scaled or bent one, and has no name for it
     "a_z_scale", "theta_scale", "a_z_read2", "a_z_read3", "alpha_read2", "alpha_read3",
+    # error of the air speed: a parabola in time over the record, from -1 to 1
+    "speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s",
 )  # fmt: skip
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}

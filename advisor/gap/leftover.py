@@ -92,12 +92,13 @@ def left_over(
     active, quiet = unrest(problem, last.innovations)
     # An autopilot's estimate of α is off by what its filter makes of the motion: no cause shows in it alone.
     telling = np.array([c != "alpha" or not problem.flights.alpha_is_derived for c in problem.channels])
-    loud = telling & (rms_of(problem, last.left) > DOUBT * stated)
-    louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - _instruments(problem) ** 2, 0.0))
     peaks = problem.flights.peaks
-    if not np.any(telling & (beyond > _OF_PEAK * peaks)):
+    telling &= beyond > max(_OF_PEAK, _of_the_command(problem, last)) * peaks
+    if not np.any(telling):
         return None
+    loud = telling & (rms_of(problem, last.left) > DOUBT * stated)
+    louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     faint = best.explained < _LEAST_SHARE
     least_share = _LEAST_SHARE if moving_air else _FAINT_SHARE
     disturbed = best.gain >= _LEAST_GAIN and best.explained >= least_share and bool(np.any(loud))
@@ -203,6 +204,21 @@ def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, F
     active_power, quiet_power = sums / np.maximum(counts, 1.0)
     # Without a quiet stretch there is nothing to compare with.
     return active_power, np.where(counts[1] > 0, quiet_power, active_power)
+
+
+def _of_the_command(problem: Problem, last: Fitted) -> float:
+    """Share of a response's peak, as an RMS, that hangs on how the command went between two stamps.
+
+    A step is known as a ramp from one stamp to the next, shifted as fits best. While it lasts the pitch rate
+    is off by up to ω T/4 of its peak, ω being the short period's frequency; the steps of an input take about
+    a tenth of its record.
+    """
+    if problem.held:
+        return 0.0
+    derivatives = last.point.derivatives
+    frequency = float(np.sqrt(max(derivatives[0] * derivatives[4] - derivatives[3], 0.0)))
+    interval = float(np.median(np.concatenate([np.diff(f.t_u) for f in problem.flights.flights])))
+    return frequency * interval / 12.0
 
 
 def _noise(problem: Problem) -> FloatArray:

@@ -14,6 +14,9 @@ from advisor.gap.simulate import DISTURB_INPUT, SPEED
 _DERIVATIVE_STEP = 1e-3
 _STARTS = ("alpha_start", "q_start")
 _START_STEP = 1e-4
+_SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
+_SPEED_STEP = 1e-3
+"""Of the air speed, relative."""
 _PULSE = 1e-4
 """Area of the disturbance by which a response to a pulse is found."""
 _EDGE_VARIANCE = 1.0 / 12.0
@@ -31,7 +34,7 @@ class Columns:
     shared: FloatArray
     """Shape (rows, k)."""
     own: FloatArray
-    """Shape (rows, m): initial states, trim, offsets (flat priors), then edges."""
+    """Shape (rows, m): initial states, trim, offsets (flat priors), then errors of the air speed, edges."""
 
     def after(self, step: FloatArray, own: FloatArray) -> FloatArray:
         """Residual after a step of the shared and the own numbers."""
@@ -71,9 +74,9 @@ def measured_columns(
 ) -> Columns:
     """Manoeuvre ``i`` in the units of its channels; sensitivities are one-sided differences.
 
-    Of its own numbers two initial-state responses are simulated; trim terms are their running integrals
-    (the model is nearly linear and nearly time-invariant over a manoeuvre), edges are shifted impulse
-    responses.
+    Of its own numbers two initial-state responses are simulated, and errors of the air speed; trim terms are
+    running integrals of the former (the model is nearly linear and nearly time-invariant over a manoeuvre),
+    edges are shifted impulse responses.
 
     Parameters
     ----------
@@ -85,14 +88,18 @@ def measured_columns(
         ... shape (k,).
     """
     flight, k = problem.flights.flights[i], len(steps)
-    starts = np.tile(p, (len(_STARTS), 1))
-    starts[range(len(_STARTS)), [INDEX[name] for name in _STARTS]] += _START_STEP
-    rows = np.vstack([p, shifted, starts, p])
+    names = (*_STARTS, *_SPEEDS[: len(flight.speed_doubt)])
+    moves = np.full(len(names), _START_STEP)
+    moves[len(_STARTS) :] = _SPEED_STEP * flight.slow[SPEED, 0]
+    others = np.tile(p, (len(names), 1))
+    others[range(len(names)), [INDEX[name] for name in names]] += moves
+    rows = np.vstack([p, shifted, others, p])
     doses = np.zeros(len(rows))
     doses[-1] = _PULSE
     packs = problem.fly_all(flight, rows, unit_pulse(flight, DISTURB_INPUT, p[INDEX["lag_s"]]), doses)
     read = problem.read_all(flight, packs, rows[:-1])
     base, moved = read[:, :1], read[:, 1:]
+    answers = (moved[:, k:] - base) / moves
     grid = lane(packs, 0)
     alpha, q = ((lane(packs, k + 1 + j) - grid) / _START_STEP for j in range(len(_STARTS)))
     pulse = (lane(packs, len(rows) - 1) - grid) / _PULSE
@@ -101,9 +108,10 @@ def measured_columns(
     if problem.held:
         begin += 0.5 * (flight.edges[:, 2] - flight.edges[:, 3])
     own = [
-        (moved[:, k:] - base) / _START_STEP,
+        answers[:, : len(_STARTS)],
         problem.read_grids(flight, [_lift_trim(flight, alpha), _summed(flight, q)], p),
         _offsets(problem, flight),
+        answers[:, len(_STARTS) :] @ flight.speed_doubt,
         problem.read_delayed(flight, pulse, begin, p) * flight.edges[:, 1],
     ]
     return Columns(problem.measured(flight) - base[:, 0], (moved[:, :k] - base) / steps, np.hstack(own))
@@ -131,12 +139,17 @@ def _offsets(problem: Problem, flight: Flight) -> FloatArray:
 
 
 def _own_prior(problem: Problem, flight: Flight, own: int) -> FloatArray:
-    """Shape (own,): inverse prior variances of a manoeuvre's own numbers, 0 for flat; its edges come last."""
+    """Shape (own,): inverse prior variances of a manoeuvre's own numbers, 0 for flat.
+
+    Its edges come last, before them the errors of the air speed, which are in units of their own size.
+    """
     prior = np.zeros(own)
     intervals, lost = flight.edges[:, 2], flight.edges[:, 3]
     # Where stamps were lost, a held command may have changed at any of them.
     held = (_HELD_JITTER_S**2 + problem.jitter_s**2 + _EDGE_VARIANCE * lost**2) / intervals**2
-    prior[own - len(intervals) :] = 1.0 / (held if problem.held else _EDGE_VARIANCE)
+    edges = own - len(intervals)
+    prior[edges - len(flight.speed_doubt) : edges] = 1.0
+    prior[edges:] = 1.0 / (held if problem.held else _EDGE_VARIANCE)
     return prior
 
 

@@ -38,6 +38,7 @@ LANES = 8
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY, A_Z_SCALE, THETA_SCALE,
     A_Z_READ2, A_Z_READ3, ALPHA_READ2, ALPHA_READ3,
+    SPEED_LEVEL, SPEED_SLOPE, SPEED_BOW,
 ) = range(len(ENTRIES))  # fmt: skip
 # Rows of the slow inputs, one value a step.
 SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST = range(6)
@@ -47,10 +48,9 @@ DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = range(4)
 (
     DOSE, ENGINE_DECAY, LIFT_DECAY, VANE_DECAY, VANE_RAMP, FADE, SWING_COS, SWING_SIN, SOFTNESS,
     ALPHA, Q, THETA, ENGINE, LIFT, VANE_BEFORE, VANE_OUT, BEND, BEND_RATE,
-    NEAR, POWER, ATTACHED, COS_ALPHA, SIN_ALPHA, GRAVITY, LIFTING, WING_SLOPE, MOMENT_SLOPE, DEFLECTION,
-    Z_REST, M_REST, KA, KQ, NORMAL_0, QDOT_0,
-    ROWS,
-) = range(len(ENTRIES), len(ENTRIES) + 35)  # fmt: skip
+    AIRSPEED, RATIO, NEAR, POWER, ATTACHED, COS_ALPHA, SIN_ALPHA, GRAVITY, LIFTING, WING_SLOPE, MOMENT_SLOPE,
+    DEFLECTION, Z_REST, M_REST, KA, KQ, NORMAL_0, QDOT_0, ROWS,
+) = range(len(ENTRIES), len(ENTRIES) + 37)  # fmt: skip
 
 
 @njit(cache=True)
@@ -144,16 +144,18 @@ def simulate(
         for i in range(n + 1):
             j = min(i, n - 1)
             before = max(j - 1, 0)
-            V, a_x, cb = slow[SPEED, j], slow[A_X, j], level[j]
-            v = V / reference if scaled else 1.0
-            vv = v * v
-            per_speed = 1.0 / V
+            a_x, cb = slow[A_X, j], level[j]
+            along = 2.0 * j / n - 1.0
+            for m in range(lanes):
+                off = x[SPEED_LEVEL, m] + along * (x[SPEED_SLOPE, m] + along * x[SPEED_BOW, m])
+                x[AIRSPEED, m] = slow[SPEED, j] + off
+                x[RATIO, m] = x[AIRSPEED, m] / reference if scaled else 1.0
             if disturbed:
                 d_delta, d_force = disturbance[DISTURB_INPUT, j], disturbance[DISTURB_FORCE, j]
                 d_moment, d_air = disturbance[DISTURB_MOMENT, j], disturbance[DISTURB_AIR, j]
             if other_power:
                 for m in range(lanes):
-                    x[POWER, m] = v ** x[SPEED_POWER, m]
+                    x[POWER, m] = x[RATIO, m] ** x[SPEED_POWER, m]
             if low:
                 scale, near = 0.0, 0.0
                 for m in range(lanes):
@@ -164,6 +166,8 @@ def simulate(
                     x[NEAR, m] = near
             for m in range(lanes):
                 d = delta[k, j, m] + x[DOSE, m] * d_delta
+                v = x[RATIO, m]
+                vv = v * v
                 changed = 1.0 if i * h >= x[STEP_AT, m] else 0.0
                 z_d = x[Z_DELTA, m] * (1.0 + changed * x[STEP_Z_DELTA, m])
                 m_d = x[M_DELTA, m] * (1.0 + changed * x[STEP_M_DELTA, m])
@@ -173,7 +177,7 @@ def simulate(
                 ca, sa = cos_sin(x[ALPHA, m])
                 ct, st = cos_sin(x[THETA, m])
                 x[COS_ALPHA, m], x[SIN_ALPHA, m] = ca, sa
-                x[GRAVITY, m] = GRAVITY_M_S2 * per_speed * (ca * ct * cb + sa * st)
+                x[GRAVITY, m] = GRAVITY_M_S2 / x[AIRSPEED, m] * (ca * ct * cb + sa * st)
                 x[LIFTING, m] = lifting
                 x[ENGINE, m] = slow[THROTTLE, j] + x[ENGINE_DECAY, m] * (x[ENGINE, m] - slow[THROTTLE, j])
                 x[WING_SLOPE, m] = x[Z_ALPHA, m] * (1.0 + changed * x[STEP_Z_ALPHA, m])
@@ -208,8 +212,9 @@ def simulate(
                     )
                     normal = x[Z_REST, m] + x[LIFTING, m] * x[ATTACHED, m] * wing + x[Z_Q, m] * q
                     ka = q + x[GRAVITY, m] + normal
+                    v = x[RATIO, m]
                     slope = (
-                        x[MOMENT_SLOPE, m] + x[POWER, m] * vv * (x[M_ALPHA2, m] + x[M_ALPHA3, m] * da) * da
+                        x[MOMENT_SLOPE, m] + x[POWER, m] * v * v * (x[M_ALPHA2, m] + x[M_ALPHA3, m] * da) * da
                     )
                     kq = x[M_REST, m] + slope * da + v * (x[M_Q, m] * q + x[M_ALPHA_DOT, m] * ka)
                     x[KA, m], x[KQ, m] = ka, kq
@@ -219,7 +224,7 @@ def simulate(
             for m in range(lanes):
                 alpha, q, theta, d = x[ALPHA, m], x[Q, m], x[THETA, m], x[DEFLECTION, m]
                 air = x[DOSE, m] * d_air
-                vane = alpha + air - x[VANE_ARM, m] * q * per_speed
+                vane = alpha + air - x[VANE_ARM, m] * q / x[AIRSPEED, m]
                 if i > 0:
                     x[VANE_OUT, m] = (x[VANE_DECAY, m] * (x[VANE_OUT, m] - x[VANE_BEFORE, m]) + vane
                                       - x[VANE_RAMP, m] * (vane - x[VANE_BEFORE, m]))  # fmt: skip
@@ -229,7 +234,7 @@ def simulate(
                 out[k, i, 0, m] = alpha_trim + (1.0 + x[ALPHA_SCALE, m] + bent) * turned + x[ALPHA_BIAS, m]
                 out[k, i, 1, m] = ((1.0 + x[Q_SCALE, m]) * q + x[Q_BIAS, m] + x[MODE_GAIN, m] * x[BEND, m]
                                    + x[MODE_RATE_GAIN, m] * x[BEND_RATE, m] * x[SOFTNESS, m])  # fmt: skip
-                a_z = (V * x[NORMAL_0, m] + a_x * x[SIN_ALPHA, m]) / x[COS_ALPHA, m]
+                a_z = (x[AIRSPEED, m] * x[NORMAL_0, m] + a_x * x[SIN_ALPHA, m]) / x[COS_ALPHA, m]
                 a_z -= x[IMU_ARM, m] * x[QDOT_0, m]
                 pulled = a_z + GRAVITY_M_S2
                 bent = (x[A_Z_READ2, m] + x[A_Z_READ3, m] * pulled) * pulled

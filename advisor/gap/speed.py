@@ -2,8 +2,9 @@
 
 The air speed swings in every flight, for a manoeuvre exchanges it for height. A simulator that is given the
 measured speed knows that; so it is a cause only where work was done on the aircraft, by an engine or
-by wind along the path, and its energy V²/2 + g h moved as much as its speed. Where it moved by little, the
-accelerations must show that work, too, beyond what drag takes, and the air must be still.
+by wind along the path, and its energy V²/2 + g h moved as much as its speed. Where accelerations were
+measured they must show that work, too, beyond what drag takes. Where it moved by little, they must have been
+measured, and the air must be still.
 """
 
 from dataclasses import replace
@@ -29,7 +30,7 @@ _IS_CAUSE = 1.0
 _WORK = 0.02
 """Standard deviation of the speed that the energy alone would make, relative, that is work ..."""
 _LITTLE_WORK = 0.009
-"""... or this, if the accelerations show as much and the air is still ..."""
+"""... or this, if accelerations were measured and the air is still ..."""
 _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
 _GUSTS = 4.0
@@ -78,8 +79,11 @@ def speed_is_a_cause(
     speed, energy = swings(problem.flights)
     gusts = 0.0 if air is None else air.angle_std
     least = max(_EXCHANGED * speed, _LITTLE_WORK)
-    worked = energy > least and (energy > _WORK or (air is None and work(problem.flights) > least))
-    return worked and min(speed, energy) > _GUSTS * gusts and speed_costs(constant, last, floor) > _IS_CAUSE
+    felt = work(problem.flights)
+    worked = energy > least and (felt is None or felt > least)
+    plain = energy > _WORK or (felt is not None and air is None)
+    felt_more = min(speed, energy) > _GUSTS * gusts
+    return worked and plain and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE
 
 
 def swings(flights: Flights) -> tuple[float, float]:
@@ -94,15 +98,15 @@ def swings(flights: Flights) -> tuple[float, float]:
     return float(np.mean(speeds)) / mean, float(np.mean(energies)) / mean
 
 
-def work(flights: Flights) -> float:
+def work(flights: Flights) -> float | None:
     """How much work beyond drag's would make the speed swing within a manoeuvre, relative to the mean speed.
 
     What the accelerations show along the path is freed of what goes with V² and with lift squared over V²
-    (the two parts of a parabolic polar) in all manoeuvres alike, and integrated. 0 where they were not
+    (the two parts of a parabolic polar) in all manoeuvres alike, and integrated. None where they were not
     measured.
     """
     if "a_x" not in flights.has or not {"alpha", "a_z"} <= set(flights.channels):
-        return 0.0
+        return None
     along, drag = [], []
     for flight in flights.flights:
         speed, a_z = flight.slow[SPEED], flight.outputs["a_z"]

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import t as student
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
@@ -18,7 +19,9 @@ _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
 _LEAST_PER_S = 0.1
 """Change of the wind, m/s per metre, from which on it is felt: a knot in five metres."""
-_SIGMAS = 4.0
+_LEAST_MANEUVERS = 4
+_CHANCE = 1e-3
+"""Of a gradient that large by the scatter between so many manoeuvres (Student's t)."""
 _LEAST_SHARE = 0.17
 """Of what the air speed has beyond the accelerations. In air that moves, and where thrust comes late, heights
 explain up to a seventh of it by chance; a wind that changes with height, a fifth and more."""
@@ -37,7 +40,7 @@ class Shear:
 def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     """The gradient of the wind when it is there; None when the air speed follows from the accelerations."""
     pairs = [p for p in (_apart(m) for m in maneuvers) if p is not None]
-    if len(pairs) < 3:
+    if len(pairs) < _LEAST_MANEUVERS:
         return None
     products = np.array([float(height @ speed) for height, speed in pairs])
     squares = np.array([float(height @ height) for height, _ in pairs])
@@ -47,7 +50,7 @@ def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     std = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
     power = sum(float(speed @ speed) for _, speed in pairs)
     share = gradient * float(np.sum(products)) / max(power, 1e-300)
-    if abs(gradient) < max(_LEAST_PER_S, _SIGMAS * std) or share < _LEAST_SHARE:
+    if abs(gradient) < max(_LEAST_PER_S, float(student.isf(_CHANCE, n - 1)) * std) or share < _LEAST_SHARE:
         return None
     return Shear(gradient, std)
 

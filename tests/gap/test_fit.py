@@ -79,3 +79,12 @@ def test_where_only_a_channel_is_late_nothing_is_flown_again_and_another_delay_i
     flown.clear()
     assert np.array_equal(problem.fly_and_read(flight, rows), np.column_stack(each))
     assert flown == [2]
+
+
+def test_manoeuvres_without_an_angle_of_attack_are_left_out_where_enough_have_one():
+    flown = fly(Setup(maneuvers=5, seed=41))
+    blind = replace(flown[2], channels={c: y for c, y in flown[2].channels.items() if c != "alpha"})
+    found = prepare([*flown[:2], blind, *flown[3:]], Aircraft())
+    assert [f.number for f in found.flights] == [m.number for m in flown if m is not flown[2]]
+    assert "alpha" in found.channels
+    assert "alpha" not in prepare([*flown[:2], blind], Aircraft()).channels

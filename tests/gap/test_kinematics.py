@@ -6,8 +6,12 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.flight.kinematics import check_alpha, coloured_covariance, combine
+from advisor.flight.kinematics import KinematicCheck, check_alpha, coloured_covariance, combine
+from advisor.gap.causes import alpha_bias_cause, alpha_lag_cause
+from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
+from advisor.gap.layout import ENTRIES
+from advisor.gap.problem import Problem
 from advisor.gap.wind import wind_shear
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
@@ -44,6 +48,33 @@ def test_a_scale_error_is_not_taken_for_a_lag():
 
 def test_the_climb_rate_shows_a_constant_offset():
     assert checked(alpha_bias=0.01).bias_rad == pytest.approx(0.01, abs=0.001)
+
+
+@pytest.mark.parametrize(("offset", "named"), [(0.004, False), (0.009, True)])
+def test_an_offset_below_what_any_zero_is_set_to_gets_no_name(offset, named):
+    found = alpha_bias_cause(
+        KinematicCheck("consistent", "", bias_rad=offset, bias_std_rad=1e-4), [], sparse_estimate(), 0.0
+    )
+    assert (found is not None) == named
+
+
+@pytest.mark.parametrize(("lag_s", "named"), [(0.01, False), (0.03, True)])
+def test_an_estimate_every_tenth_of_a_second_is_not_said_to_be_late_by_a_tenth_of_that(lag_s, named):
+    found = alpha_lag_cause(
+        KinematicCheck("late", "", lag_s=lag_s, lag_std_s=1e-3), sparse_estimate(), [], 0.0
+    )
+    assert (found is not None) == named
+
+
+def sparse_estimate():
+    """A problem whose angle of attack comes ten times a second, from an estimator."""
+    seldom = []
+    for m in flown():
+        alpha = m.channels["alpha"]
+        alpha = replace(alpha, t=alpha.t[::5], y=alpha.y[::5], provenance="derived")
+        seldom.append(replace(m, channels={**m.channels, "alpha": alpha}))
+    flights = replace(prepare(seldom, Aircraft()), alpha_is_derived=True)
+    return Problem(flights, np.zeros(len(ENTRIES)))
 
 
 def test_a_constant_offset_shows_without_an_accelerometer_too():
@@ -122,6 +153,8 @@ def test_wind_that_changes_with_height_shows_in_the_air_speed_and_nowhere_else()
     found = wind_shear(sheared)
     assert found is not None
     assert found.gradient_per_s == pytest.approx(0.2, abs=4.0 * found.std)
+    # Three manoeuvres may agree by chance.
+    assert wind_shear(sheared[:3]) is None
     diagnosis = diagnose(sheared, Aircraft())
     assert diagnosis.verdict == "unknown"
     assert diagnosis.where.block == "air"

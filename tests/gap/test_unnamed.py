@@ -239,6 +239,11 @@ def test_a_clock_that_drifts_is_unknown_in_the_time_stamps():
     assert (found.verdict, found.where.block) == ("unknown", "timing")
 
 
+def test_what_a_command_logged_ten_times_a_second_leaves_open_is_not_unknown():
+    seldom = flown_with("elevator", lambda k, e: replace(e, t=e.t[k % 5 :: 5], y=e.y[k % 5 :: 5]), seed=5)
+    assert diagnose(seldom, Aircraft()).verdict == "none"
+
+
 def test_a_scale_that_drifts_is_unknown_in_the_sensor():
     flown = flown_with("q", lambda k, q: replace(q, y=q.y * (1.0 + 0.06 * k)), seed=31)
     found = diagnose(flown, Aircraft())

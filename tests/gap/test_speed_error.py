@@ -1,0 +1,90 @@
+"""The air speed indicator is a noisy instrument: what it may be wrong by is no effect of the aircraft."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.airspeed import speed_doubts
+from advisor.gap.data import prepare
+from advisor.gap.diagnose import diagnose
+from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
+from advisor.gap.linear import linearise
+from advisor.gap.problem import Point, Problem
+from advisor.gap.simulate import SPEED
+from tests.gap.generator import UAV, Setup, fly
+
+
+def remembering(rng, n, memory):
+    """Noise of variance 1, each sample correlated with the one before."""
+    found, e = np.empty(n), rng.standard_normal(n)
+    found[0] = e[0]
+    for k in range(1, n):
+        found[k] = memory * found[k - 1] + np.sqrt(1.0 - memory**2) * e[k]
+    return found
+
+
+@pytest.mark.parametrize(("memory", "tolerance"), [(0.0, 0.1), (0.6, 0.3)])
+def test_a_speed_is_doubted_by_what_noise_makes_of_a_parabola(memory, tolerance):
+    rng, t = np.random.default_rng(1), np.arange(0.0, 6.0, 0.1)
+    parabola = np.vander(2.0 * t / 6.0 - 1.0, 3, increasing=True)
+    noise = np.array([0.3 * remembering(rng, len(t), memory) for _ in range(400)])
+    fitted = noise @ np.linalg.pinv(parabola).T
+    left = [e - parabola @ c for e, c in zip(noise, fitted, strict=True)]
+    doubt = speed_doubts([t] * len(left), left, [6.0] * len(left))[0]
+    std = np.sqrt(np.diag(doubt @ doubt.T))
+    assert std == pytest.approx(np.std(fitted, axis=0), rel=tolerance)
+
+
+def test_a_few_samples_tell_nothing_of_the_instrument():
+    t = np.arange(0.0, 1.0, 0.25)
+    assert speed_doubts([t], [np.ones(len(t))], [1.0])[0].shape == (0, 0)
+
+
+def test_an_error_of_the_speed_is_flown_as_a_parabola_added_to_it():
+    flights = prepare(fly(Setup(maneuvers=1, seed=3)), Aircraft())
+    problem, flight = Problem(flights, np.zeros(len(ENTRIES))), flights.flights[0]
+    p = np.zeros(len(ENTRIES))
+    p[: len(DERIVATIVES)] = -4.0, 0.0, -0.3, -35.0, -4.0, -45.0
+    p[INDEX["Z_trim"]] = -0.44
+    off = p.copy()
+    names = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
+    off[[INDEX[name] for name in names]] = 0.4, -0.3, 0.6
+    along = 2.0 * np.arange(flight.n) / flight.n - 1.0
+    slow = flight.slow.copy()
+    slow[SPEED] += 0.4 - 0.3 * along + 0.6 * along**2
+    there = problem.fly(replace(flight, slow=slow), p)
+    np.testing.assert_allclose(problem.fly(flight, off), there, rtol=1e-9, atol=1e-12)
+    assert np.max(np.abs(there - problem.fly(flight, p))) > 1e-4
+
+
+def test_each_manoeuvre_has_three_numbers_for_it_only_where_it_was_measured():
+    flown = fly(Setup(maneuvers=2, seed=3))
+    blind = [
+        replace(m, channels={name: c for name, c in m.channels.items() if name != "airspeed"}) for m in flown
+    ]
+    point = Point(np.array([-4.0, 0.0, -0.3, -35.0, -4.0, -45.0]), np.tile([0.0, 0.0, -0.44, 0.0], (2, 1)))
+    widths = []
+    for some in (flown, blind):
+        problem = Problem(prepare(some, Aircraft(airspeed_m_s=UAV.speed)), np.zeros(len(ENTRIES)))
+        widths.append(linearise(problem, point)[0].own.shape[1])
+    assert widths[0] - widths[1] == 3
+
+
+def noisy_speed(maneuver, rng, size_m_s, rate_hz=5.0):
+    """The manoeuvre with an air speed as a pressure port gives it: seldom, and with noise that remembers."""
+    speed = maneuver.channels["airspeed"]
+    t = np.arange(speed.t[0], speed.t[-1], 1.0 / rate_hz)
+    y = np.interp(t, speed.t, speed.y) + size_m_s * remembering(rng, len(t), 0.5)
+    return replace(maneuver, channels={**maneuver.channels, "airspeed": replace(speed, t=t, y=y)})
+
+
+def test_noise_of_the_air_speed_is_neither_turbulence_nor_a_change_of_mass():
+    rng = np.random.default_rng(7)
+    flown = [noisy_speed(m, rng, 0.3) for m in fly(Setup(maneuvers=6, seed=71))]
+    found = diagnose(flown, Aircraft())
+    assert found.verdict == "none"
+    assert [c.effect for c in found.causes if c.present] == []
+    # Ten times as much is left where the speed is taken as it is read.
+    assert found.gap.before < 0.1
