@@ -45,6 +45,9 @@ def causes_of(
     removed = sum(max(j.removed, 1e-6) for j in added)
     for stage, judged in zip(stages, added, strict=False):
         confidence = probabilities(stage.considered, unexplained).get(judged.effect, 0.5)
+        if any(j.effect == judged.effect and not j.worth_naming for j in stage.considered):
+            # Too small for a name until the other was found beside it.
+            confidence = 0.5
         share = (
             1.0 if len(added) == 1 else 0.5 + 0.5 * judged.removed / removed if judged is added[0] else 0.0
         )

@@ -65,15 +65,19 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
 
 
 def may_be_held(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool:
-    """Whether a command read as linear has the delay that a held one has by itself.
+    """Whether a command read as linear shows the half interval by which a held one is later.
 
-    That is half an interval, or up to a whole one before a servo that moves no faster than some rate: it
-    would have begun when the command left its old value. ``fitted`` has all effects that were named,
-    ``seen`` are those and what came near to being the first.
+    As a delay, or up to a whole interval before a servo that moves no faster than some rate: it would have
+    begun when the command left its old value. Or as a lag, or in the stamps of sensors, which are as late as
+    that beside a command read too early. ``fitted`` has all effects that were named, ``seen`` are those and
+    what came near to being the first.
     """
+    if problem.held:
+        return False
     interval = float(np.median(np.diff(problem.flights.flights[0].t_u)))
-    late = 0.5 * interval - _HALF_S < _delay_of(fitted) < interval + _HALF_S
-    return late and not problem.held and not _BEND.isdisjoint(seen)
+    least, most = 0.5 * interval - _HALF_S, interval + _HALF_S
+    late = least < _delay_of(fitted) < most and not _BEND.isdisjoint(seen)
+    return late or any(least < abs(time) < most for time in _other_times_of(fitted))
 
 
 def read_as_held(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
@@ -85,13 +89,27 @@ def read_as_held(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
 def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: Fitted) -> bool:
     """Whether all that was named with a held command describes the data better, and without a delay.
 
-    It must have named what no delay or lag imitates: between those two readings ``read_command`` decides.
+    It must have named what no delay or lag imitates, or do with fewer effects, each of which has its price:
+    between those two readings ``read_command`` decides.
     """
+    if _delay_of(named_held) > 0.0:
+        return False
+    more = evidence_of(held, named_held) - evidence_of(linear, named)
+    fewer = len(named.point.effects) - len(named_held.point.effects)
     bends = any(effect.effect in _BEND for effect in named_held.point.effects)
-    without_delay = _delay_of(named_held) == 0.0
-    return (
-        bends and without_delay and (evidence_of(held, named_held) < evidence_of(linear, named) - _LIKELIER)
+    return (bends and more < -_LIKELIER) or (
+        fewer > 0 and more < fewer * float(np.log(np.sum(counts(linear))))
     )
+
+
+def _other_times_of(fitted: Fitted) -> list[float]:
+    """Lag of the servo and skews of sensors, s."""
+    effects = zip(fitted.point.effects, fitted.point.values, strict=True)
+    return [
+        float(values[0])
+        for effect, values in effects
+        if effect.names[0] == "skew_s" or effect.effect == "actuator_lag"
+    ]
 
 
 def _delay_of(fitted: Fitted) -> float:

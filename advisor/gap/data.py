@@ -15,17 +15,21 @@ from advisor.gap.edges import edges_of, held_from, step_unseen
 from advisor.gap.layout import OUTPUTS
 from advisor.gap.provenance import is_estimate
 from advisor.gap.simulate import GRAVITY_M_S2, SPEED, THRUST
-from advisor.gap.smoothness import is_filtered, is_smoothed, white_part
+from advisor.gap.smoothness import is_filtered, is_rough, is_smoothed, white_part
 
 STEP_S = 0.005
 LEAST_SAMPLES = 15
 """Of a channel in a manoeuvre: what a derived α of 8 Hz brings in the shortest."""
+_LEAST_RENEWED = 30
+"""Renewals below which a channel that repeats itself is taken as it is: a vane may stick."""
 DEPARTED_RAD = 1.0
 """Swing of the angle of attack that no equation about a trim describes any more."""
 _ENOUGH = 4
 """Manoeuvres with all that is needed that are enough to leave the others out."""
 _QUIET_AFTER = 0.6
-"""Share of the free response after which the motion has died down."""
+"""Share of the free response after which the motion has died down ..."""
+_QUIET_AFTER_S = 1.5
+"""... but not before this: a mode change may have cut the response short."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +81,8 @@ class Flight:
     def is_quiet(self, t: FloatArray) -> np.ndarray:
         """Shape (n,), bool: which times lie before the first step or late in the free response."""
         free = self.duration_s - self.last_step_s
-        return np.asarray((t < self.first_step_s) | (t > self.last_step_s + _QUIET_AFTER * free))
+        died_down = self.last_step_s + max(_QUIET_AFTER * free, _QUIET_AFTER_S)
+        return np.asarray((t < self.first_step_s) | (t > died_down))
 
     def quiet_stretches(self, channel: str) -> list[FloatArray]:
         """What a channel measured before the first step, and late in the free response."""
@@ -153,7 +158,8 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
 
     smoothed = "alpha" in channels and is_smoothed(quiet("alpha"))
     # Where a whole record went through a filter on the ground, a smooth α is no sign of an estimator.
-    derived = any(is_estimate(m, smoothed and not is_filtered(quiet("q"))) for m in usable)
+    rough = "alpha" in channels and is_rough(quiet("alpha"))
+    derived = any(is_estimate(m, smoothed and not is_filtered(quiet("q")), rough) for m in usable)
     whole = [[f.outputs[c].y for f in flights] for c in channels]
     white = np.array([white_part(series) for series in whole])
     peaks = np.array([np.median([_departure(y) for y in series]) for series in whole])
@@ -254,7 +260,7 @@ def _outputs(m: Maneuver, start: float, end: float) -> dict[str, Measured]:
         if channel is None or len(channel) < LEAST_SAMPLES:
             continue
         cut = channel.cut(start, end)
-        t, y = renewed(cut.t - start, cut.y, LEAST_SAMPLES)
+        t, y = renewed(cut.t - start, cut.y, _LEAST_RENEWED)
         if len(t) >= LEAST_SAMPLES:
             outputs[name] = Measured(t, y)
     return outputs

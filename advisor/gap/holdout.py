@@ -81,11 +81,11 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     return held_out(problem, lefts, innovations)
 
 
-def has_lone_witness(problem: Problem, fitted: Fitted, index: int) -> bool:
-    """Whether one manoeuvre alone tells of a shared number: what it says no other can confirm."""
+def lone_witness(problem: Problem, fitted: Fitted, index: int) -> int | None:
+    """The one manoeuvre that tells of a shared number, if no other could confirm it."""
     weights = 1.0 / fitted.noise
     told = [_reduced(problem, i, block, weights)[0][index, index] for i, block in enumerate(fitted.linear)]
-    return bool(max(told) > _LONE * sum(told))
+    return int(np.argmax(told)) if max(told) > _LONE * sum(told) else None
 
 
 def held_out(

@@ -6,14 +6,14 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.data import Flight
-from advisor.gap.layout import INDEX, OUTPUTS
+from advisor.gap.layout import INDEX, NUISANCES, OUTPUTS
 from advisor.gap.problem import Point, Problem
 from advisor.gap.reading import lane
 from advisor.gap.simulate import DISTURB_INPUT, SPEED
 
 _DERIVATIVE_STEP = 1e-3
-_STARTS = ("alpha_start", "q_start")
-_START_STEP = 1e-4
+_OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
+"""Of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
 _SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
 _SPEED_STEP = 1e-3
 """Of the air speed, relative."""
@@ -74,9 +74,8 @@ def measured_columns(
 ) -> Columns:
     """Manoeuvre ``i`` in the units of its channels; sensitivities are one-sided differences.
 
-    Of its own numbers two initial-state responses are simulated, and errors of the air speed; trim terms are
-    running integrals of the former (the model is nearly linear and nearly time-invariant over a manoeuvre),
-    edges are shifted impulse responses.
+    Of its own numbers all but the edges are simulated, which are shifted responses to an impulse at the start
+    (the model is nearly linear and nearly time-invariant over a manoeuvre).
 
     Parameters
     ----------
@@ -88,9 +87,9 @@ def measured_columns(
         ... shape (k,).
     """
     flight, k = problem.flights.flights[i], len(steps)
-    names = (*_STARTS, *_SPEEDS[: len(flight.speed_doubt)])
-    moves = np.full(len(names), _START_STEP)
-    moves[len(_STARTS) :] = _SPEED_STEP * flight.slow[SPEED, 0]
+    names = (*NUISANCES, *_SPEEDS[: len(flight.speed_doubt)])
+    moves = np.full(len(names), _SPEED_STEP * flight.slow[SPEED, 0])
+    moves[: len(NUISANCES)] = _OWN_STEPS
     others = np.tile(p, (len(names), 1))
     others[range(len(names)), [INDEX[name] for name in names]] += moves
     rows = np.vstack([p, shifted, others, p])
@@ -100,34 +99,18 @@ def measured_columns(
     read = problem.read_all(flight, packs, rows[:-1])
     base, moved = read[:, :1], read[:, 1:]
     answers = (moved[:, k:] - base) / moves
-    grid = lane(packs, 0)
-    alpha, q = ((lane(packs, k + 1 + j) - grid) / _START_STEP for j in range(len(_STARTS)))
-    pulse = (lane(packs, len(rows) - 1) - grid) / _PULSE
+    pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
     late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
     begin = flight.edges[:, 0] + late
     if problem.held:
         begin += 0.5 * (flight.edges[:, 2] - flight.edges[:, 3])
     own = [
-        answers[:, : len(_STARTS)],
-        problem.read_grids(flight, [_lift_trim(flight, alpha), _summed(flight, q)], p),
+        answers[:, : len(NUISANCES)],
         _offsets(problem, flight),
-        answers[:, len(_STARTS) :] @ flight.speed_doubt,
+        answers[:, len(NUISANCES) :] @ flight.speed_doubt,
         problem.read_delayed(flight, pulse, begin, p) * flight.edges[:, 1],
     ]
     return Columns(problem.measured(flight) - base[:, 0], (moved[:, :k] - base) / steps, np.hstack(own))
-
-
-def _summed(flight: Flight, response: FloatArray) -> FloatArray:
-    """Response to a trim term from that to its initial state, both of shape (4, n + 1)."""
-    return np.asarray(flight.h * (np.cumsum(response, axis=1) - 0.5 * response))
-
-
-def _lift_trim(flight: Flight, response: FloatArray) -> FloatArray:
-    """The same for the trim of the lift, which the accelerometer also feels at once."""
-    summed = _summed(flight, response)
-    speed = flight.slow[SPEED]
-    summed[2] += np.append(speed, speed[-1])
-    return summed
 
 
 def _offsets(problem: Problem, flight: Flight) -> FloatArray:

@@ -8,7 +8,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.belief import odds_of_arm
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import DOUBT, prefiltered
-from advisor.gap.holdout import HeldOut, has_lone_witness, hold_out
+from advisor.gap.holdout import HeldOut, hold_out, lone_witness, mean_squares
 from advisor.gap.problem import Problem, counts
 from advisor.gap.uncertainty import belief_in, shared_std
 from advisor.gap.variant import Variant
@@ -27,7 +27,7 @@ _CERTAIN, _FAINT = 30.0, 0.15
 _BY_NATURE = frozenset(
     {
         "elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift", "unsteady_lift", "alpha_dot",
-        "icing", "structural_mode", "airspeed_variation", "thrust_moment",
+        "icing", "structural_mode", "airspeed_variation", "thrust_moment", "ground_effect",
     }
 )  # fmt: skip
 """... but for what every aircraft has to some degree, or what takes its shape; and times must be
@@ -107,9 +107,13 @@ class Judged:
 
     @property
     def at_its_bounds(self) -> bool:
-        """The search ran out of its range: a shape that only resembles the effect."""
+        """The search ran out of its range: a shape that only resembles the effect.
+
+        A bound at zero is none: the effect does without that number, as an engine without a lag.
+        """
         ends = np.array(self.variant.bounds[1:]).reshape(-1, 2)
         near = np.abs(ends - self.value[1:, None]) < 1e-3 * np.ptp(ends, axis=1, keepdims=True)
+        near &= ends != 0.0
         return bool(np.any(near)) and not self.variant.one_sided
 
     @property
@@ -150,7 +154,8 @@ def addition(
     at = len(point.derivatives) + sum(len(v) for v in point.values[:k])
     held = hold_out(problem, fitted)
     # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
-    unconfirmed = bool(variant.needs) and has_lone_witness(problem, fitted, at)
+    witness = lone_witness(problem, fitted, at) if variant.needs else None
+    unconfirmed = witness is not None
     seen_before, seen_after = (before, fitted) if unconfirmed else (held_before, held)
     likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed)
     likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
@@ -162,7 +167,7 @@ def addition(
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
         gain=likelihood + beforehand,
-        removed=difference(problem, seen_before, seen_after),
+        removed=difference(problem, seen_before, seen_after, witness),
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant),
         belief=belief, beforehand=beforehand, value=value, unconfirmed=unconfirmed,
@@ -227,8 +232,14 @@ def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
     )
 
 
-def difference(problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted) -> float:
-    """Mean over channels of the squared change of the prediction, beside the instruments' noise."""
-    changed = rms_of(problem, [a - b for a, b in zip(before.left, after.left, strict=True)])
+def difference(
+    problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted, only: int | None = None
+) -> float:
+    """Mean over channels of the squared change of the prediction, beside the instruments' noise.
+
+    ``only``: in this manoeuvre, where no other tells of it.
+    """
+    changed = mean_squares(problem, [a - b for a, b in zip(before.left, after.left, strict=True)])
     noise = 1.0 if problem.instruments is None else problem.instruments
-    return float(np.mean((changed / noise) ** 2))
+    power = np.mean(changed, axis=0) if only is None else changed[only]
+    return float(np.mean(power / noise**2))

@@ -12,8 +12,11 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
+_ROUGH = 1.6
+"""Growth of differences over two samples up to which noise is an instrument's; ArduPilot's estimates have
+2.4 and more ..."""
 _SMOOTHED = 2.0
-"""Growth of differences over two samples from which on something has been filtered ..."""
+"""... from which on something has been filtered ..."""
 _FILTERED = 6.0
 """... and from which on next to nothing is left above its edge: no estimator on board is so thorough."""
 
@@ -32,6 +35,11 @@ def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:
         return 0.0
     d = np.concatenate(differences)
     return float(np.median(np.abs(d)) / 0.6745 / np.sqrt(np.sum(_WEIGHTS**2)))
+
+
+def is_rough(quiet: Sequence[FloatArray]) -> bool:
+    """Whether stretches in which nothing was flown are as rough as white noise."""
+    return white_part(quiet) > 0.0 and _growth(quiet) < _ROUGH
 
 
 def is_smoothed(quiet: Sequence[FloatArray]) -> bool:

@@ -31,6 +31,8 @@ _WORK = 0.02
 """Standard deviation of the speed that the energy alone would make, relative, that is work ..."""
 _LITTLE_WORK = 0.009
 """... or this, if accelerations were measured and the air is still ..."""
+_PLAIN_WORK = 0.03
+"""What the accelerations must show of it at most: thrust that swings for long passes for drag in part."""
 _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
 _GUSTS = 4.0
@@ -80,7 +82,7 @@ def speed_is_a_cause(
     gusts = 0.0 if air is None else air.angle_std
     least = max(_EXCHANGED * speed, _LITTLE_WORK)
     felt = work(problem.flights)
-    worked = energy > least and (felt is None or felt > least)
+    worked = energy > least and (felt is None or felt > min(least, _PLAIN_WORK))
     plain = energy > _WORK or (felt is not None and air is None)
     felt_more = min(speed, energy) > _GUSTS * gusts
     return worked and plain and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE

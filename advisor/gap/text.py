@@ -63,7 +63,11 @@ def what(cause: Cause) -> str:
         sizes[f"{name}_power"] = 2.0 + value.value
     if cause.effect == "transport_delay" and cause.parameters["delay_s"].value < 0.0:
         return f"The simulator answers {-sizes['delay_s_ms']:.0f} ms too late: its delay is too long"
-    particular = f"{cause.effect} {list(cause.parameters)[-1]}" if cause.parameters else cause.effect
+    particular = cause.effect
+    if cause.parameters:
+        name, value = list(cause.parameters.items())[-1]
+        # A lag that may as well be none is not worth telling.
+        particular += f" {name}" if abs(value.value) > value.std else ""
     return _WHAT.get(particular, _WHAT[cause.effect]).format(**sizes)
 
 

@@ -16,6 +16,8 @@ from advisor.gap.variant import Variant
 MOST_EFFECTS = 3
 _NEAR = 0.5
 """Share of the best candidate's gain from which on another one is a rival."""
+_CERTAIN = 100.0
+"""Log likelihood from which on an effect too small for a name is worth a look at what shows beside it."""
 _CLEARLY = 20.0
 """Cost by which another companion must beat the one that was found first."""
 
@@ -46,16 +48,34 @@ def build_up(
 ) -> list[Stage]:
     """Stages from the plain model to the last addition; the last stage adds nothing."""
     stages: list[Stage] = []
-    fitted, held = baseline, hold_out(problem, baseline)
+    fitted, held, ahead = baseline, hold_out(problem, baseline), None
     for n in range(MOST_EFFECTS + 1):
         progress(f"trying {len(variants)} ways to explain what is left", 0.2 + 0.15 * n)
-        considered = judge(problem, fitted, held, candidates_for(problem, fitted, variants))
+        considered = ahead or judge(problem, fitted, held, candidates_for(problem, fitted, variants))
         added = next((j for j in considered if j.worth_naming), None) if n < MOST_EFFECTS else None
+        ahead = None
+        if added is None and n < MOST_EFFECTS - 1:
+            added, ahead = _leading_on(problem, considered, variants)
         stages.append(Stage(fitted, held, tuple(considered), added))
         if added is None:
             break
         fitted, held = added.fitted, added.held_out
     return in_full(problem, settled(problem, _other_companion(problem, stages, variants)))
+
+
+def _leading_on(
+    problem: Problem, considered: Sequence[Judged], variants: Sequence[Variant]
+) -> tuple[Judged | None, list[Judged] | None]:
+    """An effect too small for a name that is certain all the same, where another shows beside it.
+
+    Two effects may hide each other: with one of them in the model derivatives make up for the other. Also
+    returned is what was thought of adding to it. Whether both stay is decided when all have been found.
+    """
+    if not considered or considered[0].gain < _CERTAIN:
+        return None, None
+    first = considered[0]
+    beside = judge(problem, first.fitted, first.held_out, candidates_for(problem, first.fitted, variants))
+    return (first, beside) if any(j.worth_naming for j in beside) else (None, None)
 
 
 def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:

@@ -42,6 +42,18 @@ def test_a_servo_that_moves_no_faster_is_no_later_for_a_command_that_was_held(tm
     assert cause.parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.03)
 
 
+@pytest.mark.parametrize("early_s", [0.012, 0.016])
+def test_a_pitch_rate_that_is_early_beside_a_held_command_makes_nothing_else_late(tmp_path, early_s):
+    skewed = f"effects: {{pitch_rate_skew: {{skew_s: {-early_s}}}}}\n"
+    quiet = UAV.replace("uav", "light").replace("0.15", "0.05")
+    (tmp_path / "light.yaml").write_text(f"{quiet}input: held\n{skewed}")
+    record(flight_of(read_scenario(tmp_path / "light.yaml")), tmp_path / "light.tlog")
+    found = diagnose(maneuvers_of([tmp_path / "light.tlog"], Aircraft()), Aircraft())
+    (cause,) = [c for c in found.causes if c.present]
+    assert cause.effect == "pitch_rate_skew"
+    assert cause.parameters["skew_s"].value == pytest.approx(-early_s, abs=0.002)
+
+
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_delay_of_nearly_an_interval_is_not_taken_for_a_held_command_that_is_half_as_late(seed):
     late = Setup(maneuvers=6, switches={"delay": 0.018}, jitter=0.002, seed=seed)

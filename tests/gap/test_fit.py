@@ -11,8 +11,9 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.causes import with_doubt
 from advisor.gap.data import prepare
 from advisor.gap.fit import fit
-from advisor.gap.layout import INDEX
-from advisor.gap.problem import Problem
+from advisor.gap.layout import ENTRIES, INDEX
+from advisor.gap.linear import linearise
+from advisor.gap.problem import Point, Problem
 from advisor.gap.result import Cause, Value
 from advisor.gap.score import price_of_edges
 from advisor.gap.screen import Screen
@@ -88,3 +89,17 @@ def test_manoeuvres_without_an_angle_of_attack_are_left_out_where_enough_have_on
     assert [f.number for f in found.flights] == [m.number for m in flown if m is not flown[2]]
     assert "alpha" in found.channels
     assert "alpha" not in prepare([*flown[:2], blind], Aircraft()).channels
+
+
+def test_a_manoeuvres_own_numbers_act_as_they_do_in_flight_where_the_moment_bends():
+    flights = prepare(fly(Setup(maneuvers=1, seed=41)), Aircraft())
+    problem, flight = Problem(flights, np.zeros(len(ENTRIES))), flights.flights[0]
+    derivatives = np.array([-4.0, 0.0, -0.3, -35.0, -4.0, -45.0])
+    bent = next(v for v in variants_for(flights) if v.effect == "nonlinear_pitching_moment")
+    at = Point(derivatives, np.array([[0.0, 0.0, -0.44, 0.0]])).with_effect(bent, (0.0, -4000.0))
+    own = linearise(problem, at)[0].own
+    read = problem.fly_and_read(flight, problem.driving(at)[:1])[:, 0]
+    for k, step in enumerate((1e-4, 1e-4, 1e-3, 1e-3)):
+        moved = replace(at, own=at.own + step * np.eye(4)[k])
+        answer = (problem.fly_and_read(flight, problem.driving(moved)[:1])[:, 0] - read) / step
+        np.testing.assert_allclose(own[:, k], answer, rtol=1e-6, atol=1e-9)

@@ -176,7 +176,7 @@ def test_a_step_lost_in_the_noise_shows_next_to_nothing_and_the_document_has_no_
         (("3211", "loop"), 50.0, (), "'loop' is none of"),
         ((), 50.0, (), "at least one"),
         (PLAN, 0.0, (), "above zero"),
-        (PLAN, 4.0, (), "plan a rate of"),
+        (PLAN, 1.5, (), "plan a rate of"),
         (PLAN, 50.0, ("q",), "'q' is none of"),
     ],
 )

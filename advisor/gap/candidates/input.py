@@ -104,7 +104,7 @@ def variants() -> list[Variant]:
             ((0.0, 0.1),),
             _SMALL_ANGLE,
             entries=("half_play_rad",),
-            sides=("play_side", (-1.0, -0.5, 0.0, 0.5, 1.0)),
+            sides=("play_side", tuple(np.linspace(-1.0, 1.0, 9))),
         ),
         Variant(
             "actuator_deadband",
