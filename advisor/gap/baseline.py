@@ -8,8 +8,8 @@ from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import everywhere, variants_for
 from advisor.gap.command import read_command, with_latency
-from advisor.gap.data import Flights
 from advisor.gap.fit import Fitted, fit
+from advisor.gap.flights import Flights
 from advisor.gap.floor import stated_floor
 from advisor.gap.known import with_known
 from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX

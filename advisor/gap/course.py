@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flight
+from advisor.gap.flights import Flight
 from advisor.gap.probes import KNOTS_S
 
 _TONE = 0.7

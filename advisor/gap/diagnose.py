@@ -16,9 +16,10 @@ from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.causes import OFFSET_SIGMAS
 from advisor.gap.command import is_likelier_held, may_be_held, read_as_held
-from advisor.gap.data import Flights, prepare
+from advisor.gap.data import prepare
 from advisor.gap.evidence import Evidence
 from advisor.gap.fit import Fitted, solve_blocks
+from advisor.gap.flights import Flights
 from advisor.gap.floor import prefiltered, stated_floor
 from advisor.gap.holdout import HeldOut, held_out
 from advisor.gap.known import beyond_known

@@ -8,7 +8,7 @@ independent samples a coloured residual is worth.
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flights
+from advisor.gap.flights import Flights
 
 TOLERANCE = 0.02
 """Of the channel's peak: what is called noise in a record that was filtered before it was stored."""

@@ -18,8 +18,8 @@ from advisor.flight.kinematics import SMALLEST_BIAS_RAD
 from advisor.flight.messages import FloatArray
 from advisor.gap.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
 from advisor.gap.causes import OFFSET_SIGMAS
-from advisor.gap.data import Flight, Flights
 from advisor.gap.fit import Fitted
+from advisor.gap.flights import Flight, Flights
 from advisor.gap.foresee import Foreseen, Mark
 from advisor.gap.linear import pulse_response
 from advisor.gap.marks import Marks

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flights
+from advisor.gap.flights import Flights
 from advisor.gap.variant import Variant
 
 Effects = Mapping[str, Mapping[str, float]]

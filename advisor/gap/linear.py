@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flight
+from advisor.gap.flights import Flight
 from advisor.gap.layout import INDEX, NUISANCES, OUTPUTS
 from advisor.gap.problem import Point, Problem
 from advisor.gap.reading import lane

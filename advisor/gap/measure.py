@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flight
+from advisor.gap.flights import Flight
 from advisor.gap.problem import Problem
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from advisor.gap.data import Flights
+from advisor.gap.flights import Flights
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.course import has_tone
-from advisor.gap.data import Flight
 from advisor.gap.fit import Fitted
+from advisor.gap.flights import Flight
 from advisor.gap.holdout import folds_of
 from advisor.gap.probes import KNOTS_S, Probe, disturbance_course
 from advisor.gap.problem import Problem

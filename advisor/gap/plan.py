@@ -10,8 +10,9 @@ from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 from advisor.gap.baseline import base_entries, believed_derivatives
 from advisor.gap.candidates.catalogue import BLOCK_OF, everywhere, variants_for
-from advisor.gap.data import LEAST_SAMPLES, Flights, prepare
+from advisor.gap.data import LEAST_SAMPLES, prepare
 from advisor.gap.fit import Fitted, solve_blocks
+from advisor.gap.flights import Flights
 from advisor.gap.foresee import Foreseen, foresee
 from advisor.gap.foresee_apart import foresee_air, foresee_offset, impossible, speed_mark
 from advisor.gap.layout import OUTPUTS

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flight
 from advisor.gap.fit import Fitted, factor
+from advisor.gap.flights import Flight
 from advisor.gap.layout import INDEX, OUTPUTS
 from advisor.gap.linear import pulse_response
 from advisor.gap.normal import solved

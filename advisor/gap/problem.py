@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.belief import pull_of
-from advisor.gap.data import Flight, Flights
+from advisor.gap.flights import Flight, Flights
 from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES, SKEWS
 from advisor.gap.reading import delayed, lane, packed, read_rows
 from advisor.gap.simulate import LANES, simulate

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flight, Flights
+from advisor.gap.flights import Flight, Flights
 
 _STEP_S = 0.02
 _SPAN = 10

@@ -10,12 +10,12 @@ of the candidate effects are in the same loop, each switched off by a zero (``ad
     q̇ = v² (M_trim + M_α Δα + M_δe Δδ + ...) + v (M_q q + M_α̇ α̇) + M_T ΔT + M_P (1 − v²)
     θ̇ = q cos φ,   a_z cos α = V N + a_x sin α
 
-Where forces do not go with V², lift and all moments of α and δ are multiplied by v^n besides.
-The last is the exact a_z = V cos α (α̇ − q) + V̇ sin α − g cos θ with V̇ replaced by what a_x measures.
+Where forces do not go with V², lift and all moments of α and δ are multiplied by v^n besides. V is what was
+measured, and a parabola in time that it may be wrong by. The last is the exact
+a_z = V cos α (α̇ − q) + V̇ sin α − g cos θ with V̇ replaced by what a_x measures.
 
-A step has to wait for the one before, which leaves a processor idle most of the time. Many sets of
-parameters are flown with the same inputs (a nominal one and one for every sensitivity), so the loop
-advances a pack of simulations side by side, each in a lane of its own: a whole pack takes the time of one.
+A step has to wait for the one before, which leaves a processor idle. Many sets of parameters are flown with
+the same inputs, so the loop advances a pack of them side by side, each in a lane: it takes the time of one.
 """
 
 import numpy as np
@@ -122,8 +122,8 @@ def simulate(
 
     Returns
     -------
-    Shape (packs, n + 1, 4, LANES): α as its sensor reads it, q likewise, a_z at the accelerometer, θ; of
-    simulation j in lane j % LANES of pack j // LANES. Lanes to spare repeat the last simulation.
+    Shape (packs, n + 1, 4, LANES): α and q as their sensors read them, a_z at the accelerometer, θ; of
+    simulation j in lane j % LANES of pack j // LANES. Lanes to spare repeat the last.
     """
     # As many as LANES, but known only at run time: else the lanes are unrolled one after the other.
     packs, n, lanes = delta.shape

@@ -13,8 +13,8 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.air import Air
-from advisor.gap.data import Flights
 from advisor.gap.fit import Fitted, fit
+from advisor.gap.flights import Flights
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.measure import gap_of
 from advisor.gap.problem import Problem

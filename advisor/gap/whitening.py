@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flights
+from advisor.gap.flights import Flights
 from advisor.gap.layout import INDEX, short_period
 from advisor.oem.innovations import CHANNELS, AirModel, Gains, gains_of
 

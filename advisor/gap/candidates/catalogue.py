@@ -1,7 +1,7 @@
 """All variants that these data allow, and what each effect is called and belongs to."""
 
 from advisor.gap.candidates import force, input, moment, sensors, timing
-from advisor.gap.data import Flights
+from advisor.gap.flights import Flights
 from advisor.gap.problem import Point
 from advisor.gap.speed import SPEED_CHANGE
 from advisor.gap.variant import Variant

@@ -4,7 +4,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import breaks, divide, ramps_and_steps
-from advisor.gap.data import Flights
+from advisor.gap.flights import Flights
 from advisor.gap.layout import DERIVATIVES, INDEX
 from advisor.gap.simulate import HEIGHT
 from advisor.gap.variant import Values, Variant

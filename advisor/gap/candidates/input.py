@@ -3,7 +3,7 @@
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flights
+from advisor.gap.flights import Flights
 from advisor.gap.layout import INDEX
 from advisor.gap.variant import Values, Variant
 

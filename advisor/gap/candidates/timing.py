@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.data import Flights
+from advisor.gap.flights import Flights
 from advisor.gap.layout import INDEX, OUTPUTS, SKEWS
 from advisor.gap.variant import Values, Variant
 
