@@ -122,7 +122,7 @@ def speed_doubts(
     for t, duration in zip(stamps, durations_s, strict=True):
         parabola = np.vander(2.0 * t / duration - 1.0, 3, increasing=True)
         enough = len(t) >= _LEAST_SAMPLES
-        doubts.append(sigma * np.linalg.inv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
+        doubts.append(sigma * np.linalg.pinv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
     return doubts
 
 

@@ -212,7 +212,8 @@ def bounds_of(point: Point) -> tuple[FloatArray, FloatArray]:
 def evidence_of(problem: Problem, fitted: Fitted) -> float:
     """-2 log marginal likelihood, up to what two ways of reading the command have in common.
 
-    The cost, plus the price of the edges' freedom: log det(I + Λ A_eᵀ W A_e), flat numbers eliminated.
+    The cost, plus the price of the freedom that edges and air speeds have within their priors:
+    log det(I + Λ A_eᵀ W A_e), flat numbers eliminated.
     """
     total = fitted.cost
     for i, block in enumerate(fitted.linear):

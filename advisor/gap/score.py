@@ -204,7 +204,7 @@ def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: Flo
 
 
 def price_of_edges(problem: Problem, fitted: Fitted) -> float:
-    """What the cost has beside noise and belief: edges of the command away from where they likely were.
+    """What the cost has beside noise and belief: edges and air speeds off where they likely were.
 
     A wrong model buys some of its fit by shifting them.
     """

@@ -88,3 +88,9 @@ def test_noise_of_the_air_speed_is_neither_turbulence_nor_a_change_of_mass():
     assert [c.effect for c in found.causes if c.present] == []
     # Ten times as much is left where the speed is taken as it is read.
     assert found.gap.before < 0.1
+
+
+def test_readings_with_one_stamp_for_many_are_no_obstacle():
+    t = np.repeat([0.5, 2.0], 6)
+    left = np.random.default_rng(2).standard_normal(len(t))
+    assert np.all(np.isfinite(speed_doubts([t, t], [left, left], [6.0, 6.0])[0]))
