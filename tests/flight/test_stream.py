@@ -271,16 +271,21 @@ def test_stirring_the_stick_on_the_ground_is_no_manoeuvre():
     assert "on_ground" in [e.code for e in events if isinstance(e, Notice)]
 
 
-@pytest.mark.parametrize(("mode", "listed"), [(0, 1), (7, 0), (99, 1)])
-def test_a_pulse_in_a_mode_that_closes_the_pitch_loop_is_the_autopilots_own(mode, listed):
-    wire = Wire()
-    heartbeat(wire, 1000.0, mode=mode)
+def fly_a_pulse(wire):
+    """Twelve seconds of flight with a pulse of the elevator from the fourth on."""
     parameter(wire, 1000.0, "SERVO2_FUNCTION", 19.0)
     for k in range(600):
         boot = 50.0 + k / 50
         attitude(wire, 1000.01 + k / 50, boot)
         aoa(wire, 1000.011 + k / 50, boot, 2.0)
         servo(wire, 1000.012 + k / 50, boot, {2: 1520 if 54.0 <= boot < 54.4 else 1500})
+
+
+@pytest.mark.parametrize(("mode", "listed"), [(0, 1), (7, 0), (99, 1)])
+def test_a_pulse_in_a_mode_that_closes_the_pitch_loop_is_the_autopilots_own(mode, listed):
+    wire = Wire()
+    heartbeat(wire, 1000.0, mode=mode)
+    fly_a_pulse(wire)
     assert len(maneuvers(flown(wire)[1])) == listed
 
 
@@ -288,12 +293,7 @@ def test_a_pulse_in_a_mode_that_closes_the_pitch_loop_is_the_autopilots_own(mode
 def test_an_input_flown_as_soon_as_the_pilot_took_over_is_the_pilots(taken_over_s, listed):
     wire = Wire()
     heartbeat(wire, 1000.0, mode=7)
-    parameter(wire, 1000.0, "SERVO2_FUNCTION", 19.0)
-    for k in range(600):
-        boot = 50.0 + k / 50
-        attitude(wire, 1000.01 + k / 50, boot)
-        aoa(wire, 1000.011 + k / 50, boot, 2.0)
-        servo(wire, 1000.012 + k / 50, boot, {2: 1520 if 54.0 <= boot < 54.4 else 1500})
+    fly_a_pulse(wire)
     # The last heartbeat of the autopilot's own mode comes before or after the input has begun.
     heartbeat(wire, taken_over_s + 0.05, mode=7)
     heartbeat(wire, taken_over_s + 0.95, mode=0)
