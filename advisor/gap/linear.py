@@ -21,6 +21,8 @@ _PULSE = 1e-4
 """Area of the disturbance by which a response to a pulse is found."""
 _EDGE_VARIANCE = 1.0 / 12.0
 """An edge of a linear command lies anywhere between two stamps: uniform over the interval."""
+_SHARES = (1.0 / 6.0, 0.5, 5.0 / 6.0)
+"""Where in the time that a servo runs on its lateness is put: at the middles of thirds."""
 _HELD_JITTER_S = 0.0015
 """A held command changes at its stamp, give or take the stamp's resolution."""
 
@@ -108,9 +110,24 @@ def measured_columns(
         answers[:, : len(NUISANCES)],
         _offsets(problem, flight),
         answers[:, len(NUISANCES) :] @ flight.speed_doubt,
-        problem.read_delayed(flight, pulse, begin, p) * flight.edges[:, 1],
+        _answers_to_edges(problem, flight, pulse, begin, p),
     ]
     return Columns(problem.measured(flight) - base[:, 0], (moved[:, :k] - base) / steps, np.hstack(own))
+
+
+def _answers_to_edges(
+    problem: Problem, flight: Flight, pulse: FloatArray, begin: FloatArray, p: FloatArray
+) -> FloatArray:
+    """Shape (rows, edges): what a shift of each edge by its interval changes.
+
+    That is a pulse at the edge. A servo at its limit runs on after it, and is later all that time.
+    """
+    area, interval = flight.edges[:, 1], flight.edges[:, 2]
+    longer = np.maximum(np.abs(area / interval) * p[INDEX["slowness_s_rad"]] - interval, 0.0)
+    if not np.any(longer > 0.0):
+        return problem.read_delayed(flight, pulse, begin, p) * area
+    parts = [problem.read_delayed(flight, pulse, begin + share * longer, p) for share in _SHARES]
+    return np.asarray(sum(parts) * area / len(_SHARES))
 
 
 def _offsets(problem: Problem, flight: Flight) -> FloatArray:

@@ -12,6 +12,13 @@ _READ = tuple(INDEX[name] for name in (
 ))  # fmt: skip
 DELAY, LATENCY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL = _READ
 
+_UNLIMITED = 1e6
+"""Rate of a servo without a limit, rad/s: a jump takes no time."""
+_HERE = 1e-9
+"""Deflection, rad, below which the servo has arrived."""
+_PARTS = 8
+"""Of a piece of the command, at most: at its limit, lagging, and at its limit the other way."""
+
 
 @njit(cache=True)
 def surfaces(
@@ -53,8 +60,9 @@ def surface(
 ) -> FloatArray:
     """Mean deflection over each step, relative to trim, after everything between stick and surface.
 
-    The command is averaged over the step by its exact integral, so that an edge inside a step
-    keeps its area and the result is smooth in the delay.
+    The command comes in pieces that end at its stamps. What is not linear takes every piece by itself, so
+    that an edge inside a step keeps its area; all else is solved for the command's mean over the step.
+    The result is smooth in the delay.
     """
     out = np.empty(n)
     k = 0
@@ -67,35 +75,45 @@ def surface(
     damped = np.sqrt(max(1.0 - zeta * zeta, 1e-6))
     fade = np.exp(-zeta * omega * h)
     swing_cos, swing_sin = np.cos(omega * damped * h), np.sin(omega * damped * h) / damped
+    by_pieces = (slow > 0.0 or play > 0.0) and omega == 0.0
+    most = 1.0 / slow if slow > 0.0 else _UNLIMITED
     rate = 0.0
     servo = np.nan
     link = 0.0
     last = len(u) - 1
     for i in range(n):
-        a, b = i * h - late, (i + 1) * h - late
-        while k > 0 and t_u[k] > a:
+        at, b = i * h - late, (i + 1) * h - late
+        while k > 0 and t_u[k] > at:
             k -= 1
-        total, at = 0.0, a
-        if a < t_u[0]:
-            upto = min(b, t_u[0])
-            total += (upto - a) * u[0]
-            at = upto
+        total = area = 0.0
         while at < b - 1e-12:
-            while k < last and t_u[k + 1] <= at + 1e-12:
-                k += 1
-            upto = b if k == last else min(b, t_u[k + 1])
-            if held or k == last:
-                total += (upto - at) * u[k]
+            if at < t_u[0]:
+                upto = min(b, t_u[0])
+                begin = end = u[0] - trim
             else:
-                slope = (u[k + 1] - u[k]) / (t_u[k + 1] - t_u[k])
-                total += (upto - at) * (u[k] + slope * (0.5 * (at + upto) - t_u[k]))
+                while k < last and t_u[k + 1] <= at + 1e-12:
+                    k += 1
+                upto = b if k == last else min(b, t_u[k + 1])
+                slope = 0.0 if held or k == last else (u[k + 1] - u[k]) / (t_u[k + 1] - t_u[k])
+                begin = u[k] + slope * (at - t_u[k]) - trim
+                end = begin + slope * (upto - at)
+            mean = 0.5 * (begin + end)
+            if dead > 0.0:
+                mean = _mean_beyond(begin - p[NEUTRAL], end - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
+                begin = _beyond(begin - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
+                end = _beyond(end - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
+            if np.isnan(servo):
+                servo = begin
+                link = begin + p[PLAY_SIDE] * play
+            if by_pieces:
+                servo, link, swept = _through(servo, link, begin, end, upto - at, tau, most, play)
+                area += swept
+            total += mean * (upto - at)
             at = upto
-        want = total / h - trim
-        if dead > 0.0:
-            want = _beyond(want - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
-        if np.isnan(servo):
-            servo = want
-            link = want + p[PLAY_SIDE] * play
+        if by_pieces:
+            out[i] = area / h
+            continue
+        want = total / h
         if omega > 0.0:
             off, before_rate = servo - want, rate
             to = want + fade * ((swing_cos + zeta * swing_sin) * off + swing_sin * rate / omega)
@@ -120,5 +138,52 @@ def surface(
 
 
 @njit(cache=True)
+def _through(
+    servo: float, link: float, begin: float, end: float, dt: float, tau: float, most: float, play: float
+) -> tuple[float, float, float]:
+    """Servo and linkage after a piece in which the command moves linearly, and the deflection's integral.
+
+    The servo moves by (command − servo)/τ, but no faster than ``most``: it lags by an exponential or runs at
+    its limit, and a piece holds a few such parts. The linkage rests until the servo has crossed its play.
+    """
+    slope, left, command, area = (end - begin) / dt, dt, begin, 0.0
+    way, limit = np.sign(slope), most * tau
+    for _ in range(_PARTS):
+        error = command - servo
+        outrun = abs(slope) > most and way * error >= limit - _HERE
+        if outrun or abs(error) > limit + _HERE:
+            side = way if outrun else np.sign(error)
+            closing = most - side * slope
+            time = left if closing <= 0.0 else min(left, max(side * error - limit, 0.0) / closing)
+            to = servo + side * most * time
+            swept = 0.5 * (servo + to) * time
+        else:
+            settled, time = slope * tau, left
+            if abs(slope) > most and tau > 0.0:
+                time = min(left, -tau * np.log((way * limit - settled) / (error - settled)))
+            trail = (error - settled) * np.exp(-time / tau) if tau > 0.0 else 0.0
+            to = command + slope * time - settled - trail
+            swept = (command + 0.5 * slope * time) * time - tau * (to - servo)
+        if play > 0.0:
+            before, link = link, min(max(link, to - play), to + play)
+            share = (link - before) / (to - servo) if link != before else 0.0
+            swept = (before + 0.5 * (link - before) * share) * time
+        area += swept
+        servo, command, left = to, command + slope * time, left - time
+        if left <= 0.0:
+            break
+    return servo, link, area
+
+
+@njit(cache=True)
 def _beyond(x: float, dead: float) -> float:
     return float(np.sign(x) * max(abs(x) - dead, 0.0))
+
+
+@njit(cache=True)
+def _mean_beyond(begin: float, end: float, dead: float) -> float:
+    """Mean of what lies beyond the dead band while its argument moves linearly from begin to end."""
+    if abs(end - begin) < _HERE:
+        return float(_beyond(begin, dead))
+    squares = max(abs(end) - dead, 0.0) ** 2 - max(abs(begin) - dead, 0.0) ** 2
+    return float(0.5 * squares / (end - begin))

@@ -1,5 +1,7 @@
 """Between command and surface: delay, lag, rate limit, play, dead-band."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from advisor.flight.messages import FloatArray
@@ -49,6 +51,30 @@ def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
     p[:, INDEX["neutral_rad"]] = np.median(trims) + values[1] - trims
 
 
+def _limited_from_midway(p: FloatArray, values: Values, flights: Flights) -> None:
+    """A step between two stamps, wherever it was, happened midway on average: from then on the servo runs.
+
+    Read as linear it would run from the first stamp on, at its limit before the step was there.
+    """
+    intervals = np.concatenate([np.diff(flight.t_u) for flight in flights.flights])
+    p[:, INDEX["slowness_s_rad"]] += values[0]
+    p[:, INDEX["delay_s"]] += 0.5 * float(np.median(intervals))
+
+
+# Searched as slowness 1/ρ: zero is "no limit", and the cost is smooth there.
+_RATE_LIMIT = Variant(
+    "actuator_rate_limit",
+    BLOCK,
+    ("rate_rad_s",),
+    ((0.4,), (1.2,), (3.0,)),
+    (0.02,),
+    ((0.0, 30.0),),
+    0.05,
+    entries=("slowness_s_rad",),
+    inverted=True,
+)
+
+
 def variants() -> list[Variant]:
     """Effects of the block, described to first order, and the lag to second order, too."""
     return [
@@ -83,18 +109,7 @@ def variants() -> list[Variant]:
             apply_with=_second_order,
             fixed={"damping": _DAMPING},
         ),
-        # Searched as slowness 1/ρ: zero is "no limit", and the cost is smooth there.
-        Variant(
-            "actuator_rate_limit",
-            BLOCK,
-            ("rate_rad_s",),
-            ((0.4,), (1.2,), (3.0,)),
-            (0.02,),
-            ((0.0, 30.0),),
-            0.05,
-            entries=("slowness_s_rad",),
-            inverted=True,
-        ),
+        replace(_RATE_LIMIT, likewise=replace(_RATE_LIMIT, apply_with=_limited_from_midway)),
         Variant(
             "actuator_backlash",
             BLOCK,

@@ -1,0 +1,70 @@
+"""From the command to the surface: solved piece by piece, it is what small steps make of it."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.diagnose import diagnose
+from advisor.gap.layout import ENTRIES, INDEX
+from advisor.gap.surface import surface
+from advisor.report.gap import maneuvers_of
+from sim.effects.fitting import flight_of
+from sim.record import record
+from sim.scenario import read_scenario
+
+H, SMALL, DURATION = 0.005, 2e-5, 0.8
+
+
+def in_small_steps(t_u, u, held, late, rate, lag, play, dead):
+    """Mean deflection over each step of ``H``: servo, linkage and band as they are defined."""
+    t = (np.arange(round(DURATION / SMALL)) + 0.5) * SMALL - late
+    before = np.clip(np.searchsorted(t_u, t, side="right") - 1, 0, None)
+    command = u[before] if held else np.interp(t, t_u, u)
+    command = np.sign(command) * np.maximum(np.abs(command) - dead, 0.0)
+    servo = link = command[0]
+    flown = np.empty(len(t))
+    for i, want in enumerate(command):
+        wanted = (want - servo) * SMALL / lag if lag > 0.0 else want - servo
+        servo += min(max(wanted, -rate * SMALL), rate * SMALL)
+        link = min(max(link, servo - play), servo + play)
+        flown[i] = link
+    return flown.reshape(-1, round(H / SMALL)).mean(axis=1)
+
+
+@pytest.mark.parametrize("held", [True, False])
+@pytest.mark.parametrize(
+    ("rate", "lag", "play", "dead"),
+    [
+        (1.1, 0.0, 0.0, 0.0), (0.5, 0.03, 0.0, 0.0), (np.inf, 0.0, 0.012, 0.0), (np.inf, 0.03, 0.012, 0.0),
+        (2.0, 0.02, 0.008, 0.0), (np.inf, 0.0, 0.0, 0.015), (2.0, 0.0, 0.01, 0.0),
+    ],
+)  # fmt: skip
+def test_a_servo_with_limits_does_what_it_does_in_small_steps(held, rate, lag, play, dead):
+    rng = np.random.default_rng(8)
+    t_u = np.arange(0.0, DURATION, 0.02)
+    u = np.zeros(len(t_u))
+    for step in rng.uniform(0.1, 0.6, 4):
+        u[t_u > step] += rng.uniform(-0.1, 0.1)
+    late = float(rng.uniform(0.0, 0.03))
+    p = np.zeros(len(ENTRIES))
+    names = ("delay_s", "lag_s", "slowness_s_rad", "half_play_rad", "half_deadband_rad")
+    p[[INDEX[name] for name in names]] = late, lag, 1.0 / rate, play, dead
+    found = surface(H, round(DURATION / H), t_u, u, held, 0.0, p)
+    expected = in_small_steps(t_u, u, held, late, rate, lag, play, dead)
+    assert np.sum(found - expected) * H == pytest.approx(0.0, abs=2e-5)
+    assert found == pytest.approx(expected, abs=2e-3)
+
+
+def test_a_servo_at_its_limit_is_no_later_for_steps_that_lie_anywhere_between_two_stamps(tmp_path):
+    limited = (
+        "aircraft: uav\nseed: 2\nloop_hz: 250\nunit_s: 0.36\n"
+        "noise: {alpha_deg: 0.03, pitch_rate_deg_s: 0.1, pitch_deg: 0.03, accelerometer_m_s2: 0.03}\n"
+        'maneuvers: ["3211", "rev", doublet, "rev", "3211"]\n'
+        "effects: {actuator_rate_limit: {rate_rad_s: 1.2}}\n"
+    )
+    (tmp_path / "uav.yaml").write_text(limited)
+    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
+    found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft()), Aircraft())
+    (cause,) = [c for c in found.causes if c.present]
+    assert cause.effect == "actuator_rate_limit"
+    assert cause.parameters["rate_rad_s"].value == pytest.approx(1.2, rel=0.03)
