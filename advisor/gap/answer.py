@@ -53,7 +53,7 @@ def answer(
     if holdout is not None and e.air is None:
         last = hold_out(problem, stages[-1].fitted, folds)
         before = e.file_model if e.file_model is not None else hold_out(problem, stages[0].fitted, folds)
-    before, last = over_maneuvers(before, kept), over_maneuvers(last, kept)
+    before, last = (over_maneuvers(problem, held, kept) for held in (before, last))
     gap = gap_numbers(e, before, last, judged.bias)
     where = _where(e, verdict, causes)
     shrink = shrink_of(e, kept, gap, before, last) if verdict in ("effect", "parameters") else None

@@ -54,9 +54,12 @@ def kept_out(e: Evidence, holdout: int | None) -> tuple[list[int], list[list[int
     return kept, [kept, *[[i for i in fold if i not in kept] for fold in folds_of(n)]]
 
 
-def over_maneuvers(held: HeldOut, kept: Sequence[int]) -> HeldOut:
-    """The mean squares over some manoeuvres only."""
-    return replace(held, mean_square=np.mean(held.by_maneuver[list(kept)], axis=0))
+def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> HeldOut:
+    """The mean squares over some manoeuvres only; as in a fit, every sample counts alike."""
+    flights = [problem.flights.flights[i] for i in kept]
+    samples = np.array([[len(f.outputs[c].t) for c in problem.channels] for f in flights], float)
+    sums = np.sum(samples * held.by_maneuver[list(kept)], axis=0)
+    return replace(held, mean_square=sums / np.sum(samples, axis=0))
 
 
 def without_air(held: HeldOut, air: Air) -> HeldOut:

@@ -1,6 +1,7 @@
 """The diagnosis names effects of an aircraft that neither it nor the simulator has coded."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -140,6 +141,17 @@ def test_the_document_is_json_without_nan_and_has_every_key_of_the_contract(dela
     assert set(document["gap"]["floor"]) == {"alpha", "q", "a_z", "theta"}
     assert sum(c["probability"] for c in document["causes"]) <= 1.0 + 1e-9
     assert document["shrink"]["before"] == pytest.approx(document["gap"]["before"])
+
+
+def test_the_waterfall_ends_at_the_gap_that_stays_whatever_the_manoeuvres_lengths():
+    flown = fly(Setup(maneuvers=6, switches={"vane_lag": 0.06, "cl_a2": 12.0}, seed=4))
+    for k in (1, 4):
+        end = flown[k].span.end_s - 3.0
+        channels = {n: replace(c, t=c.t[c.t < end], y=c.y[c.t < end]) for n, c in flown[k].channels.items()}
+        flown[k] = replace(flown[k], span=replace(flown[k].span, end_s=end), channels=channels)
+    found = diagnose(flown, Aircraft())
+    assert len(found.waterfall) > 1
+    assert found.waterfall[-1][1] == pytest.approx(found.gap.after, rel=1e-9, abs=1e-12)
 
 
 def test_the_improved_simulator_is_a_file_with_the_effect_in_it(delayed, tmp_path):
