@@ -225,9 +225,9 @@ def simulate(
                 alpha, q, theta, d = x[ALPHA, m], x[Q, m], x[THETA, m], x[DEFLECTION, m]
                 air = x[DOSE, m] * d_air
                 vane = alpha + air - x[VANE_ARM, m] * q / x[AIRSPEED, m]
-                if i > 0:
-                    x[VANE_OUT, m] = (x[VANE_DECAY, m] * (x[VANE_OUT, m] - x[VANE_BEFORE, m]) + vane
-                                      - x[VANE_RAMP, m] * (vane - x[VANE_BEFORE, m]))  # fmt: skip
+                # The air may move from the first step on, though all was steady before.
+                x[VANE_OUT, m] = (x[VANE_DECAY, m] * (x[VANE_OUT, m] - x[VANE_BEFORE, m]) + vane
+                                  - x[VANE_RAMP, m] * (vane - x[VANE_BEFORE, m]))  # fmt: skip
                 x[VANE_BEFORE, m] = vane
                 turned = x[VANE_OUT, m] - alpha_trim
                 bent = (x[ALPHA_READ2, m] + x[ALPHA_READ3, m] * turned) * turned
