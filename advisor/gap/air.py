@@ -83,14 +83,13 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
         return None
     model = with_floor(problem, found.air)
     instruments = np.hypot(model.white, model.coloured)[[CHANNELS.index(c) for c in problem.channels]]
-    block = "air unseen" if derived else "air"
-    courses, lefts = disturbance_course(problem, fitted, instruments, block, found.gust_angle)
+    courses, lefts = disturbance_course(problem, fitted, instruments, "air", found.gust_angle)
     joined = np.concatenate(courses)
     typical = float(np.median(np.abs(joined - np.median(joined)))) / 0.6745
     # Gaussian air of this many samples reaches four times its spread, a lone gust far more.
     gust = float(np.max(np.abs(joined))) > 6.0 * typical
     if gust:
-        courses, lefts = disturbance_course(problem, fitted, instruments, block, ANY_GUST)
+        courses, lefts = disturbance_course(problem, fitted, instruments, "air", ANY_GUST)
     peaks = [float(np.max(np.abs(a))) for a in courses]
     number = int(np.argmax(peaks))
     at = int(np.argmax(np.abs(courses[number])))

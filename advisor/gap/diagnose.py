@@ -30,7 +30,7 @@ from advisor.gap.misread import misread
 from advisor.gap.noise import quiet_rms
 from advisor.gap.notes import left_out
 from advisor.gap.problem import Problem
-from advisor.gap.remainder import remainder
+from advisor.gap.remainder import is_of_no_use, remainder
 from advisor.gap.result import Diagnosis
 from advisor.gap.speed import at_constant_speed
 from advisor.gap.stamps import stamp_power
@@ -159,8 +159,12 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     # Stamps that jitter are the instruments', too, but show only where something moves.
     measured = quiet_rms(problem, last) ** 2 + stamp_power(problem, last)
     floor = np.sqrt(np.minimum(measured, stages[-1].held_out.mean_square))
+    file_model = _file_model(problem, stages[0].fitted, aircraft)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, np.maximum(floor, stated))
+        if leftover is None and is_of_no_use(stages, file_model, np.maximum(floor, stated)):
+            stages = reduced_to(problem, stages, [])
+            last = stages[-1].fitted
     if leftover is not None and leftover.in_quiet is not None:
         floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, white**2))
     return Evidence(
@@ -169,7 +173,7 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
         leftover,
         air,
         np.maximum(floor, stated),
-        _file_model(problem, stages[0].fitted, aircraft),
+        file_model,
         at_constant_speed(problem, last),
         stated,
     )

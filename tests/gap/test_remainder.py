@@ -10,7 +10,7 @@ from advisor.gap.data import prepare
 from advisor.gap.fit import fit
 from advisor.gap.holdout import hold_out
 from advisor.gap.noise import quiet_rms
-from advisor.gap.remainder import remainder
+from advisor.gap.remainder import is_of_no_use, remainder
 from advisor.gap.waterfall import Stage
 from tests.gap.generator import Setup, fly
 
@@ -22,14 +22,19 @@ def gyro():
     return fit_baseline(prepare(flown, Aircraft()), Aircraft())
 
 
-def left_beside(gyro, effect):
-    """What is left beside an effect that was put into the model."""
+def named_beside(gyro, effect):
+    """The stages without an effect and with it, and the floor of each channel."""
     problem, plain = gyro
     variant = next(v for v in variants_for(problem.flights) if v.effect == effect)
     named = fit(problem, plain.point.with_effect(variant, variant.starts[0]), plain.noise, 25)
     stages = [Stage(fitted, hold_out(problem, fitted), (), None) for fitted in (plain, named)]
     floor = np.minimum(quiet_rms(problem, named), np.sqrt(stages[-1].held_out.mean_square))
-    return remainder(problem, stages, floor)
+    return stages, floor
+
+
+def left_beside(gyro, effect):
+    """What is left beside an effect that was put into the model."""
+    return remainder(gyro[0], *named_beside(gyro, effect))
 
 
 def test_an_effect_that_leaves_most_of_the_gap_is_not_the_cause_but_something_unknown(gyro):
@@ -46,3 +51,13 @@ def test_where_nothing_was_named_there_is_nothing_to_doubt(gyro):
     problem, plain = gyro
     stage = Stage(plain, hold_out(problem, plain), (), None)
     assert remainder(problem, [stage], np.sqrt(stage.held_out.mean_square) / 10.0) is None
+
+
+def test_a_name_must_take_some_of_the_gap_away_that_the_aircraft_file_leaves(gyro):
+    stages, floor = named_beside(gyro, "pitch_rate_scale")
+    without, beside = (stage.held_out for stage in stages)
+    assert not is_of_no_use(stages, None, floor)
+    assert not is_of_no_use(stages, without, floor)
+    assert is_of_no_use(stages, beside, floor)
+    assert is_of_no_use([stages[0], stages[0]], None, floor)
+    assert not is_of_no_use(stages[:1], beside, floor)
