@@ -83,9 +83,9 @@ def diagnose(
     evidence = _explain(problem, baseline, aircraft, progress)
     shear = wind_shear(flown)
     if shear is not None and not _of_the_attitude(evidence.leftover):
-        # Air that moves swings the air speed, too: beside it the wind is worth a note, no more.
-        still = evidence.air is None
-        leftover = of_the_wind(evidence.leftover) if still else evidence.leftover
+        # Air that moves swings the air speed, too: beside it what is not plain is worth a note, no more.
+        is_there = evidence.air is None or shear.is_plain
+        leftover = of_the_wind(evidence.leftover) if is_there else evidence.leftover
         evidence = replace(evidence, shear=shear, leftover=leftover)
     progress("measuring the gap", 0.9)
     diagnosis = answer(evidence, aircraft, kinematics, holdout)

@@ -16,12 +16,20 @@ DOUBT = 2.5
 """How many times a floor that is stated, not measured, must be exceeded to count."""
 _SMOOTH = 1e-3
 """Share of its peak below which a channel has less white noise than any instrument."""
+_RAW = 1e-2
+"""Share from which on a channel has its instrument's noise, though the angle of attack was filtered."""
 
 
 def prefiltered(flights: Flights) -> dict[str, bool]:
     """Channels of a record that was filtered, or that are smoother than white noise can be."""
-    smooth = flights.alpha_is_smoothed | (flights.white < _SMOOTH * flights.peaks)
+    smooth = flights.white < (_RAW if flights.alpha_is_smoothed else _SMOOTH) * flights.peaks
+    smooth |= flights.alpha_is_smoothed & (np.array(flights.channels) == "alpha")
     return dict(zip(flights.channels, smooth.tolist(), strict=True))
+
+
+def doubts(flights: Flights) -> FloatArray:
+    """Shape (channels,): how many times its floor a channel must show."""
+    return np.where(list(prefiltered(flights).values()), DOUBT, 1.0)
 
 
 def stated_floor(flights: Flights) -> FloatArray:

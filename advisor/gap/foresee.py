@@ -11,6 +11,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted
+from advisor.gap.floor import doubts
 from advisor.gap.layout import INDEX
 from advisor.gap.marks import Marks
 from advisor.gap.needs import NEEDS, OTHERWISE, hidden_from, need_of
@@ -174,7 +175,8 @@ def _needed(marks: Marks, numbers: int) -> float:
     """Power a mark must have: found in nearly every flight, worth its numbers, enough of a change."""
     price = numbers * float(np.log(marks.rows))
     # A filter of moving air leaves of a change far less than the outputs show of it.
-    change = 0.0 if marks.filtered else least_change(marks.problem) * marks.rows
+    doubted = least_change(marks.problem) * float(np.mean(doubts(marks.problem.flights) ** 2))
+    change = 0.0 if marks.filtered else doubted * marks.rows
     return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
 
 

@@ -27,6 +27,8 @@ _LEAST_GAIN = 100.0
 """Log likelihood a disturbance must bring ..."""
 _LEAST_SHARE = 0.2
 """... and share of what is left that it must take up: less is the roughness of any model."""
+_MOVING_SHARE = 0.1
+"""The same where the air moves: its filter is known to low order only, and leaves a few per cent."""
 _FAINT_SHARE = 0.05
 """The least share in still air, for a disturbance that is large beside what the named effects took up ..."""
 _FAINT_OF_GAP = 0.25
@@ -43,8 +45,8 @@ _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
 _VISIBLE = 0.05
 """Power of a swing, beside the instruments' noise, from which on there is something to explain."""
-_BETTER_THAN_AIR = 1.25
-"""What another block must take up of a residual, beside what the air does; in moving air at most 1.15."""
+_BETTER_THAN_AIR = 1.1
+"""What another block must take up of a residual, beside what the air does that moves."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,7 @@ def left_over(
     loud = telling & (rms_of(problem, last.left) > DOUBT * stated)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     faint = best.explained < _LEAST_SHARE
-    least_share = _LEAST_SHARE if moving_air else _FAINT_SHARE
+    least_share = _MOVING_SHARE if moving_air else _FAINT_SHARE
     disturbed = best.gain >= _LEAST_GAIN and best.explained >= least_share and bool(np.any(loud))
     # What a low-pass leaves of noise is like no noise with a memory: there only the stick can tell.
     disturbed = disturbed and not problem.flights.alpha_is_smoothed

@@ -7,7 +7,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.belief import odds_of_arm
 from advisor.gap.fit import Fitted, rms_of
-from advisor.gap.floor import DOUBT, prefiltered
+from advisor.gap.floor import doubts
 from advisor.gap.holdout import HeldOut, hold_out, lone_witness, mean_squares
 from advisor.gap.problem import Problem, counts
 from advisor.gap.uncertainty import belief_in, shared_std
@@ -218,10 +218,9 @@ def least_change(problem: Problem) -> float:
     Where instruments are very good, what matters is no longer their noise: a description to low order is
     itself no better than a share of each channel's peak.
     """
-    least = LEAST_GAP * (DOUBT**2 if any(prefiltered(problem.flights).values()) else 1.0)
     if problem.instruments is None:
-        return least
-    return max(least, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
+        return LEAST_GAP
+    return max(LEAST_GAP, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
 
 
 def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
@@ -235,11 +234,11 @@ def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
 def difference(
     problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted, only: int | None = None
 ) -> float:
-    """Mean over channels of the squared change of the prediction, beside the instruments' noise.
+    """Mean over channels of the squared change of the prediction, beside the noise that may be doubted.
 
     ``only``: in this manoeuvre, where no other tells of it.
     """
     changed = mean_squares(problem, [a - b for a, b in zip(before.left, after.left, strict=True)])
-    noise = 1.0 if problem.instruments is None else problem.instruments
+    noise = 1.0 if problem.instruments is None else problem.instruments * doubts(problem.flights)
     power = np.mean(changed, axis=0) if only is None else changed[only]
     return float(np.mean(power / noise**2))

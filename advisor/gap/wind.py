@@ -21,10 +21,14 @@ _LEAST_PER_S = 0.1
 """Change of the wind, m/s per metre, from which on it is felt: a knot in five metres."""
 _LEAST_MANEUVERS = 4
 _CHANCE = 1e-3
-"""Of a gradient that large by the scatter between so many manoeuvres (Student's t)."""
+"""Of a gradient that large by the scatter between so many manoeuvres (Student's t) ..."""
+_PLAIN_CHANCE = 5e-3
+"""... and the same where heights explain a plain share."""
 _LEAST_SHARE = 0.17
 """Of what the air speed has beyond the accelerations. In air that moves, and where thrust comes late, heights
-explain up to a seventh of it by chance; a wind that changes with height, a fifth and more."""
+explain up to a seventh of it by chance; a wind that changes with height, a fifth and more ..."""
+_PLAIN_SHARE = 0.25
+"""... and in air that moves of itself, from this share on it is plain all the same."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +39,13 @@ class Shear:
     """Change of the air speed per metre climbed, 1/s."""
     std: float
     """From leaving out one manoeuvre after the other."""
+    share: float
+    """Of what the air speed has beyond the accelerations, that heights explain."""
+
+    @property
+    def is_plain(self) -> bool:
+        """Beyond what moving air feigns."""
+        return self.share >= _PLAIN_SHARE
 
 
 def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
@@ -50,9 +61,11 @@ def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     std = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
     power = sum(float(speed @ speed) for _, speed in pairs)
     share = gradient * float(np.sum(products)) / max(power, 1e-300)
-    if abs(gradient) < max(_LEAST_PER_S, float(student.isf(_CHANCE, n - 1)) * std) or share < _LEAST_SHARE:
+    found = Shear(gradient, std, share)
+    sigmas = float(student.isf(_PLAIN_CHANCE if found.is_plain else _CHANCE, n - 1))
+    if abs(gradient) < max(_LEAST_PER_S, sigmas * std) or share < _LEAST_SHARE:
         return None
-    return Shear(gradient, std)
+    return found
 
 
 def _apart(maneuver: Maneuver) -> tuple[FloatArray, FloatArray] | None:
