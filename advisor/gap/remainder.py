@@ -36,9 +36,10 @@ def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> L
 def is_of_no_use(stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray) -> bool:
     """Whether the named effects leave the gap as it was: likelier for the noise's filter, and no cause.
 
-    ``file_model`` is what the aircraft file's own derivatives leave, if it has them.
+    ``file_model`` is what the aircraft file's own derivatives leave, if it has them. Fitted ones may take up
+    what an effect does; that it does without them is of use, too.
     """
-    before = min(_gap(held, floor) for held in (stages[0].held_out, file_model) if held is not None)
+    before = _gap(stages[0].held_out if file_model is None else file_model, floor)
     return len(stages) > 1 and _gap(stages[-1].held_out, floor) > (1.0 - _USE) * before
 
 
