@@ -30,7 +30,7 @@ _LONE = 8.0
 """Power of a quiet stretch, over that of its likes, from which on a gust may have hit it ..."""
 _HIT = 3.0
 """... and that of a manoeuvre, over the quietest quarter's."""
-_MARGIN = 1.1
+_MARGIN = 1.03
 """By which the air must explain it better than any other place."""
 ANY_GUST = 0.2
 """Gust angle of air of which nothing is assumed, rad: a bump is nothing like the noise of a filter."""
