@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import nbinom
+from scipy.special import nbdtr
 
 from advisor.aircraft import CampaignPlan
 from advisor.decision.history import Flown
@@ -87,4 +87,7 @@ def usable_share(history: Sequence[Flown]) -> float:
 
 def _flights_for(good: int, share: float, confidence: float) -> int:
     """Flights within which ``good`` usable ones come about with this confidence (negative binomial)."""
-    return good + int(nbinom.ppf(confidence, good, share)) if good else 0
+    spoilt = 0
+    while good and nbdtr(spoilt, good, share) < confidence:
+        spoilt += 1
+    return good + spoilt

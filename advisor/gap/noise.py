@@ -27,11 +27,11 @@ _LEAST_SAMPLES = 50
 _LEAST_QUIET_S = 4.0
 """Over all manoeuvres; less tells nothing of slow air."""
 _LONE = 8.0
-"""Power of a quiet stretch, over that of its likes, from which on a gust may have hit it ..."""
-_HIT = 3.0
-"""... and that of a manoeuvre, over the quietest quarter's."""
+"""Power of a stretch, over that of its likes, from which on a gust may have hit it ..."""
 _MARGIN = 1.03
-"""By which the air must explain it better than any other place."""
+"""... if the air explains it by this much better than any other place ..."""
+_FAINT, _FAINT_MARGIN = 3.0, 1.2
+"""... and the same of a manoeuvre that is less loud: a mass that changes looks like the air, too."""
 ANY_GUST = 0.2
 """Gust angle of air of which nothing is assumed, rad: a bump is nothing like the noise of a filter."""
 _NO_LESS = 0.98
@@ -98,16 +98,17 @@ def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool
     noise = np.array([float(np.hypot(still.white[c], still.coloured[c]))
                       for c in (CHANNELS.index(name) for name in problem.channels)])  # fmt: skip
     power = np.mean(mean_squares(problem, fitted.left) / noise**2, axis=1)
-    suspects = [int(i) for i in np.flatnonzero(power > _HIT * np.percentile(power, 25.0))]
-    gusty = [i for i in suspects if _is_of_the_air(problem, fitted, i, noise)]
-    hit = suspects if first_look and gusty else gusty
-    return {i: replace(still, gust=ANY_GUST) for i in hit}
+    louder = power / np.percentile(power, 25.0)
+    likelier = {int(i): _likelier(problem, fitted, int(i), noise) for i in np.flatnonzero(louder > _FAINT)}
+    gusty = {i for i, by in likelier.items() if by > (_MARGIN if louder[i] > _LONE else _FAINT_MARGIN)}
+    suspects = {i for i in likelier if louder[i] > _LONE} if first_look and gusty else set()
+    return {i: replace(still, gust=ANY_GUST) for i in sorted(gusty | suspects)}
 
 
-def _is_of_the_air(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> bool:
-    """Whether an unknown motion of the air explains a manoeuvre's residual better than any other unknown."""
+def _likelier(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> float:
+    """How much better the air explains a manoeuvre's residual than any other place; 0 where it does not."""
     best, second, *_ = probe_blocks(*only(problem, fitted, i), noise)
-    return best.block == "air" and best.gain > _MARGIN * second.gain
+    return best.gain / max(second.gain, 1e-9) if best.block == "air" else 0.0
 
 
 def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
@@ -62,7 +62,7 @@ def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     power = sum(float(speed @ speed) for _, speed in pairs)
     share = gradient * float(np.sum(products)) / max(power, 1e-300)
     found = Shear(gradient, std, share)
-    sigmas = float(student.isf(_PLAIN_CHANCE if found.is_plain else _CHANCE, n - 1))
+    sigmas = float(stdtrit(n - 1, 1.0 - (_PLAIN_CHANCE if found.is_plain else _CHANCE)))
     if abs(gradient) < max(_LEAST_PER_S, sigmas * std) or share < _LEAST_SHARE:
         return None
     return found

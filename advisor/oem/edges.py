@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
@@ -104,7 +104,7 @@ def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
         if rows is None:
             return plain
         edges = _moved(edges, rows[:, len(PARAMETERS) + own.shape[1] :].T @ residual, records)
-    if gain < chi2.isf(CHANCE, count) and upright < GAIN_UPRIGHT:
+    if gain < chdtri(count, CHANCE) and upright < GAIN_UPRIGHT:
         return plain
     final = evaluate(problem, assembly, optimum, columns, kept=own.shape[1])
     return final if isinstance(final, Solution) else plain

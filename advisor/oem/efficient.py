@@ -17,7 +17,7 @@ the step is taken only where it gains something and the record is nothing but mo
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
@@ -112,7 +112,7 @@ def _chance(change: FloatArray, covariance: FloatArray, unit: FloatArray) -> flo
     """Chance that a change of this covariance is as long as this one, both in units of ``unit`` (8,)."""
     values, vectors = np.linalg.eigh(covariance / np.outer(unit, unit))
     along = vectors.T @ (change / unit)
-    return float(chi2.sf(np.sum(along**2 / np.maximum(values, LEAST_SHARE)), len(change)))
+    return float(chdtrc(len(change), np.sum(along**2 / np.maximum(values, LEAST_SHARE))))
 
 
 def _remembering(solution: Solution, weighing: Weighing) -> list[float]:
@@ -131,5 +131,5 @@ def _remembering(solution: Solution, weighing: Weighing) -> list[float]:
         products = [sum(float(e[lag:] @ e[:-lag]) for e in stretches) for lag in lags]
         correlation = np.array(products) / sum(float(e @ e) for e in stretches)
         statistic = samples * (samples + 2) * float(np.sum(correlation**2 / (samples - lags)))
-        chances.append(float(chi2.sf(statistic, LAGS)))
+        chances.append(float(chdtrc(LAGS, statistic)))
     return chances
