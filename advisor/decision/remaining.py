@@ -88,6 +88,7 @@ def usable_share(history: Sequence[Flown]) -> float:
 def _flights_for(good: int, share: float, confidence: float) -> int:
     """Flights within which ``good`` usable ones come about with this confidence (negative binomial)."""
     spoilt = 0
-    while good and nbdtr(spoilt, good, share) < confidence:
+    # To rounding: half of all chances may be reached exactly.
+    while good and nbdtr(spoilt, good, share) < confidence - 1e-12:
         spoilt += 1
     return good + spoilt
