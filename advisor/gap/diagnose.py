@@ -162,7 +162,7 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     file_model = _file_model(problem, stages[0].fitted, aircraft)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, np.maximum(floor, stated))
-        if leftover is None and is_of_no_use(stages, file_model, np.maximum(floor, stated)):
+        if leftover is None and is_of_no_use(problem, stages, file_model, np.maximum(floor, stated)):
             stages = reduced_to(problem, stages, [])
             last = stages[-1].fitted
     if leftover is not None and leftover.in_quiet is not None:

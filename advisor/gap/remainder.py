@@ -27,21 +27,25 @@ def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> L
 
     ``floor`` is the noise of each channel, shape (channels,).
     """
-    before, after = (_gap(stage.held_out, floor) for stage in (stages[0], stages[-1]))
+    before, after = (float(np.mean(gap_of(s.held_out.mean_square, floor))) for s in (stages[0], stages[-1]))
     if len(stages) < 2 or after < max(_SEEN, _MOST * before):
         return None
     return placed(problem, stages[0].fitted)
 
 
-def is_of_no_use(stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray) -> bool:
+def is_of_no_use(
+    problem: Problem, stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray
+) -> bool:
     """Whether the named effects leave the gap as it was: likelier for the noise's filter, and no cause.
 
     ``file_model`` is what the aircraft file's own derivatives leave, if it has them. Fitted ones may take up
-    what an effect does; that it does without them is of use, too.
+    what an effect does; that it does without them is of use, too. An autopilot's estimate of α is off by what
+    its filter makes of the motion, and tells nothing.
     """
-    before = _gap(stages[0].held_out if file_model is None else file_model, floor)
-    return len(stages) > 1 and _gap(stages[-1].held_out, floor) > (1.0 - _USE) * before
-
-
-def _gap(held: HeldOut, floor: FloatArray) -> float:
-    return float(np.mean(gap_of(held.mean_square, floor)))
+    telling = [c for c, name in enumerate(problem.channels)
+               if name != "alpha" or not problem.flights.alpha_is_derived]  # fmt: skip
+    before = stages[0].held_out if file_model is None else file_model
+    was, now = (
+        float(np.mean(gap_of(held.mean_square, floor)[telling])) for held in (before, stages[-1].held_out)
+    )
+    return len(stages) > 1 and now > (1.0 - _USE) * was

@@ -54,10 +54,11 @@ def test_where_nothing_was_named_there_is_nothing_to_doubt(gyro):
 
 
 def test_a_name_must_take_some_of_the_gap_away_that_the_aircraft_file_leaves(gyro):
+    problem, _ = gyro
     stages, floor = named_beside(gyro, "pitch_rate_scale")
     without, beside = (stage.held_out for stage in stages)
-    assert not is_of_no_use(stages, None, floor)
-    assert not is_of_no_use(stages, without, floor)
-    assert is_of_no_use(stages, beside, floor)
-    assert is_of_no_use([stages[0], stages[0]], None, floor)
-    assert not is_of_no_use(stages[:1], beside, floor)
+    assert not is_of_no_use(problem, stages, None, floor)
+    assert not is_of_no_use(problem, stages, without, floor)
+    assert is_of_no_use(problem, stages, beside, floor)
+    assert is_of_no_use(problem, [stages[0], stages[0]], None, floor)
+    assert not is_of_no_use(problem, stages[:1], beside, floor)
