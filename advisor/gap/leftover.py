@@ -169,6 +169,12 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
     taken = float(np.sum((rms_of(problem, first.left) / noise) ** 2 - powers))
     if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
         return None
+    if best.block in SENSOR_CHANNELS and problem.flights.alpha_is_smoothed:
+        # What a low-pass leaves of an instrument's noise is no disturbance of it: there the stick must tell.
+        c = problem.channels.index(SENSOR_CHANNELS[best.block])
+        active, quiet = unrest(problem, last.left)
+        if active[c] < _RESTLESS * quiet[c]:
+            return None
     if best.block in ("input", "moment_equation"):
         courses, _ = disturbance_course(problem, last, noise, best.block, best.size)
         if is_of_the_air(problem.flights.flights, courses):
