@@ -156,7 +156,15 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
         full = without[weakest]
     if names == [s.added.effect for s in stages if s.added is not None]:
         return stages
+    if len(names) == 1 and not _stands_alone(problem, stages[0], full, names[0]):
+        return [replace(stages[0], added=None)]
     return _rebuilt(problem, stages[0], names, full, considered, stages[-1].considered)
+
+
+def _stands_alone(problem: Problem, first: Stage, full: Fitted, name: str) -> bool:
+    """Whether the last effect left is worth its name: it may have only led on to one that was dropped."""
+    independent = worth(problem, full.innovations)
+    return addition(problem, first.fitted, first.held_out, full, name, independent).worth_naming
 
 
 def _may_be_known(problem: Problem, effect: str) -> bool:

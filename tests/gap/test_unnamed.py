@@ -231,6 +231,21 @@ def test_a_record_filtered_on_the_ground_is_told_from_noise_and_from_moving_air(
     assert not is_smoothed([air])
 
 
+def test_a_record_that_was_filtered_beside_moving_air_names_the_air_alone():
+    rng, sections = np.random.default_rng(61), butter(4, 3.0, fs=50.0, output="sos")
+    flown = []
+    for maneuver in fly(Setup(maneuvers=6, gust_std=0.15, coloured=0.5, seed=61)):
+        alpha = maneuver.channels["alpha"]
+        slow = lfilter([0.0022], [1.0, -0.93], rng.standard_normal(len(alpha.y)))
+        channels = {**maneuver.channels, "alpha": replace(alpha, y=alpha.y + slow)}
+        for name in ("alpha", "q", "a_z", "theta"):
+            channels[name] = replace(channels[name], y=sosfiltfilt(sections, channels[name].y))
+        flown.append(replace(maneuver, channels=channels))
+    found = diagnose(flown, Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["turbulence"]
+    assert found.verdict == "effect"
+
+
 def flown_with(channel, change, **setup):
     """Manoeuvres of which one channel is changed: a function of manoeuvre number, stamps and values."""
     flown = fly(Setup(maneuvers=6, **setup))
