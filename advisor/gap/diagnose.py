@@ -36,7 +36,7 @@ from advisor.gap.speed import at_constant_speed
 from advisor.gap.stamps import stamp_power
 from advisor.gap.uncertainty import worth
 from advisor.gap.variant import Variant
-from advisor.gap.waterfall import Progress, Stage, build_up, reduced_to
+from advisor.gap.waterfall import Progress, Stage, as_measured, build_up, reduced_to
 from advisor.gap.wind import wind_shear
 from advisor.problems import UnusableInputError
 
@@ -156,6 +156,7 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
         leftover = other_than_air(problem, stages[0].fitted, last)
     # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
     leftover = scale or swinging(problem, stages[0].fitted, last, stated) or leftover
+    stages = as_measured(problem, stages)
     # Stamps that jitter are the instruments', too, but show only where something moves.
     measured = quiet_rms(problem, last) ** 2 + stamp_power(problem, last)
     floor = np.sqrt(np.minimum(measured, stages[-1].held_out.mean_square))

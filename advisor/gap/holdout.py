@@ -5,7 +5,7 @@ About the optimum the fit is linear, so leaving a fold out moves the shared numb
 Folds are interleaved and rotated, because a gust or a change may fall into any one of them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,6 +79,15 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
             innovations[i] = fitted.linear[i].after(step, own)
             lefts[i] = fitted.linear[i].measured.after(step, own)
     return held_out(problem, lefts, innovations)
+
+
+def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, witnesses: Collection[int]) -> HeldOut:
+    """The same, but of some manoeuvres what the fit itself leaves: what they alone tell no other predicts."""
+    lefts = [
+        inside if i in witnesses else kept_out
+        for i, (inside, kept_out) in enumerate(zip(fitted.left, held.left, strict=True))
+    ]
+    return held_out(problem, lefts)
 
 
 def lone_witness(problem: Problem, fitted: Fitted, index: int) -> int | None:

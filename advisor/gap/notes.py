@@ -37,6 +37,13 @@ def notes_of(
         notes.append(f"The wind changed with height, by {per_metre} a metre.")
     if e.leftover is not None and e.leftover.note:
         notes.append(e.leftover.note)
+    for judged in (stage.added for stage in e.stages):
+        if judged is not None and judged.witness is not None:
+            number = flights.flights[judged.witness].number
+            notes.append(
+                f"Manoeuvre {number} alone tells of the {judged.effect.replace('_', ' ')}: "
+                "it is measured there, for no other could confirm it."
+            )
     if e.air is not None:
         notes.append(
             "What is shown as after has the likeliest course of the air in it: that belongs to the day, and "

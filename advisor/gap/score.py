@@ -75,8 +75,8 @@ class Judged:
     """What of ``gain`` is not the motion's: belief, the odds of an arm, less the price of its numbers."""
     value: FloatArray
     std: FloatArray
-    unconfirmed: bool = False
-    """A single manoeuvre tells of it: ``gain`` and ``removed`` are the fit's own."""
+    witness: int | None = None
+    """The manoeuvre that alone tells of it: ``gain`` and ``removed`` are the fit's own."""
     with_the_air: bool = False
     """The air moves, and with it the channel that tells of the effect."""
 
@@ -101,7 +101,7 @@ class Judged:
         """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
         if self.with_the_air:
             return _WITH_THE_AIR
-        if self.unconfirmed:
+        if self.witness is not None:
             return _UNCONFIRMED
         return 0.0 if self.variant.twin is not None and self.belief >= LEAST_BELIEF else LEAST_GAIN
 
@@ -155,9 +155,9 @@ def addition(
     held = hold_out(problem, fitted)
     # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
     witness = lone_witness(problem, fitted, at) if variant.needs else None
-    unconfirmed = witness is not None
-    seen_before, seen_after = (before, fitted) if unconfirmed else (held_before, held)
-    likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed)
+    alone = witness is not None
+    seen_before, seen_after = (before, fitted) if alone else (held_before, held)
+    likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed=alone)
     likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
@@ -170,7 +170,7 @@ def addition(
         removed=difference(problem, seen_before, seen_after, witness),
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant),
-        belief=belief, beforehand=beforehand, value=value, unconfirmed=unconfirmed,
+        belief=belief, beforehand=beforehand, value=value, witness=witness,
         with_the_air=bool(variant.needs) and problem.knows_the_noise,
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip

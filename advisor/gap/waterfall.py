@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.gap.fit import Fitted, fit
-from advisor.gap.holdout import HeldOut, hold_out
+from advisor.gap.holdout import HeldOut, hold_out, measured_in
 from advisor.gap.problem import Problem
 from advisor.gap.ranking import candidates_for, judge
 from advisor.gap.score import LEAST_BELIEF, LEAST_GAIN, Judged, addition
@@ -76,6 +76,20 @@ def _leading_on(
     first = considered[0]
     beside = judge(problem, first.fitted, first.held_out, candidates_for(problem, first.fitted, variants))
     return (first, beside) if any(j.worth_naming for j in beside) else (None, None)
+
+
+def as_measured(problem: Problem, stages: Sequence[Stage]) -> list[Stage]:
+    """The same for its numbers: what a single manoeuvre tells is measured in that manoeuvre."""
+    witnesses: set[int] = set()
+    measured = []
+    for stage in stages:
+        held = stage.held_out
+        if witnesses:
+            held = measured_in(problem, held, stage.fitted, witnesses)
+        measured.append(replace(stage, held_out=held))
+        if stage.added is not None and stage.added.witness is not None:
+            witnesses.add(stage.added.witness)
+    return measured
 
 
 def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:

@@ -51,6 +51,9 @@ def test_thrust_off_the_centre_of_gravity_is_named_even_if_the_throttle_moved_on
     found = diagnose(fly(setup), Aircraft())
     assert found.verdict == "effect"
     assert found.causes[0].effect == "thrust_moment"
+    # What one manoeuvre alone tells is measured in it: kept out, no other predicts it.
+    assert found.shrink.percent > 70.0
+    assert any("Manoeuvre 3 alone" in note for note in found.notes) == (moves_in == (2,))
 
 
 def test_an_engine_that_lags_its_throttle_is_part_of_the_thrusts_moment():
