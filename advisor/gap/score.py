@@ -18,7 +18,9 @@ LEAST_GAIN = 6.0
 _UNCONFIRMED = 20.0
 """The same of what a single manoeuvre tells, which no other can confirm."""
 _WITH_THE_AIR = 30.0
-"""The same in moving air of what air speed, throttle or height tell: they move with the air themselves."""
+"""The same in moving air of what air speed, throttle or height tell: they move with the air themselves ..."""
+_PLAINLY, _PLAIN_SIGMAS = 15.0, 5.0
+"""... unless nothing else was named, it changes ten times the least, and a number is as far from nothing."""
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
 LEAST_SIGMA = 3.0
@@ -79,6 +81,8 @@ class Judged:
     """The manoeuvre that alone tells of it: ``gain`` and ``removed`` are the fit's own."""
     with_the_air: bool = False
     """The air moves, and with it the channel that tells of the effect."""
+    alone: bool = True
+    """Nothing else was named before."""
 
     @property
     def effect(self) -> str:
@@ -93,16 +97,22 @@ class Judged:
         supported = self.belief >= (_SUPPORT if certain else LEAST_BELIEF)
         if self.gain < self.least_gain or not (supported or self.removed >= least):
             return False
-        size = float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
-        return size > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
+        return self.sigmas > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
+
+    @property
+    def sigmas(self) -> float:
+        """Standard deviations by which a number of it differs from nothing."""
+        return float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
 
     @property
     def least_gain(self) -> float:
         """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
+        confirmed = LEAST_GAIN if self.witness is None else _UNCONFIRMED
         if self.with_the_air:
-            return _WITH_THE_AIR
+            plain = self.alone and self.removed >= _PLAIN_CHANGE * self.least and self.sigmas > _PLAIN_SIGMAS
+            return max(confirmed, _PLAINLY) if plain else _WITH_THE_AIR
         if self.witness is not None:
-            return _UNCONFIRMED
+            return confirmed
         return 0.0 if self.variant.twin is not None and self.belief >= LEAST_BELIEF else LEAST_GAIN
 
     @property
@@ -155,9 +165,9 @@ def addition(
     held = hold_out(problem, fitted)
     # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
     witness = lone_witness(problem, fitted, at) if variant.needs else None
-    alone = witness is not None
-    seen_before, seen_after = (before, fitted) if alone else (held_before, held)
-    likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed=alone)
+    lone = witness is not None
+    seen_before, seen_after = (before, fitted) if lone else (held_before, held)
+    likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed=lone)
     likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
@@ -171,7 +181,7 @@ def addition(
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant),
         belief=belief, beforehand=beforehand, value=value, witness=witness,
-        with_the_air=bool(variant.needs) and problem.knows_the_noise,
+        with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=_is_alone(before),
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
 
@@ -196,11 +206,15 @@ def log_likelihood_gained(
 
 def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:
     """Of the least change: what is enough where an effect is certain."""
-    alone = all(effect.always for effect in before.point.effects)
-    if not alone or problem.knows_the_noise or variant.effect in _BY_NATURE:
+    if not _is_alone(before) or problem.knows_the_noise or variant.effect in _BY_NATURE:
         return 1.0
     times = 2.0 if variant.names[0] in TIMES or variant.fixed else 1.0
     return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0
+
+
+def _is_alone(before: Fitted) -> bool:
+    """Whether the model has nothing yet that is anyone's fault."""
+    return all(effect.always for effect in before.point.effects)
 
 
 def price_of_edges(problem: Problem, fitted: Fitted) -> float:

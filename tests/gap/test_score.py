@@ -39,6 +39,17 @@ def test_stamps_that_jitter_hide_a_time_unless_it_is_plain(late):
     assert not replace(hidden, gain=200.0, removed=20.0 * judged.least, value=np.array([0.006])).large_enough
 
 
+def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain_and_alone(late):
+    *_, judged = late
+    plain = replace(judged, with_the_air=True, gain=18.0, removed=20.0 * judged.least)
+    assert plain.worth_naming
+    assert replace(plain, alone=False, gain=35.0).worth_naming
+    assert not replace(plain, alone=False).worth_naming
+    assert not replace(plain, removed=2.0 * judged.least).worth_naming
+    assert not replace(plain, std=plain.value / 4.0).worth_naming
+    assert not replace(plain, witness=2).worth_naming
+
+
 def test_predictions_are_alike_where_they_differ_by_less_than_any_description_errs(late):
     problem, plain, judged = late
     assert not predict_alike(problem, plain, judged.held_out)
