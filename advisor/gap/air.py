@@ -45,9 +45,9 @@ class Air:
     gust: bool
     """One or few bumps in otherwise still air, not turbulence."""
     gust_number: int
-    """Manoeuvre with the largest gust."""
+    """Manoeuvre in which a gust shows most."""
     gust_angle: float
-    """Largest departure of the air's angle, rad."""
+    """Largest departure of the air's angle there, rad."""
     gust_at_s: float
     """Vehicle time of its peak."""
     left: FloatArray
@@ -90,13 +90,14 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     gust = float(np.max(np.abs(joined))) > 6.0 * typical
     if gust:
         courses, lefts = disturbance_course(problem, fitted, instruments, "air", ANY_GUST)
-    peaks = [float(np.max(np.abs(a))) for a in courses]
-    number = int(np.argmax(peaks))
+    floor = 1.0 if problem.instruments is None else problem.instruments
+    before = mean_squares(problem, fitted.left)
+    # Where no gust was, its course may wander far and change little: the loudest manoeuvre shows the gust.
+    number = int(np.argmax(np.mean((before - mean_squares(problem, lefts)) / floor**2, axis=1)))
     at = int(np.argmax(np.abs(courses[number])))
     flight = problem.flights.flights[number]
     left = _mean_square(problem, lefts)
-    taken = np.mean(mean_squares(problem, fitted.left), axis=0) - left
-    floor = 1.0 if problem.instruments is None else problem.instruments
+    taken = np.mean(before, axis=0) - left
     return Air(
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
