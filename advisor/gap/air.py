@@ -12,10 +12,10 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.fit import Fitted
 from advisor.gap.holdout import mean_squares
+from advisor.gap.merit import LEAST_BELIEF, Judged
 from advisor.gap.noise import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
 from advisor.gap.probes import KNOTS_S, disturbance_course
 from advisor.gap.problem import Problem
-from advisor.gap.score import LEAST_BELIEF, Judged
 from advisor.oem.innovations import CHANNELS
 from advisor.oem.turbulence import find_turbulence
 

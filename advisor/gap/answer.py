@@ -16,6 +16,7 @@ from advisor.gap.foresee import unseen_effects
 from advisor.gap.holdout import hold_out
 from advisor.gap.judgement import judgement
 from advisor.gap.measure import gap_of
+from advisor.gap.merit import LEAST_SIGMA
 from advisor.gap.notes import notes_of
 from advisor.gap.numbers import (
     fidelity_of,
@@ -29,7 +30,6 @@ from advisor.gap.numbers import (
     without_air,
 )
 from advisor.gap.result import Cause, Diagnosis, Verdict, Where
-from advisor.gap.score import LEAST_SIGMA
 from advisor.gap.text import sentence_of
 from advisor.gap.uncertainty import shared_std, worth
 

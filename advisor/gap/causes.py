@@ -9,9 +9,10 @@ from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.measure import gap_of
+from advisor.gap.merit import Judged
 from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.score import TIME_DOUBT_S, TIMES, Judged
+from advisor.gap.score import TIME_DOUBT_S, TIMES
 from advisor.gap.ties import tied_with
 from advisor.gap.waterfall import Stage
 

@@ -96,3 +96,11 @@ class Flights:
 
     def __len__(self) -> int:
         return len(self.flights)
+
+    @property
+    def telling(self) -> list[int]:
+        """Which of the channels tell a cause by themselves: those that an instrument measured.
+
+        An autopilot's estimate of α is off by what its filter makes of the motion.
+        """
+        return [c for c, name in enumerate(self.channels) if name != "alpha" or not self.alpha_is_derived]

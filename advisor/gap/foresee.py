@@ -14,10 +14,11 @@ from advisor.gap.fit import Fitted
 from advisor.gap.floor import doubts
 from advisor.gap.layout import INDEX
 from advisor.gap.marks import Marks
+from advisor.gap.merit import LEAST_GAIN
 from advisor.gap.needs import NEEDS, OTHERWISE, hidden_from, need_of
 from advisor.gap.problem import Problem
 from advisor.gap.result import Unseen
-from advisor.gap.score import LEAST_GAIN, least_change
+from advisor.gap.score import least_change
 from advisor.gap.speed import SPEED_CHANGE
 from advisor.gap.ties import breaking
 from advisor.gap.variant import Variant

@@ -41,6 +41,6 @@ def jumping_sensor(problem: Problem, last: Fitted, stated: FloatArray) -> str | 
     others = [share for name, share in jumps.items() if name != worst]
     if jumps[worst] < _JUMPS or max(others, default=0.0) > _SELDOM * jumps[worst]:
         return None
-    if worst == "alpha" and problem.flights.alpha_is_derived:
+    if problem.channels.index(worst) not in problem.flights.telling:
         return None
     return next(block for block, channel in SENSOR_CHANNELS.items() if channel == worst)

@@ -92,8 +92,7 @@ def left_over(
         return Leftover(jumping, 1.0, _ranking(probes, jumping))
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     active, quiet = unrest(problem, last.innovations)
-    # An autopilot's estimate of α is off by what its filter makes of the motion: no cause shows in it alone.
-    telling = np.array([c != "alpha" or not problem.flights.alpha_is_derived for c in problem.channels])
+    telling = np.isin(np.arange(len(problem.channels)), problem.flights.telling)
     beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - _instruments(problem) ** 2, 0.0))
     peaks = problem.flights.peaks
     telling &= beyond > max(_OF_PEAK, _of_the_command(problem, last)) * peaks

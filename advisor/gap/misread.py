@@ -11,8 +11,9 @@ from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut, hold_out
 from advisor.gap.leftover import Leftover
+from advisor.gap.merit import Judged
 from advisor.gap.problem import Problem
-from advisor.gap.score import Judged, addition, difference, log_likelihood_gained
+from advisor.gap.score import addition, difference, log_likelihood_gained
 from advisor.gap.screen import Screen, penalty
 from advisor.gap.uncertainty import belief_in, worth
 from advisor.gap.variant import Variant
@@ -63,8 +64,7 @@ side effects."""
 def misread(problem: Problem, stages: list[Stage]) -> Leftover | None:
     """The instrument whose reading explains more than everything that was named; None where none does."""
     plain, held = stages[0].fitted, stages[0].held_out
-    # What an autopilot makes of the angle of attack is no instrument: its errors have other shapes.
-    readings = [c for c in problem.channels if c != "alpha" or not problem.flights.alpha_is_derived]
+    readings = [problem.channels[c] for c in problem.flights.telling]
     tried = [variant for channel in readings for variant in _READINGS.get(channel, ())]
     found = Screen(problem, plain).quick_fits(tried)
     samples = float(np.sum(worth(problem, plain.innovations)))

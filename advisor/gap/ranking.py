@@ -7,8 +7,9 @@ from advisor.gap.belief import log_belief
 from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut
 from advisor.gap.layout import DERIVATIVES
+from advisor.gap.merit import LEAST_BELIEF, LEAST_GAIN, Judged, size_of
 from advisor.gap.problem import Point, Problem, counts
-from advisor.gap.score import LEAST_BELIEF, LEAST_GAIN, Judged, addition, predict_alike, size_of, smallest_of
+from advisor.gap.score import addition, predict_alike, smallest_of
 from advisor.gap.screen import Screen, Screened
 from advisor.gap.uncertainty import belief_in, covariance, worth
 from advisor.gap.variant import Variant

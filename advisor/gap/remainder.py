@@ -39,11 +39,9 @@ def is_of_no_use(
     """Whether the named effects leave the gap as it was: likelier for the noise's filter, and no cause.
 
     ``file_model`` is what the aircraft file's own derivatives leave, if it has them. Fitted ones may take up
-    what an effect does; that it does without them is of use, too. An autopilot's estimate of α is off by what
-    its filter makes of the motion, and tells nothing.
+    what an effect does; that it does without them is of use, too. Only what tells a cause by itself counts.
     """
-    telling = [c for c, name in enumerate(problem.channels)
-               if name != "alpha" or not problem.flights.alpha_is_derived]  # fmt: skip
+    telling = problem.flights.telling
     before = stages[0].held_out if file_model is None else file_model
     was, now = (
         float(np.mean(gap_of(held.mean_square, floor)[telling])) for held in (before, stages[-1].held_out)

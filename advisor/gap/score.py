@@ -1,7 +1,5 @@
 """What an effect adds to a model, judged on manoeuvres that the fit has not seen."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from advisor.flight.messages import FloatArray
@@ -9,23 +7,15 @@ from advisor.gap.belief import odds_of_arm
 from advisor.gap.fit import Fitted, rms_of
 from advisor.gap.floor import doubts
 from advisor.gap.holdout import HeldOut, hold_out, lone_witness, mean_squares
+from advisor.gap.merit import LEAST_BELIEF, Judged, size_of
 from advisor.gap.problem import Problem, counts
 from advisor.gap.uncertainty import belief_in, shared_std
 from advisor.gap.variant import Variant
 
-LEAST_GAIN = 6.0
-"""Log likelihood, on held-out manoeuvres and after the price of its numbers, that an effect must bring."""
-_UNCONFIRMED = 20.0
-"""The same of what a single manoeuvre tells, which no other can confirm."""
-_WITH_THE_AIR = 30.0
-"""The same in moving air of what air speed, throttle or height tell: they move with the air themselves ..."""
-_PLAINLY, _PLAIN_SIGMAS = 15.0, 5.0
-"""... unless nothing else was named, it changes ten times the least, and a number is as far from nothing."""
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
-LEAST_SIGMA = 3.0
-_CERTAIN, _FAINT = 30.0, 0.15
-"""Log likelihood from which on a share of it is enough, where the air is still and nothing else there ..."""
+_FAINT = 0.15
+"""Share of it that is enough of what is certain, where the air is still and nothing else there ..."""
 _BY_NATURE = frozenset(
     {
         "elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift", "unsteady_lift", "alpha_dot",
@@ -44,102 +34,8 @@ _ANY_TIME = 1.5
 """Physical minima that a step must reach which may have come between any two manoeuvres."""
 _JITTERS = 3.0
 """Standard deviations of the stamps by which a time must exceed its physical minimum, besides."""
-_PLAIN_GAIN, _PLAIN_CHANGE = 100.0, 10.0
-"""Log likelihood, and changes of the least size, from which on twice the physical minimum is enough."""
 _NOT_SEEN = 0.005
 """Difference of two predictions, mean square beside the instruments' noise, that no flight shows."""
-LEAST_BELIEF = 8.0
-"""Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
-_SUPPORT = 4.0
-"""The same of an effect that is certain anyway."""
-
-
-@dataclass(frozen=True)
-class Judged:
-    """One effect as an addition to a model."""
-
-    variant: Variant
-    fitted: Fitted
-    held_out: HeldOut
-    gain: float
-    """Held-out log likelihood gained, coloured residuals at their worth, minus k/2 ln N, plus belief."""
-    removed: float
-    """What it changes in the outputs of manoeuvres kept out, mean square beside the instruments' noise."""
-    least: float
-    """What ``removed`` must exceed ..."""
-    least_certain: float
-    """... and what it must exceed where ``gain`` leaves no doubt."""
-    smallest: float
-    """Size below which it is not worth a name."""
-    belief: float
-    """Log probability gained because the derivatives it leaves agree better with the file's."""
-    beforehand: float
-    """What of ``gain`` is not the motion's: belief, the odds of an arm, less the price of its numbers."""
-    value: FloatArray
-    std: FloatArray
-    witness: int | None = None
-    """The manoeuvre that alone tells of it: ``gain`` and ``removed`` are the fit's own."""
-    with_the_air: bool = False
-    """The air moves, and with it the channel that tells of the effect."""
-    alone: bool = True
-    """Nothing else was named before."""
-
-    @property
-    def effect(self) -> str:
-        """Name in the catalogue."""
-        return self.variant.effect
-
-    @property
-    def worth_naming(self) -> bool:
-        """Better on unseen manoeuvres, by more than noise, and not smaller than matters."""
-        certain = self.gain >= _CERTAIN
-        least = self.least_certain if certain else self.least
-        supported = self.belief >= (_SUPPORT if certain else LEAST_BELIEF)
-        if self.gain < self.least_gain or not (supported or self.removed >= least):
-            return False
-        return self.sigmas > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
-
-    @property
-    def sigmas(self) -> float:
-        """Standard deviations by which a number of it differs from nothing."""
-        return float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
-
-    @property
-    def least_gain(self) -> float:
-        """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
-        confirmed = LEAST_GAIN if self.witness is None else _UNCONFIRMED
-        if self.with_the_air:
-            plain = self.alone and self.removed >= _PLAIN_CHANGE * self.least and self.sigmas > _PLAIN_SIGMAS
-            return max(confirmed, _PLAINLY) if plain else _WITH_THE_AIR
-        if self.witness is not None:
-            return confirmed
-        return 0.0 if self.variant.twin is not None and self.belief >= LEAST_BELIEF else LEAST_GAIN
-
-    @property
-    def at_its_bounds(self) -> bool:
-        """The search ran out of its range: a shape that only resembles the effect.
-
-        A bound at zero is none: the effect does without that number, as an engine without a lag.
-        """
-        ends = np.array(self.variant.bounds[1:]).reshape(-1, 2)
-        near = np.abs(ends - self.value[1:, None]) < 1e-3 * np.ptp(ends, axis=1, keepdims=True)
-        near &= ends != 0.0
-        return bool(np.any(near)) and not self.variant.one_sided
-
-    @property
-    def large_enough(self) -> bool:
-        """At or above the physical minimum; stamps that jitter hide no time that is plain all the same."""
-        plain = self.gain >= _PLAIN_GAIN and self.removed >= _PLAIN_CHANGE * self.least
-        smallest = min(self.smallest, 2.0 * self.variant.smallest) if plain else self.smallest
-        return size_of(self.variant, self.value) >= smallest
-
-
-def size_of(variant: Variant, value: FloatArray) -> float:
-    """The number of an effect that its physical minimum is about."""
-    if variant.effect == "icing":
-        # The lift slope and the stability; the elevator's share of the lift is hardly ever known.
-        return float(np.max(np.abs(value[[0, 2]])))
-    return float(abs(value[0]))
 
 
 def smallest_of(problem: Problem, variant: Variant) -> float:

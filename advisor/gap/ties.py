@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from advisor.gap.score import Judged
+from advisor.gap.merit import Judged
 
 NEAR = 5.0
 """Difference of held-out log likelihood below which two explanations are a tie."""

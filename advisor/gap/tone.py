@@ -49,10 +49,8 @@ def tone_in(problem: Problem, fitted: Fitted, noise: FloatArray) -> Tone | None:
     noise
         Shape (channels,): of the innovations.
     """
-    # What an autopilot makes of the motion for its α has lines of its own.
-    derived = problem.flights.alpha_is_derived
-    telling = [c for c, name in enumerate(problem.channels) if name != "alpha" or not derived]
-    hz, stands_out = max((line_of(*_records(problem, fitted, c)) for c in telling), key=lambda line: line[1])
+    lines = (line_of(*_records(problem, fitted, c)) for c in problem.flights.telling)
+    hz, stands_out = max(lines, key=lambda line: line[1])
     if stands_out < _ABOVE:
         return None
     blocks = [b for b in DYNAMIC if b != "air" or "alpha" in problem.channels]

@@ -7,9 +7,10 @@ import numpy as np
 
 from advisor.gap.fit import Fitted, fit
 from advisor.gap.holdout import HeldOut, hold_out, measured_in
+from advisor.gap.merit import LEAST_BELIEF, LEAST_GAIN, Judged
 from advisor.gap.problem import Problem
 from advisor.gap.ranking import candidates_for, judge
-from advisor.gap.score import LEAST_BELIEF, LEAST_GAIN, Judged, addition
+from advisor.gap.score import addition
 from advisor.gap.uncertainty import shared_std, worth
 from advisor.gap.variant import Variant
 

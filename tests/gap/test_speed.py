@@ -12,8 +12,8 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
 from advisor.gap.holdout import hold_out
+from advisor.gap.merit import LEAST_GAIN
 from advisor.gap.ranking import judge
-from advisor.gap.score import LEAST_GAIN
 from advisor.gap.screen import Screen
 from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED, THRUST
 from advisor.gap.speed import swings, work
