@@ -7,12 +7,12 @@ events. Memory is bounded by two minutes of channels.
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import replace
 
 import numpy as np
 
 from advisor.aircraft import Aircraft
+from advisor.flight.boots import Master, by_boot
 from advisor.flight.channels import (
     SLOWEST_FLIGHT_M_S,
     Decoded,
@@ -34,8 +34,8 @@ from advisor.flight.events import (
 )
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.messages import Columns, FloatArray, IntArray
-from advisor.flight.pieces import between, pieces
+from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.pieces import pieces
 from advisor.flight.record import UNITS, Channel
 from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.shape import is_3211
@@ -50,16 +50,6 @@ KEEP_S = 120.0
 _OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
 _HEARTBEAT_S = 2.2
 """The mode changed since the heartbeat before, at most so long ago: one of them may be lost."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Master:
-    """The master clock of one boot, with the pitch angle that came with it."""
-
-    boot: int
-    order: IntArray
-    t: FloatArray
-    theta: FloatArray
 
 
 class FlightStream:
@@ -199,7 +189,7 @@ class FlightStream:
                 self._modes = [(-np.inf, self._who.mode)]
         mine = [c for c in piece if c.system == vehicle.system]
         self.seen.update(c.name for c in mine)
-        for part, master in self._by_boot(mine, vehicle):
+        for part, master in by_boot(mine, vehicle.component, self._clock, self.boot):
             if master.boot != self.boot:
                 events += self.finish()
                 self._earlier_s = self.duration_s
@@ -209,27 +199,7 @@ class FlightStream:
             events += self._feed_part(part, master, vehicle)
         return events
 
-    def _by_boot(self, mine: Sequence[Columns], vehicle: Vehicle) -> Iterator[tuple[list[Columns], _Master]]:
-        """The piece with the master clock of each boot in it (nearly always one)."""
-        attitude = next((c for c in mine if c.name == "ATTITUDE" and c.component == vehicle.component), None)
-        if attitude is None:
-            yield list(mine), _Master(self.boot, np.empty(0, dtype=np.int64), np.empty(0), np.empty(0))
-            return
-        ticks = self._clock.advance(np.asarray(attitude.fields["time_boot_ms"], dtype=np.int64))
-        pitch = np.asarray(attitude.fields["pitch"], dtype=np.float64)
-        boots, first = np.unique(ticks.boot, return_index=True)
-        edges = [int(n) for n in attitude.order[first]]
-        if boots[0] == self.boot:
-            edges[0] = 0
-        else:
-            boots, edges = np.concatenate(([self.boot], boots)), [0, *edges]
-        edges.append(int(max(c.order[-1] for c in mine)) + 1)
-        for boot, (a, b) in zip(boots.tolist(), pairwise(edges), strict=True):
-            believed = (ticks.boot == boot) & np.isfinite(ticks.t)
-            master = _Master(boot, attitude.order[believed], ticks.t[believed], pitch[believed])
-            yield between(mine, a, b) if len(boots) > 1 else list(mine), master
-
-    def _feed_part(self, part: Sequence[Columns], master: _Master, vehicle: Vehicle) -> list[FlightEvent]:
+    def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
         """Columns of one boot: channels first, then the elevator sample by sample."""
         self._tracks.forget(max(self._watch.newest_s, self._master_s) - KEEP_S)
         orders = np.concatenate(([-1], master.order))

@@ -1,0 +1,58 @@
+"""What one vehicle sends, with the master clock of the boot in which it was sent."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from advisor.flight.clocks import BootClock
+from advisor.flight.messages import Columns, FloatArray, IntArray
+from advisor.flight.pieces import between
+
+
+@dataclass(frozen=True, slots=True)
+class Master:
+    """The master clock of one boot, with the pitch angle that came with it."""
+
+    boot: int
+    """Number of the boot, 0 for the first."""
+    order: IntArray
+    """Shape (n,): when each believed stamp arrived among all messages."""
+    t: FloatArray
+    """Shape (n,), s since boot."""
+    theta: FloatArray
+    """Shape (n,), rad."""
+
+
+def by_boot(
+    columns: Sequence[Columns], component: int, clock: BootClock, boot: int
+) -> Iterator[tuple[list[Columns], Master]]:
+    """The columns of a vehicle, divided where it started anew (nearly always: not at all).
+
+    Parameters
+    ----------
+    component
+        The autopilot's, whose ``ATTITUDE`` is the master.
+    clock
+        Moved on by the stamps in ``columns``.
+    boot
+        Number of the boot so far: what arrived before the first stamp belongs to it.
+    """
+    attitude = next((c for c in columns if c.name == "ATTITUDE" and c.component == component), None)
+    if attitude is None:
+        yield list(columns), Master(boot, np.empty(0, dtype=np.int64), np.empty(0), np.empty(0))
+        return
+    ticks = clock.advance(np.asarray(attitude.fields["time_boot_ms"], dtype=np.int64))
+    pitch = np.asarray(attitude.fields["pitch"], dtype=np.float64)
+    boots, first = np.unique(ticks.boot, return_index=True)
+    edges = [int(n) for n in attitude.order[first]]
+    if boots[0] == boot:
+        edges[0] = 0
+    else:
+        boots, edges = np.concatenate(([boot], boots)), [0, *edges]
+    edges.append(int(max(c.order[-1] for c in columns)) + 1)
+    for number, (a, b) in zip(boots.tolist(), pairwise(edges), strict=True):
+        believed = (ticks.boot == number) & np.isfinite(ticks.t)
+        master = Master(number, attitude.order[believed], ticks.t[believed], pitch[believed])
+        yield between(columns, a, b) if len(boots) > 1 else list(columns), master
