@@ -26,7 +26,6 @@ from advisor.gap.known import beyond_known
 from advisor.gap.layout import DERIVATIVES
 from advisor.gap.leftover import Leftover, is_the_gust, left_over, of_the_wind, other_than_air, swinging
 from advisor.gap.linear import linearise
-from advisor.gap.misread import misread
 from advisor.gap.noise import quiet_rms
 from advisor.gap.notes import left_out
 from advisor.gap.problem import Problem
@@ -35,6 +34,7 @@ from advisor.gap.result import Diagnosis
 from advisor.gap.speed import at_constant_speed
 from advisor.gap.stamps import stamp_power
 from advisor.gap.uncertainty import worth
+from advisor.gap.unnamed import unnamed_law
 from advisor.gap.variant import Variant
 from advisor.gap.waterfall import Progress, Stage, as_measured, build_up, reduced_to
 from advisor.gap.wind import wind_shear
@@ -130,8 +130,8 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     variants = beyond_known(aircraft.effects, variants_for(problem.flights))
     white = stated_floor(problem.flights)
     problem, stages = _named(problem, baseline, variants, progress)
-    scale = misread(problem, stages)
-    if scale is not None:
+    law = unnamed_law(problem, stages)
+    if law is not None:
         stages = reduced_to(problem, stages, [])
     air = None
     last = stages[-1].fitted
@@ -155,7 +155,7 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     elif air is not None and (leftover is None or leftover.block == "air"):
         leftover = other_than_air(problem, stages[0].fitted, last)
     # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
-    leftover = scale or swinging(problem, stages[0].fitted, last, stated) or leftover
+    leftover = law or swinging(problem, stages[0].fitted, last, stated) or leftover
     stages = as_measured(problem, stages)
     # Stamps that jitter are the instruments', too, but show only where something moves.
     measured = quiet_rms(problem, last) ** 2 + stamp_power(problem, last)

@@ -20,6 +20,8 @@ EFFECT_ENTRIES = (
     # moment equation
     "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_alpha_dot", "M_h",
     "M_throttle", "engine_lag_s", "M_thrust", "washed_share", "blown_share",
+    # laws of the moment that have no name
+    "M_q_abs", "M_q_q", "M_alpha_q", "M_alpha_delta_e",
     # force equation
     "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s",
     "Z_h", "lift_h", "scale_m", "speed_power",

@@ -7,7 +7,7 @@ of the candidate effects are in the same loop, each switched off by a zero (``ad
     v = V/V_r,  Δα = α − α_trim,  Δδ = δ − δ_trim
     N  = v (1 + k_h e^(−h/b)) (Z_trim + Z_α Δα_e + Z_δe Δδ + ...) + Z_q q       normal force over m·V
     α̇ = q + G + N,   G = (g/V)(cos α cos θ cos φ + sin α sin θ)
-    q̇ = v² (M_trim + M_α Δα + M_δe Δδ + ...) + v (M_q q + M_α̇ α̇) + M_T ΔT + M_P (1 − v²)
+    q̇ = v² (M_trim + M_α Δα + M_δe Δδ + ...) + v (M_q q + M_|q| |q| + M_α̇ α̇) + M_T ΔT + M_P (1 − v²)
     θ̇ = q cos φ,   a_z cos α = V N + a_x sin α
 
 Where forces do not go with V², lift and all moments of α and δ are multiplied by v^n besides. V is what was
@@ -32,6 +32,7 @@ LANES = 8
     Z_ALPHA, Z_Q, Z_DELTA, M_ALPHA, M_Q, M_DELTA, ALPHA_START, Q_START, Z_TRIM, M_TRIM,
     DELAY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL,
     M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, ENGINE_LAG, M_THRUST, WASHED, BLOWN,
+    M_Q_ABS, M_Q_Q, M_ALPHA_Q, M_ALPHA_DELTA,
     Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, Z_H, LIFT_H, SCALE_H, SPEED_POWER,
     STEP_AT, STEP_Z_ALPHA, STEP_Z_DELTA, STEP_M_ALPHA, STEP_M_DELTA,
     ALPHA_LAG, ALPHA_SCALE, ALPHA_BIAS, VANE_ARM, Q_BIAS, Q_SCALE,
@@ -213,10 +214,11 @@ def simulate(
                     normal = x[Z_REST, m] + x[LIFTING, m] * x[ATTACHED, m] * wing + x[Z_Q, m] * q
                     ka = q + x[GRAVITY, m] + normal
                     v = x[RATIO, m]
-                    slope = (
-                        x[MOMENT_SLOPE, m] + x[POWER, m] * v * v * (x[M_ALPHA2, m] + x[M_ALPHA3, m] * da) * da
-                    )
-                    kq = x[M_REST, m] + slope * da + v * (x[M_Q, m] * q + x[M_ALPHA_DOT, m] * ka)
+                    bent = (x[M_ALPHA2, m] + x[M_ALPHA3, m] * da) * da + x[M_ALPHA_DELTA, m] * x[DEFLECTION, m]
+                    slope = x[MOMENT_SLOPE, m] + x[POWER, m] * v * v * bent
+                    damping = x[M_Q, m] + x[M_ALPHA_Q, m] * da + x[M_Q_Q, m] * abs(q)
+                    damped = damping * q + x[M_Q_ABS, m] * abs(q)
+                    kq = x[M_REST, m] + slope * da + v * (damped + x[M_ALPHA_DOT, m] * ka)
                     x[KA, m], x[KQ, m] = ka, kq
                     if stage == 0:
                         x[NORMAL_0, m] += normal

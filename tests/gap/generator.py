@@ -53,11 +53,12 @@ SWITCHES = {
     "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
     "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0, "before_lag": 0.0,
     "speed_power": 0.0, "power_from": 22.0, "beat": 0.0, "beat_hz": 1.3,
+    "q_abs": 0.0, "cm_aq": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
- KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ) = range(len(SWITCHES))  # fmt: skip
+ KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -127,6 +128,8 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
             - 0.4 * near
             + sw[HYST] * (a - hyst)
             + sw[QSQ] * q * abs(q)
+            + sw[QABS] * abs(q)
+            + sw[CMAQ] * (a - a0) * q * chord / (2 * V)
             + sw[ECM] * (extra - de)
             + sw[BEAT] * np.sin(2 * np.pi * sw[BEATHZ] * t + phase)
         )

@@ -1,7 +1,8 @@
-"""An instrument that reads out of proportion: an error without a name in the catalogue.
+"""A simple law that has no name in the catalogue: a reading out of proportion, a moment that bends.
 
-α and q may be scaled by name; a_z and θ may not, and no reading may be bent. Yet two or three named effects
-together imitate that well where the air moves. One instrument that explains more than they do is likelier.
+α and q may be scaled by name; a_z and θ may not, and no reading may be bent. A moment may bend by name with the
+deflection and with α, but not with the pitch rate, nor with products. Yet two or three named effects together
+imitate such a law well. One law that explains more than all of them do is likelier.
 """
 
 import numpy as np
@@ -44,29 +45,41 @@ _READINGS = {
     "alpha": (_curve("alpha_curve", "alpha_sensor", "alpha", 0.05),),
     "theta": (_scale("attitude_scale", "attitude_sensor", "theta"),),
 }
+_MOMENTS = (
+    Variant(
+        "damping_curve", "moment_equation", ("M_q_abs", "M_q_q"), ((0.0, 0.0),), (0.05, 0.1),
+        ((-50.0, 50.0), (-200.0, 200.0)), 0.0, entries=("M_q_abs", "M_q_q"),
+    ),
+    Variant(
+        "crossed_moment", "moment_equation", ("M_alpha_q", "M_alpha_delta_e"), ((0.0, 0.0),), (0.5, 1.0),
+        ((-300.0, 300.0), (-2000.0, 2000.0)), 0.0, entries=("M_alpha_q", "M_alpha_delta_e"),
+    ),
+)  # fmt: skip
 _SAID = {
     "accelerometer_scale": "The accelerometer reads {percent:+.1f} % against what the motion says; an air "
     "speed that reads as much {other} looks the same: compare it with the ground speed on opposite headings.",
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
     "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
+    "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
+    "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
 }
 _CERTAIN = 30.0
-"""Log likelihood that a reading must bring: most of what it does is the lift's own slope."""
+"""Log likelihood that a law must bring: most of what a reading's does is the lift's own slope."""
 _LIKELIER = 10.0
 """... and by how much it must beat all that was named together."""
 _BESIDE = 0.5
-"""What the named effects bring beside the reading, of what they bring without, where they are another matter;
-certain is enough. And they must change that share of what the reading removes: a speed that is off has
+"""What the named effects bring beside the law, of what they bring without, where they are another matter;
+certain is enough. And they must change that share of what the law removes: a speed that is off has
 side effects."""
 
 
-def misread(problem: Problem, stages: list[Stage]) -> Leftover | None:
-    """The instrument whose reading explains more than everything that was named; None where none does."""
+def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
+    """The law that explains more than everything that was named; None where none does."""
     plain, held = stages[0].fitted, stages[0].held_out
     readings = [problem.channels[c] for c in problem.flights.telling]
     tried = [variant for channel in readings for variant in _READINGS.get(channel, ())]
-    found = Screen(problem, plain).quick_fits(tried)
+    found = Screen(problem, plain).quick_fits([*tried, *_MOMENTS])
     samples = float(np.sum(worth(problem, plain.innovations)))
     likeliest = min(found, key=lambda s: s.cost + penalty(s.variant, samples), default=None)
     if likeliest is None or 0.5 * (plain.cost - likeliest.cost) < _CERTAIN:
@@ -91,7 +104,7 @@ def misread(problem: Problem, stages: list[Stage]) -> Leftover | None:
 
 
 def _said(bent: Judged) -> str:
-    """What the instrument does, and what else would look like it."""
+    """What the law is, and what else would look like it."""
     percent = 100.0 * float(bent.value[0])
     return _SAID[bent.effect].format(percent=percent, other="too low" if percent > 0.0 else "too high")
 
@@ -109,10 +122,10 @@ def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:
 
 
 def _is_another_matter(problem: Problem, stages: list[Stage], bent: Judged, independent: FloatArray) -> bool:
-    """Whether what was named explains beside the reading much of what it explains without, and matters."""
+    """Whether what was named explains beside the law much of what it explains without, and matters."""
     first, last = stages[0], stages[-1]
-    reading = set(bent.variant.entries)
-    others = [v.effect for v in last.fitted.point.effects if not reading & set(v.entries)]
+    law = set(bent.variant.entries)
+    others = [v.effect for v in last.fitted.point.effects if not law & set(v.entries)]
     both = fit(
         problem,
         last.fitted.point.with_only(others).with_effect(bent.variant, tuple(bent.value)),

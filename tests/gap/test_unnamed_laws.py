@@ -1,4 +1,4 @@
-"""An instrument that reads out of proportion and has no name for it is unknown in that instrument."""
+"""A reading out of proportion, or a moment that bends with the pitch rate, has no name: it is unknown."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from tests.gap.generator import Setup, fly
 HARD = Setup(gust_std=0.12, coloured=0.5, jitter=0.004, speed_change=0.03, seed=37)
 
 
-def misread(setup, channel, reading):
+def with_reading(setup, channel, reading):
     """The flight with one channel read as ``reading`` of what it is."""
     flown = []
     for maneuver in fly(setup):
@@ -24,7 +24,7 @@ def misread(setup, channel, reading):
 
 def scaled(setup, channel, factor):
     """The flight with one channel read too high or too low."""
-    return misread(setup, channel, lambda y: factor * y)
+    return with_reading(setup, channel, lambda y: factor * y)
 
 
 @pytest.mark.parametrize(("channel", "factor", "block"), [
@@ -57,7 +57,7 @@ def test_an_air_speed_that_is_off_is_not_blamed_on_the_aircraft_and_may_be_the_a
     ("a_z", lambda y: y + 0.02 * (y + 9.8) ** 2, "accelerometer"),
 ])  # fmt: skip
 def test_a_bent_reading_is_no_sum_of_bent_forces_even_in_moving_air(channel, reading, block):
-    found = diagnose(misread(HARD, channel, reading), Aircraft())
+    found = diagnose(with_reading(HARD, channel, reading), Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == block
     assert any("does not read in proportion" in note for note in found.notes)
@@ -71,6 +71,19 @@ def test_a_force_or_a_moment_that_bends_is_no_instruments_fault(switches):
 
 
 def test_what_is_wrong_beside_a_reading_out_of_proportion_keeps_its_name():
-    both = misread(replace(HARD, q_bias=0.02), "a_z", lambda y: 1.07 * y)
+    both = with_reading(replace(HARD, q_bias=0.02), "a_z", lambda y: 1.07 * y)
     found = diagnose(both, Aircraft())
     assert found.causes[0].effect == "pitch_rate_bias"
+
+
+@pytest.mark.parametrize(("switches", "says"), [
+    ({"q_abs": -0.02}, "not the same up and down"),
+    ({"q_square": -0.06}, "not the same up and down, or fast and slow"),
+    ({"cm_aq": -90.0}, "changes with the angle of attack"),
+])  # fmt: skip
+@pytest.mark.parametrize("setup", [HARD, Setup(seed=8)], ids=["hard", "clean"])
+def test_damping_that_bends_is_no_sum_of_bent_moments(setup, switches, says):
+    found = diagnose(fly(replace(setup, switches=switches)), Aircraft())
+    assert found.verdict == "unknown"
+    assert found.where.block == "moment_equation"
+    assert any(says in note for note in found.notes)
