@@ -67,6 +67,7 @@ def main() -> None:
         error.show()
         code = USAGE
     except (click.Abort, KeyboardInterrupt):
+        click.echo("stopped", err=True)
         code = 130
     except ConfigurationError as error:
         click.echo(str(error), err=True)
@@ -78,6 +79,14 @@ def main() -> None:
         # The reader of our output (head, less) went away; there is nobody left to tell.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
+    except OSError as error:
+        where = f" ({error.filename})" if error.filename else ""
+        click.echo(
+            f"The system refused: {error.strerror or error}{where}. Make room or give another place, "
+            "and repeat.",
+            err=True,
+        )
+        code = INTERNAL
     except Exception as error:
         if os.environ.get("ADVISOR_TRACEBACK"):
             raise

@@ -125,6 +125,8 @@ def _sentence(item: Any) -> str:
     return f"{path or 'file'}: {item['msg'][0].lower()}{item['msg'][1:]}"
 
 
+_LONGEST_WINDOW = 50
+"""Manoeuvres in Eq. (12): more than any flight has."""
 _UNION_TAGS = frozenset({"int", "str", "float", "none"})
 
 
@@ -172,8 +174,11 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
             yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
     yield from mistakes_in(aircraft.effects)
     plan = aircraft.campaign
-    if plan.window < 2:
-        yield f"campaign.window: must be at least 2, a scatter needs two values, is {plan.window}"
+    if not 2 <= plan.window <= _LONGEST_WINDOW:
+        yield (
+            "campaign.window: must be at least 2, for a scatter needs two values, and at most "
+            f"{_LONGEST_WINDOW}, is {plan.window}"
+        )
     for name, value in plan.tolerance.items():
         if name not in PARAMETERS:
             yield f"campaign.tolerance.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"

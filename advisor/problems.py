@@ -17,6 +17,10 @@ class Problem:
     def __str__(self) -> str:
         return f"{self.text} {self.fix}".strip()
 
+    def about(self, name: str) -> str:
+        """The sentence with what it is about before it, where it does not say so itself."""
+        return str(self) if self.text.startswith(name) else f"{name}: {self}"
+
 
 class UnusableInputError(Exception):
     """The input cannot serve this purpose (exit code 3)."""

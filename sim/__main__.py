@@ -24,7 +24,7 @@ def _speed(text: str) -> float | None:
         speed = float(text)
     except ValueError:
         speed = 0.0
-    if speed <= 0.0:
+    if not speed > 0.0:
         raise click.BadParameter("give a factor above 0, or max", param_hint="--speed")
     return speed
 
@@ -52,7 +52,7 @@ def _flight_options(command: Callable[..., None]) -> Callable[..., None]:
         click.option(
             "--replay-inputs", type=click.Path(path_type=Path), help="Log whose elevator is flown again."
         ),
-        click.option("--seed", type=int, help="Same seed, same bytes."),
+        click.option("--seed", type=click.IntRange(0), help="Same seed, same bytes."),
     ):
         command = option(command)
     return command
@@ -120,7 +120,9 @@ def compare(flight: Path, replays: tuple[Path, ...]) -> None:
 
 @main.command()
 @click.option("--cases", default=100, show_default=True, help="How many.")
-@click.option("--seed", required=True, type=int, help="Draws everything; keep it from whoever answers.")
+@click.option(
+    "--seed", required=True, type=click.IntRange(0), help="Draws everything; keep it from whoever answers."
+)
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder for the logs.")
 @click.option("--only", multiple=True, help="Groups to draw from: clean, hard, jsbsim, none, ...")
 def blind(cases: int, seed: int, out: Path, only: tuple[str, ...]) -> None:

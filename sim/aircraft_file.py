@@ -49,6 +49,10 @@ def read_aircraft(path: Path) -> AircraftFile:
     missing = [name for name in ShortPeriod.__dataclass_fields__ if name not in model]
     if missing:
         problems.append(f"model: {', '.join(missing)} missing; all eight are needed to fly")
+    problems += [
+        f"model.{name}: must be a number, is {value}" for name, value in model.items()
+        if not (isinstance(value, int | float) and math.isfinite(value))
+    ]  # fmt: skip
     effects = {str(name): _numbers(sizes) for name, sizes in _section(data, "effects", problems).items()}
     problems += problems_with(effects)
     if problems:

@@ -12,6 +12,7 @@ from sim import hangar
 from sim.atmosphere import DrydenTurbulence
 from sim.autopilot import Autopilot, Demand, Pilot, Planned, plan
 from sim.fittings import Fittings, complete
+from sim.loading import ScenarioError
 from sim.motion import Controls, Motion
 from sim.scenario import Maneuver, Noise, Scenario
 from sim.sensors import NOISY, ChannelNoise, Reading, ideal
@@ -19,6 +20,8 @@ from sim.servo import Servo
 
 CLOSING_S = 5.0
 """Attitude hold after the last manoeuvre."""
+_DEPARTED_RAD_S = 50.0
+"""Pitch rate that no aircraft flies with: the motion grows without bound."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +99,13 @@ class Flight:
         self._deepest_s = max([0.0, *self._fittings.skews.values()])
 
     def samples(self) -> Iterator[Sample]:
-        """Fly, and yield a sample at every tick of the loop."""
+        """Fly, and yield a sample at every tick of the loop.
+
+        Raises
+        ------
+        ScenarioError
+            The aircraft departs from all flight: its model is unstable.
+        """
         dt, period = self.scenario.step_s, self._steps * self.scenario.step_s
         held = self.scenario.input == "held"
         motion = self.engine.motion()
@@ -133,6 +142,10 @@ class Flight:
                 reading = self._read(motion, dt)
                 if self._fittings.skews and step < self._steps:
                     past.append((now + step * dt, copy(reading)))
+            if not abs(motion.q) < _DEPARTED_RAD_S:
+                raise ScenarioError(
+                    [f"the motion grows without bound {now:.1f} s after the start: the aircraft is unstable"]
+                )
             pulse, demand = next_pulse, following
             ground = motion.airspeed * math.cos(motion.theta - motion.alpha) * period
             north += ground + self.scenario.air.wind_north_m_s * period

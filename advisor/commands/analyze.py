@@ -62,7 +62,7 @@ def command(
 
         Console(highlight=False, soft_wrap=True).print(AnalysisText(state, log.name, aircraft))
     for problem in problems:
-        click.echo(f"{log.name}: {problem}", err=True)
+        click.echo(problem.about(log.name), err=True)
     return UNUSABLE if problems else 0
 
 

@@ -26,7 +26,9 @@ HEADLESS_SPEED = 10.0
     type=click.FloatRange(min=0.1, max=50.0),
     help="Multiple of real time; 1 by default, 10 without a screen.",
 )
-@click.option("--seed", type=int, default=1, show_default=True, help="Seed of the instruments' noise.")
+@click.option(
+    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the instruments' noise."
+)
 @click.option("--record", "record_to", type=click.Path(path_type=Path), help="Keep the link's tlog here.")
 @aircraft_option
 @rule_option

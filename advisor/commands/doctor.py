@@ -73,7 +73,7 @@ def command(
     sentence = problem or _first_obstacle(findings)
     if sentence is None:
         return 0
-    click.echo(f"{target}: {sentence}", err=True)
+    click.echo(sentence.about(target), err=True)
     return UNUSABLE
 
 

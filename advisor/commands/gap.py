@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 from advisor.commands.options import (
     UNUSABLE,
@@ -17,12 +18,21 @@ from advisor.commands.options import (
 )
 from advisor.problems import ConfigurationError, UnusableInputError
 
+_OF_A_FLIGHT = {"holdout": "--holdout", "out": "--out", "target_system": "--target-system"}
+_OF_A_PLAN = {
+    "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
+}  # fmt: skip
+
 
 @click.command
 @click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
 @aircraft_option
 @target_system_option
-@click.option("--holdout", type=click.IntRange(1), help="Manoeuvres, the last ones, kept out of every fit.")
+@click.option(
+    "--holdout",
+    type=click.IntRange(1),
+    help="Measure on so many manoeuvres, the last ones, with numbers fitted without them.",
+)
 @click.option("--out", type=click.Path(path_type=Path), help="Where to write the improved simulator.")
 @click.option("--foresee", is_flag=True, help="No flight: what would this plan show? Needs an aircraft file.")
 @click.option(
@@ -53,6 +63,7 @@ def command(
       advisor gap flight-1.tlog flight-2.tlog --holdout 3 --json
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
+    _refuse_foreign(foresee)
     aircraft = read_aircraft(aircraft_file)
     if foresee:
         if logs:
@@ -67,6 +78,8 @@ def command(
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
     if out is not None:
         refuse_unwritable("--out", out)
+        if aircraft_file is not None and out.resolve() == aircraft_file.resolve():
+            raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
     elif not os.access(Path(), os.W_OK):
         raise ConfigurationError("This folder cannot be written to: name a file in another with --out.")
     from advisor.gap.document import gap_document
@@ -99,6 +112,16 @@ def command(
 
         Console(highlight=False).print(GapScreen(found, improved))
     return 0
+
+
+def _refuse_foreign(foresee: bool) -> None:
+    """Refuse what only the other half of the command listens to: it would be ignored without a word."""
+    foreign = _OF_A_FLIGHT if foresee else _OF_A_PLAN
+    given = click.get_current_context().get_parameter_source
+    for name, option in foreign.items():
+        if given(name) is ParameterSource.COMMANDLINE:
+            where = "without --foresee" if foresee else "with --foresee"
+            raise ConfigurationError(f"{option} has a meaning {where} only: leave it out.")
 
 
 def _progress(what: str, share: float) -> None:

@@ -57,11 +57,6 @@ class KinematicCheck:
         """Whether the channels sufficed."""
         return self.finding != "not possible"
 
-    @property
-    def corrupts(self) -> tuple[str, ...]:
-        """Derivatives that a fit of this α gets wrong; empty when none is known to be."""
-        return CORRUPTED_BY_LAG if self.finding in ("late", "early") else ()
-
 
 def check_alpha(
     maneuver: Maneuver,

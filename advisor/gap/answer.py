@@ -29,9 +29,10 @@ from advisor.gap.numbers import (
     waterfall_of,
     without_air,
 )
+from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Diagnosis, Verdict, Where
 from advisor.gap.text import sentence_of
-from advisor.gap.uncertainty import shared_std, worth
+from advisor.gap.uncertainty import covariance, worth
 
 
 def answer(
@@ -45,34 +46,40 @@ def answer(
     judged = judgement(e, kinematics)
     verdict, causes = judged.verdict, judged.causes
     before, last = judged.before, stages[-1].held_out
+    kept, folds = kept_out(problem, holdout)
+    if holdout is not None:
+        last = hold_out(problem, stages[-1].fitted, folds)
+        before = e.file_model if e.file_model is not None else hold_out(problem, stages[0].fitted, folds)
     if e.air is not None:
         # From here on the air is one of the causes: the floor is what stays without its motion.
         floor = np.minimum(floor, np.sqrt(e.air.left))
         last, e = without_air(last, e.air), replace(e, floor=floor)
-    kept, folds = kept_out(e, holdout)
-    if holdout is not None and e.air is None:
-        last = hold_out(problem, stages[-1].fitted, folds)
-        before = e.file_model if e.file_model is not None else hold_out(problem, stages[0].fitted, folds)
     before, last = (over_maneuvers(problem, held, kept) for held in (before, last))
     gap = gap_numbers(e, before, last, judged.bias)
     where = _where(e, verdict, causes)
     shrink = shrink_of(e, kept, gap, before, last) if verdict in ("effect", "parameters") else None
     fitted = stages[-1].fitted
-    std = shared_std(problem, fitted, worth(problem, fitted.innovations))
+    known = covariance(problem, fitted, worth(problem, fitted.innovations))
     waterfall = waterfall_of(stages, floor, judged.apart, judged.speed, gap.before)
     present = {c.effect for c in causes if c.present}
-    effects = _improvements(fitted, std, causes)
+    effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
     diagnosis = Diagnosis(
         verdict=verdict, sentence="", gap=gap, where=where, causes=causes, shrink=shrink, waterfall=waterfall,
         cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), floor, present),
-        kinematics=kinematics, model=model_of(problem, fitted, std),
-        reference_airspeed_m_s=problem.flights.reference_m_s if problem.flights.speed_measured else None,
+        kinematics=kinematics, model=model_of(problem, fitted, known),
+        reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
         effects=effects,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         notes=notes_of(e, aircraft, holdout, effects.keys() - present),
         maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
     return replace(diagnosis, sentence=sentence_of(diagnosis))
+
+
+def _speed_is_known(problem: Problem, aircraft: Aircraft) -> bool:
+    """Whether the derivatives' speed was measured, is the file's, or what the motion shows."""
+    stated = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
+    return problem.flights.speed_measured or stated is not None
 
 
 def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) -> dict[str, dict[str, float]]:

@@ -13,6 +13,8 @@ NARROW = 0.03
 """Relative error of derivatives that are right: linearised, at a nearby speed."""
 WIDE = 0.3
 """Relative error of derivatives that are not."""
+_LEAST = 0.1
+"""Size below which a derivative is none, 1/s or 1/s²."""
 _CHI_SQUARE_999, _CHI_SQUARE_500 = 22.46, 5.35
 """Of six degrees of freedom, exceeded once in a thousand times, and every other time."""
 
@@ -27,14 +29,15 @@ behind the centre of gravity is hardly ever found, an accelerometer there less o
 def scale_of(believed: FloatArray) -> FloatArray:
     """Shape (6,): size of each derivative; Z_q beside 1, small ones beside the large ones."""
     z_alpha, _, z_delta, m_alpha, m_q, m_delta = np.abs(believed)
+    z_alpha = max(z_alpha, _LEAST)
     return np.array(
         [
-            max(z_alpha, 0.1),
+            z_alpha,
             1.0,
             max(z_delta, 0.3 * z_alpha),
-            max(m_alpha, 0.1 * m_delta, 0.1),
-            max(m_q, 0.3 * np.sqrt(m_alpha)),
-            max(m_delta, 0.3 * m_alpha, 0.1),
+            max(m_alpha, 0.1 * m_delta, _LEAST),
+            max(m_q, 0.3 * np.sqrt(max(m_alpha, _LEAST))),
+            max(m_delta, 0.3 * m_alpha, _LEAST),
         ]
     )
 

@@ -28,7 +28,7 @@ _SCALED_BY = 0.2
 _BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
 _OF_INTERVAL = 0.2
 """Share of the interval between an estimate's samples that its lag must reach to be named."""
-_LEAST_OFFSET_RAD = 0.006
+LEAST_OFFSET_RAD = 0.006
 """Smaller offsets get no name: neither a vane's zero nor the attitude's, from which the path is taken, is set
 to better than a few tenths of a degree."""
 OFFSET_SIGMAS = 5.0
@@ -161,7 +161,7 @@ def alpha_bias_cause(
     """
     if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
         return None
-    least = max(_LEAST_OFFSET_RAD, OFFSET_SIGMAS * check.bias_std_rad)
+    least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * check.bias_std_rad)
     trim = float(np.mean([flight.trim[0] for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
     # The trim was read with the offset taken out already: what a scale makes of it is no offset.

@@ -56,7 +56,8 @@ def diagnose(
     aircraft
         The aircraft file: what the simulator believes today.
     holdout
-        How many manoeuvres, the last ones, to keep out of every fit for the shrink; None: a third.
+        How many manoeuvres, the last ones, the shrink is measured on, with every number fitted without them
+        (which effects are there is judged on all); None: all, each kept out in turn with a third of them.
     progress
         Called with a sentence and the share done.
 

@@ -42,6 +42,7 @@ def gap_document(
         "shrink": None if d.shrink is None else {
             "holdout": list(d.shrink.holdout), "before": d.shrink.before, "after": d.shrink.after,
             "percent": d.shrink.percent, "ci95_percent": list(d.shrink.ci95_percent),
+            "beyond_air_percent": d.shrink.beyond_air_percent,
         },
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "cannot_see": [

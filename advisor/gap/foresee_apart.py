@@ -14,10 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.kinematics import SMALLEST_BIAS_RAD
 from advisor.flight.messages import FloatArray
 from advisor.gap.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
-from advisor.gap.causes import OFFSET_SIGMAS
+from advisor.gap.causes import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.fit import Fitted
 from advisor.gap.flights import Flight, Flights
 from advisor.gap.foresee import Foreseen, Mark
@@ -92,7 +91,7 @@ def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
     reading = float(np.hypot(np.hypot(*angles), CLIMB_RATE_STD_M_S / flights.reference_m_s))
     std = reading / np.sqrt(sum(f.duration_s for f in flights.flights))
     way = "level the attitude's zero on the ground, and fly in still air: both look the same"
-    return Foreseen("alpha_bias", "bias_rad", max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * std), (), way)
+    return Foreseen("alpha_bias", "bias_rad", max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * std), (), way)
 
 
 def impossible(effect: str, flights: Flights) -> Foreseen:

@@ -133,7 +133,8 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) 
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
     if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
         return None
-    return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power)
+    note = f"It swings by itself, {tone.hz:.2g} times a second."
+    return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power, note)
 
 
 def is_the_gust(problem: Problem, last: Fitted, leftover: Leftover) -> bool:

@@ -47,8 +47,10 @@ def notes_of(
     if e.air is not None:
         notes.append(
             "What is shown as after has the likeliest course of the air in it: that belongs to the day, and "
-            "no file can hold it."
+            "no file can hold it. It is fitted to these very samples, so that little of the gap can stay."
         )
+        if e.air.gust:
+            notes.append(f"The gust shows most in manoeuvre {e.air.gust_number}.")
         if flights.alpha_is_derived:
             notes.append(
                 "The angle of attack is an estimate that sees no gust: this flight's derivatives are rough, "

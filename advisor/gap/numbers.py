@@ -17,6 +17,7 @@ from advisor.gap.layout import DERIVATIVES
 from advisor.gap.measure import by_band, by_phase, gap_of, shrink_interval
 from advisor.gap.problem import Problem
 from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
+from advisor.gap.simulate import GRAVITY_M_S2
 from advisor.gap.waterfall import Stage
 from advisor.gap.yardsticks import yardsticks
 
@@ -45,9 +46,9 @@ def gap_numbers(e: Evidence, before: HeldOut, last: HeldOut, bias: Cause | None)
     )  # fmt: skip
 
 
-def kept_out(e: Evidence, holdout: int | None) -> tuple[list[int], list[list[int]]]:
+def kept_out(problem: Problem, holdout: int | None) -> tuple[list[int], list[list[int]]]:
     """Manoeuvres the gap is measured on, and folds that keep them out: the last ones, or each in turn."""
-    n = len(e.problem.flights)
+    n = len(problem.flights)
     if holdout is None or not 0 < holdout < n:
         return list(range(n)), folds_of(n)
     kept = list(range(n - holdout, n))
@@ -79,7 +80,17 @@ def shrink_of(e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last:
     percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
     low, high = shrink_interval(was, now)
     numbers = tuple(e.problem.flights.flights[i].number for i in kept)
-    return Shrink(numbers, gap.before, gap.after, percent, (min(low, percent), max(high, percent)))
+    interval = (min(low, percent), max(high, percent))
+    return Shrink(numbers, gap.before, gap.after, percent, interval, _beyond_air(e))
+
+
+def _beyond_air(e: Evidence) -> float | None:
+    """Shrink of the innovations, per cent; see ``Shrink``."""
+    if e.air is None or len(e.stages) < 2:
+        return None
+    noise = e.stages[-1].fitted.noise ** 2
+    was, now = (float(np.mean(s.held_out.innovations / noise)) - 1.0 for s in (e.stages[0], e.stages[-1]))
+    return float(np.clip(100.0 * (1.0 - now / was), 0.0, 100.0)) if was > 1e-9 else None
 
 
 def waterfall_of(
@@ -104,21 +115,26 @@ def waterfall_of(
     return tuple(steps)
 
 
-def model_of(problem: Problem, fitted: Fitted, std: FloatArray) -> dict[str, Value]:
-    """The eight parameters about zero angles, from the trimmed ones of each manoeuvre."""
-    d = fitted.point.derivatives
+def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, Value]:
+    """The eight parameters about zero angles, from the trimmed ones of each manoeuvre.
+
+    ``known``, shape (k, k), is the covariance of the shared numbers: what the derivatives are off by moves
+    the terms at zero angles of all manoeuvres together, through the angles at which they are trimmed.
+    """
+    d, own = fitted.point.derivatives, fitted.point.own
     trims = np.array([[f.trim[0], f.u_trim] for f in problem.flights.flights])
-    own = fitted.point.own
-    gravity = np.array([9.80665 / float(np.mean(f.slow[0])) for f in problem.flights.flights])
-    z0 = own[:, 2] + gravity - d[0] * trims[:, 0] - d[2] * trims[:, 1]
-    m0 = own[:, 3] - d[3] * trims[:, 0] - d[5] * trims[:, 1]
-    n = np.sqrt(len(z0))
-    values = {
-        "Z_0": Value(float(np.mean(z0)), float(np.std(z0) / n)),
-        "M_0": Value(float(np.mean(m0)), float(np.std(m0) / n)),
-    }
+    gravity = np.array([GRAVITY_M_S2 / float(np.mean(f.slow[0])) for f in problem.flights.flights])
+    slopes = {"Z_0": (0, 2), "M_0": (3, 5)}
+    terms = {"Z_0": own[:, 2] + gravity, "M_0": own[:, 3]}
+    values = {}
+    for name, pair in slopes.items():
+        each = terms[name] - trims @ d[list(pair)]
+        mean_trim = np.mean(trims, axis=0)
+        together = mean_trim @ known[np.ix_(pair, pair)] @ mean_trim
+        apart = np.var(each, ddof=1) / len(each)
+        values[name] = Value(float(np.mean(each)), float(np.sqrt(apart + max(together, 0.0))))
     for k, name in enumerate(DERIVATIVES):
-        values[name] = Value(float(d[k]), float(std[k]))
+        values[name] = Value(float(d[k]), float(np.sqrt(max(known[k, k], 0.0))))
     return {name: values[name] for name in PARAMETERS}
 
 

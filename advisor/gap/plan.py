@@ -34,6 +34,8 @@ TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "th
 SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
 """Channels that a plan may do without."""
 _APART_S = 30.0
+_HIGHEST_RATE_HZ, _LARGEST_STEP_DEG = 1000.0, 60.0
+"""No telemetry is faster, and no elevator moves further."""
 
 
 def foresee_plan(
@@ -120,8 +122,15 @@ def _refuse(plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: 
     if unknown or not plan:
         what = f"{unknown[0]!r} is none of" if unknown else "name at least one of"
         raise ConfigurationError(f"plan: {what} {', '.join(STEPS)}.")
-    if not (rate_hz > 0.0 and amplitude_deg > 0.0):
-        raise ConfigurationError("plan: the rate and the amplitude must be above zero.")
+    if len(plan) < 2:
+        raise ConfigurationError(
+            "plan: one manoeuvre proves no cause, for none is left to keep out of the fit; plan at least two."
+        )
+    if not (0.0 < rate_hz <= _HIGHEST_RATE_HZ and 0.0 < amplitude_deg <= _LARGEST_STEP_DEG):
+        raise ConfigurationError(
+            f"plan: the rate must be above zero and at most {_HIGHEST_RATE_HZ:g} Hz, "
+            f"the amplitude above zero and at most {_LARGEST_STEP_DEG:g} deg."
+        )
     foreign = [name for name in without if name not in SPARED]
     if foreign:
         raise ConfigurationError(f"without: {foreign[0]!r} is none of {', '.join(SPARED)}.")

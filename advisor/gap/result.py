@@ -70,7 +70,11 @@ class Where:
 
 @dataclass(frozen=True, slots=True)
 class Shrink:
-    """How far the gap shrinks on manoeuvres that took no part in any fit."""
+    """How far the gap shrinks on manoeuvres whose numbers were fitted without them.
+
+    Where the air moves, its likeliest course is taken out: it is fitted to the very samples, for no other
+    manoeuvre can predict it.
+    """
 
     holdout: tuple[int, ...]
     """Numbers of the manoeuvres kept out."""
@@ -78,6 +82,9 @@ class Shrink:
     after: float
     percent: float
     ci95_percent: tuple[float, float]
+    beyond_air_percent: float | None = None
+    """Of what each next sample surprises by beyond the noise, with a filter that knows how the air moves:
+    what causes other than the air remove, on manoeuvres kept out. None in still air, or without another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +144,7 @@ class Diagnosis:
     model: Mapping[str, Value]
     """The eight parameters of the final model at the reference speed."""
     reference_airspeed_m_s: float | None
+    """Speed the derivatives belong to: measured, else the file's or what the motion shows; None: unknown."""
     effects: Mapping[str, Mapping[str, float]]
     """What the improved simulator's file has under ``effects``."""
     yardsticks: Mapping[str, tuple[Yardsticks, Yardsticks]]

@@ -214,7 +214,8 @@ def simulate(
                     normal = x[Z_REST, m] + x[LIFTING, m] * x[ATTACHED, m] * wing + x[Z_Q, m] * q
                     ka = q + x[GRAVITY, m] + normal
                     v = x[RATIO, m]
-                    bent = (x[M_ALPHA2, m] + x[M_ALPHA3, m] * da) * da + x[M_ALPHA_DELTA, m] * x[DEFLECTION, m]
+                    bent = (x[M_ALPHA2, m] + x[M_ALPHA3, m] * da) * da
+                    bent += x[M_ALPHA_DELTA, m] * x[DEFLECTION, m]
                     slope = x[MOMENT_SLOPE, m] + x[POWER, m] * v * v * bent
                     damping = x[M_Q, m] + x[M_ALPHA_Q, m] * da + x[M_Q_Q, m] * abs(q)
                     damped = damping * q + x[M_Q_ABS, m] * abs(q)

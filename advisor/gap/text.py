@@ -98,8 +98,10 @@ def sentence_of(d: Diagnosis) -> str:
     also = ""
     if len(present) > 1:
         also = "; also " + ", ".join(c.effect.replace("_", " ") for c in present[1:])
-    if present[0].effect in ("turbulence", "gust") and len(present) == 1:
+    if present[0].block == "air" and len(present) == 1:
         return f"{what(present[0])}: that is the air, not the simulator."
+    if d.shrink is not None and d.shrink.beyond_air_percent is not None:
+        removed = f"{d.shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
     if present[0].effect == "alpha_lag" and d.shrink is not None and round(d.shrink.percent) <= 0:
         return f"{what(present[0])}: the motion itself shows it{also}."
     return f"{what(present[0])}; adding it removes {removed}{also}."

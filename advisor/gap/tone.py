@@ -35,6 +35,7 @@ class Tone:
     """A swing that goes on by itself."""
 
     hz: float
+    """Its frequency."""
     probes: tuple[Probe, ...]
     """Every block with a swing of this frequency, likeliest first; sizes are amplitudes."""
     power: FloatArray

@@ -1,8 +1,8 @@
 """A simple law that has no name in the catalogue: a reading out of proportion, a moment that bends.
 
-α and q may be scaled by name; a_z and θ may not, and no reading may be bent. A moment may bend by name with the
-deflection and with α, but not with the pitch rate, nor with products. Yet two or three named effects together
-imitate such a law well. One law that explains more than all of them do is likelier.
+α and q may be scaled by name; a_z and θ may not, and no reading may be bent. A moment may bend by name with
+the deflection and with α, but not with the pitch rate, nor with products. Yet two or three named effects
+together imitate such a law well. One law that explains more than all of them do is likelier.
 """
 
 import numpy as np

@@ -78,11 +78,6 @@ class ShortPeriod:
         first, second = np.linalg.eigvals(self.a)
         return complex(first), complex(second)
 
-    def at_speed(self, ratio: float) -> "ShortPeriod":
-        """The model at ``ratio`` times its air speed, by ``SPEED_EXPONENTS`` (Z_0 taken as aerodynamic)."""
-        exponents = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS])
-        return ShortPeriod(self.theta * ratio**exponents)
-
     def trim(self) -> tuple[FloatArray, float]:
         """Equilibrium state (2,) with q = 0 and its elevator; the least-norm one when it is not unique."""
         t = self.theta

@@ -18,8 +18,6 @@ from advisor.gap.result import Diagnosis
 from advisor.mavlink.logs import open_log
 from advisor.problems import UnusableInputError
 
-_KEPT_SECTIONS = ("elevator", "alpha", "accelerometer")
-
 
 def maneuvers_of(
     logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None
@@ -88,11 +86,8 @@ def diagnose_logs(
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
     """The aircraft file with the fitted model and the effects found in it."""
     content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
-    everything = asdict(aircraft)
-    for section in _KEPT_SECTIONS:
-        kept = {k: v for k, v in everything[section].items() if v not in (None, "auto")}
-        if kept:
-            content[section] = kept
+    kept = replace(aircraft, name=Aircraft().name, model={}, effects={})
+    content.update(_beyond(asdict(kept), asdict(Aircraft())))
     if diagnosis.reference_airspeed_m_s is not None:
         content["reference_airspeed_m_s"] = round(diagnosis.reference_airspeed_m_s, 4)
     content["model"] = {name: _digits(v.value) for name, v in diagnosis.model.items()}
@@ -103,10 +98,22 @@ def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]
     return content
 
 
+def _beyond(content: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
+    """What a file must say because it is not what is taken without it, section by section."""
+    found = {}
+    for key, value in content.items():
+        if isinstance(value, Mapping) and (inside := _beyond(value, usual.get(key, {}))):
+            found[key] = inside
+        elif not isinstance(value, Mapping) and value != usual.get(key):
+            found[key] = value
+    return found
+
+
 def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path:
     """Write the improved simulator as a file that ``advisor`` and ``python -m sim`` load."""
     text = yaml.safe_dump(_plain(improved_file(diagnosis, aircraft)), sort_keys=False, allow_unicode=True)
-    path.write_text(f"# Written by `advisor gap`: the simulator with what the flight showed.\n{text}")
+    head = "# Written by `advisor gap`: the simulator with what the flight showed.\n"
+    path.write_text(head + text, encoding="utf-8")
     return path
 
 

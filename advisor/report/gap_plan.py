@@ -20,6 +20,10 @@ from advisor.report.gap_sizes import in_units, spelled
 _OF_LINEAR = {"M_alpha2": "M_alpha", "Z_alpha2": "Z_alpha", "M_delta2": "M_delta_e"}
 
 _IN_WORDS = {"gain": "deg/s per deg", "M_throttle": "rad/s², full throttle", "M_thrust": "rad/s² of trim"}
+_NO_ALPHA = (
+    "Without an angle of attack a flight is diagnosed only if VFR_HUD brings what it can be derived from: "
+    "climb rate and air speed, at 10 Hz."
+)
 _ALIKE = 2
 """Confusions that are shown; JSON has them all."""
 
@@ -38,6 +42,8 @@ def print_foresight(
     absent = [name.strip() for name in without.split(",") if name.strip()]
     found = foresee_plan(aircraft, inputs, rate_hz, amplitude_deg, absent)
     notes = unusual_signs(aircraft.model)
+    if "alpha" in absent:
+        notes = (*notes, _NO_ALPHA)
     if as_json:
         click.echo(json.dumps(_document(found, notes), allow_nan=False, indent=1))
         return 0

@@ -103,6 +103,8 @@ def _numbers(d: Diagnosis) -> Text:
             f"{d.shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on manoeuvres "
             f"kept out of the fit: {_counted(d.shrink.holdout)}"
         )
+        if d.shrink.beyond_air_percent is not None:
+            lines.append(f"of what is not the air's motion {d.shrink.beyond_air_percent:.0f} % less")
     return Text("\n".join(lines))
 
 

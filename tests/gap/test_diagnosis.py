@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import yaml
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan, Limits
+from advisor.config import parse_aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.document import gap_document
 from advisor.gap.plan import foresee_plan
@@ -137,8 +138,17 @@ def test_a_slow_servo_is_not_taken_for_a_late_one_though_its_response_has_kinks(
 def test_the_document_is_json_without_nan_and_has_every_key_of_the_contract(delayed):
     document = json.loads(json.dumps(gap_document(delayed), allow_nan=False))
     assert document["schema"] == "advisor.gap/1"
-    assert {"verdict", "gap", "where", "causes", "shrink", "waterfall", "cannot_see"} <= set(document)
+    assert set(document) >= {
+        "usable", "problems", "verdict", "gap", "where", "causes", "shrink", "waterfall", "cannot_see",
+        "improved_model",
+    }  # fmt: skip
+    assert set(document["gap"]) >= {"before", "floor", "by_channel", "by_maneuver", "by_phase", "by_band_hz"}
     assert set(document["gap"]["floor"]) == {"alpha", "q", "a_z", "theta"}
+    assert set(document["where"]) >= {"block", "share", "ranking"}
+    assert set(document["causes"][0]) >= {
+        "effect", "probability", "parameters", "cannot_be_told_from", "tell_apart_by", "gap_after",
+    }  # fmt: skip
+    assert set(document["shrink"]) >= {"holdout", "before", "after", "percent", "ci95_percent"}
     assert sum(c["probability"] for c in document["causes"]) <= 1.0 + 1e-9
     assert document["shrink"]["before"] == pytest.approx(document["gap"]["before"])
 
@@ -152,6 +162,18 @@ def test_the_waterfall_ends_at_the_gap_that_stays_whatever_the_manoeuvres_length
     found = diagnose(flown, Aircraft())
     assert len(found.waterfall) > 1
     assert found.waterfall[-1][1] == pytest.approx(found.gap.after, rel=1e-9, abs=1e-12)
+
+
+def test_the_improved_simulators_file_keeps_what_else_the_crew_wrote_about_its_aircraft(delayed):
+    crews = Aircraft(
+        name="ours",
+        airspeed_m_s=22.0,
+        limits=Limits(bank_deg=20.0),
+        campaign=CampaignPlan(rule="information", tolerance={"M_0": 0.1}),
+    )
+    written = parse_aircraft(improved_file(delayed, crews))
+    assert (written.limits, written.campaign, written.airspeed_m_s) == (crews.limits, crews.campaign, 22.0)
+    assert written.name == "ours, improved"
 
 
 def test_the_improved_simulator_is_a_file_with_the_effect_in_it(delayed, tmp_path):
@@ -191,7 +213,7 @@ def test_foreseeing_needs_a_model():
         foresee_plan(Aircraft(), ("3211",), 50.0, 2.0)
 
 
-def test_more_noise_makes_the_smallest_detectable_size_larger_in_proportion():
+def test_half_the_step_makes_the_smallest_detectable_size_twice_as_large():
     plane = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
     sizes = [
         {f.effect: f.smallest for f in foresee_plan(plane, ("3211", "rev"), 50.0, deg)}["pitch_rate_scale"]
@@ -199,3 +221,26 @@ def test_more_noise_makes_the_smallest_detectable_size_larger_in_proportion():
     ]
     assert sizes[0] / sizes[1] == pytest.approx(2.0, rel=0.1)
     assert np.isfinite(sizes[0])
+
+
+def test_stated_errors_of_the_terms_at_zero_angles_cover_their_scatter():
+    found = [diagnose(fly(Setup(noise=0.05, maneuvers=6, seed=seed)), Aircraft()).model for seed in range(8)]
+    for name in ("M_0", "Z_0"):
+        scatter = np.std([model[name].value for model in found], ddof=1)
+        stated = np.mean([model[name].std for model in found])
+        # Eight flights know a scatter to within a factor of two (chi-square, 99 %).
+        assert 0.5 * scatter < stated < 3.0 * scatter
+
+
+def test_beside_moving_air_the_sentence_says_what_the_effect_removes_of_the_rest():
+    found = diagnose(fly(Setup(switches={"delay": 0.06}, gust_std=0.2, maneuvers=6)), Aircraft())
+    assert {c.effect for c in found.causes if c.present} == {"transport_delay", "turbulence"}
+    assert found.shrink.beyond_air_percent > 97.0
+    assert "of the gap that is not the air's" in found.sentence
+
+
+def test_manoeuvres_are_kept_out_in_moving_air_too():
+    flown = fly(Setup(switches={"delay": 0.06}, gust_std=0.2, maneuvers=6))
+    found = diagnose(flown, Aircraft(), holdout=2)
+    assert found.shrink.holdout == (5, 6)
+    assert found.shrink.before != diagnose(flown, Aircraft()).shrink.before

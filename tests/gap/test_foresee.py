@@ -13,6 +13,7 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.cli import advisor
 from advisor.gap.baseline import believed_derivatives
 from advisor.gap.candidates.catalogue import BLOCK_OF
+from advisor.gap.causes import LEAST_OFFSET_RAD
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
 from advisor.gap.needs import need_of
@@ -98,7 +99,7 @@ def test_changes_from_one_manoeuvre_to_the_next_need_three_of_them():
 
 def test_nothing_is_foreseen_below_what_the_diagnosis_would_name(foreseen):
     assert foreseen["transport_delay"].smallest > 0.004
-    assert foreseen["alpha_bias"].smallest >= np.radians(0.1)
+    assert foreseen["alpha_bias"].smallest >= LEAST_OFFSET_RAD
     assert foreseen["airspeed_variation"].smallest >= 0.03
 
 
@@ -176,6 +177,8 @@ def test_a_step_lost_in_the_noise_shows_next_to_nothing_and_the_document_has_no_
         (("3211", "loop"), 50.0, (), "'loop' is none of"),
         ((), 50.0, (), "at least one"),
         (PLAN, 0.0, (), "above zero"),
+        (PLAN, float("inf"), (), "at most 1000 Hz"),
+        (("3211",), 50.0, (), "plan at least two"),
         (PLAN, 1.5, (), "plan a rate of"),
         (PLAN, 50.0, ("q",), "'q' is none of"),
     ],

@@ -8,7 +8,7 @@ from scipy.signal import butter, lfilter, sosfiltfilt
 
 from advisor.aircraft import PARAMETERS, Aircraft, Alpha
 from advisor.gap.baseline import fit_baseline
-from advisor.gap.belief import log_belief
+from advisor.gap.belief import log_belief, pull_of
 from advisor.gap.candidates.between import shift_moments
 from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
@@ -110,6 +110,13 @@ def test_the_files_derivatives_tell_a_moment_of_the_angles_rate_from_three_other
     """In still air at constant speed the two are the same motion."""
     found = diagnose(fly(Setup(maneuvers=6, switches={"cm_alphadot": -8.0}, seed=25)), still_file)
     assert found.causes[0].effect == "alpha_dot"
+
+
+@pytest.mark.parametrize("which", [*range(6), slice(None)])
+def test_a_derivative_of_nothing_in_the_file_has_a_size_that_can_be_weighed(which):
+    believed = BELIEVED.copy()
+    believed[which] = 0.0
+    assert np.all(np.isfinite(pull_of(believed)))
 
 
 def test_derivatives_near_the_files_are_believed_more_than_others_and_unknown_ones_neither_way():

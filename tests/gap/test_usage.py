@@ -59,6 +59,26 @@ def test_a_log_beside_foresee_is_refused_for_it_would_not_be_read(capsys, monkey
     assert "reads no log: leave out flight.tlog" in error
 
 
+@pytest.mark.parametrize(("arguments", "option"), [
+    (["flight.tlog", "--rate", "20"], "--rate has a meaning with --foresee only"),
+    (["--foresee", "--holdout", "2"], "--holdout has a meaning without --foresee only"),
+])  # fmt: skip
+def test_an_option_of_the_other_half_of_the_command_is_refused_for_it_would_be_ignored(
+    capsys, monkeypatch, arguments, option
+):
+    code, error = said(capsys, monkeypatch, *arguments)
+    assert code == 2
+    assert option in error
+
+
+def test_the_improved_simulator_is_not_written_over_the_aircraft_file(capsys, monkeypatch, tmp_path):
+    path = tmp_path / "aircraft.yaml"
+    path.write_text("name: mine\n")
+    code, error = said(capsys, monkeypatch, "flight.tlog", "--aircraft", path, "--out", path)
+    assert code == 2
+    assert "is the aircraft file itself" in error
+
+
 @pytest.mark.parametrize("verdict", ["none", "unknown"])
 def test_where_there_is_nothing_to_improve_it_says_that_no_file_was_written(
     capsys, monkeypatch, tmp_path, verdict

@@ -75,9 +75,10 @@ def test_frequency_and_damping_are_those_of_the_eigenvalues():
     assert np.isnan(ShortPeriod(np.array([0, -1.0, 0, 0, 0, 5.0, -1.0, -3.0])).natural_frequency)
 
 
-def test_trim_is_an_equilibrium_and_scaling_with_speed_undoes_itself():
+def test_trim_is_an_equilibrium_and_parameters_left_out_are_zero():
     model = ShortPeriod(JET)
     x, elevator = model.trim()
     np.testing.assert_allclose(model.a @ x + model.b * elevator + model.c, 0.0, atol=1e-12)
-    np.testing.assert_allclose(model.at_speed(1.2).at_speed(1 / 1.2).theta, JET)
-    assert ShortPeriod.from_mapping({"M_q": -2.0}).theta[6] == -2.0
+    lone = ShortPeriod.from_mapping({"M_q": -2.0}).theta
+    assert lone[6] == -2.0
+    assert np.count_nonzero(lone) == 1
