@@ -5,6 +5,7 @@ not. Judged by the Kalman likelihood of ``advisor.oem.turbulence``; the course o
 from the probe of the air.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from advisor.gap.fit import Fitted
 from advisor.gap.holdout import mean_squares
 from advisor.gap.merit import LEAST_BELIEF, Judged
 from advisor.gap.noise import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
-from advisor.gap.probes import KNOTS_S, disturbance_course
+from advisor.gap.probes import KNOTS_S, Course, disturbance_courses
 from advisor.gap.problem import Problem
 from advisor.oem.innovations import CHANNELS
 from advisor.oem.turbulence import find_turbulence
@@ -27,6 +28,10 @@ AIR_MANEUVERS = 5
 LEAST_GUST_ANGLE = 0.001
 """Gust angle below which it is not worth a name, rad."""
 
+_TRIED = 6
+"""Sizes of a gust beforehand, from what turbulence would have to any ..."""
+_AS_MUCH = 0.995
+"""... and what a gentler course must take up of what the strongest does."""
 _OF_AIR = 0.02
 """Share of the log likelihood that moving air brings which an effect must bring beside it ..."""
 _OF_POWER = 0.1
@@ -83,30 +88,43 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
         return None
     model = with_floor(problem, found.air)
     instruments = np.hypot(model.white, model.coloured)[[CHANNELS.index(c) for c in problem.channels]]
-    courses, lefts = disturbance_course(problem, fitted, instruments, "air", found.gust_angle)
-    joined = np.concatenate(courses)
+    course = disturbance_courses(problem, fitted, instruments, "air", [found.gust_angle])[0]
+    joined = np.concatenate(course.knots)
     typical = float(np.median(np.abs(joined - np.median(joined)))) / 0.6745
     # Gaussian air of this many samples reaches four times its spread, a lone gust far more.
     gust = float(np.max(np.abs(joined))) > 6.0 * typical
     if gust:
-        courses, lefts = disturbance_course(problem, fitted, instruments, "air", ANY_GUST)
+        course = _of_a_gust(problem, fitted, instruments, found.gust_angle)
     floor = 1.0 if problem.instruments is None else problem.instruments
     before = mean_squares(problem, fitted.left)
-    # Where no gust was, its course may wander far and change little: the loudest manoeuvre shows the gust.
-    number = int(np.argmax(np.mean((before - mean_squares(problem, lefts)) / floor**2, axis=1)))
-    at = int(np.argmax(np.abs(courses[number])))
+    # The loudest manoeuvre shows the gust: where none was, a course may wander far and change little.
+    number = int(np.argmax(np.mean((before - mean_squares(problem, course.lefts)) / floor**2, axis=1)))
+    at = int(np.argmax(np.abs(course.knots[number])))
     flight = problem.flights.flights[number]
-    left = _mean_square(problem, lefts)
+    left = _mean_square(problem, course.lefts)
     taken = np.mean(before, axis=0) - left
     return Air(
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
-        gust_angle=float(courses[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
-        left=left, lefts=tuple(lefts), power=float(np.mean(taken / floor**2)),
+        gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
+        left=left, lefts=course.lefts, power=float(np.mean(taken / floor**2)),
     )  # fmt: skip
 
 
-def _mean_square(problem: Problem, lefts: list[FloatArray]) -> FloatArray:
+def _of_a_gust(problem: Problem, fitted: Fitted, instruments: FloatArray, least: float) -> Course:
+    """The gentlest course that explains as much as one that may be of any size.
+
+    What the instruments hardly show would wander far in one that may be of any size.
+    """
+    sizes = [*np.geomspace(least, ANY_GUST, _TRIED)] if least < ANY_GUST else [ANY_GUST]
+    courses = disturbance_courses(problem, fitted, instruments, "air", sizes)
+    left = [float(np.sum(_mean_square(problem, c.lefts) / instruments**2)) for c in courses]
+    before = float(np.sum(np.mean(mean_squares(problem, fitted.left), axis=0) / instruments**2))
+    enough = before - _AS_MUCH * (before - left[-1])
+    return next(c for c, rest in zip(courses, left, strict=True) if rest <= enough)
+
+
+def _mean_square(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
     """Shape (channels,), over all manoeuvres; the air's own freedom (a knot each) counted against it."""
     knots = sum(f.duration_s / KNOTS_S for f in problem.flights.flights)
     samples = sum(len(left) for left in lefts)

@@ -36,7 +36,9 @@ from advisor.gap.stamps import stamp_power
 from advisor.gap.uncertainty import worth
 from advisor.gap.unnamed import unnamed_law
 from advisor.gap.variant import Variant
+from advisor.gap.wander import wandering_sensor
 from advisor.gap.waterfall import Progress, Stage, as_measured, build_up, reduced_to
+from advisor.gap.weight import weight_carried
 from advisor.gap.wind import wind_shear
 from advisor.problems import UnusableInputError
 
@@ -88,6 +90,11 @@ def diagnose(
         is_there = evidence.air is None or shear.is_plain
         leftover = of_the_wind(evidence.leftover) if is_there else evidence.leftover
         evidence = replace(evidence, shear=shear, leftover=leftover)
+    weight = weight_carried(flown, problem.flights.reference_m_s)
+    evidence = replace(evidence, weight=weight)
+    if weight is not None and evidence.leftover is None and len(evidence.stages) == 1:
+        at_fault = Leftover("accelerometer", 1.0, (("accelerometer", 1.0),))
+        evidence = replace(evidence, leftover=at_fault)
     progress("measuring the gap", 0.9)
     diagnosis = answer(evidence, aircraft, kinematics, holdout)
     missing = left_out([m.number for m in maneuvers if m.number not in numbers])
@@ -164,6 +171,8 @@ def _explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: P
     file_model = _file_model(problem, stages[0].fitted, aircraft)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, np.maximum(floor, stated))
+        if leftover is None and len(stages) == 1:
+            leftover = wandering_sensor(problem, last)
         if leftover is None and is_of_no_use(problem, stages, file_model, np.maximum(floor, stated)):
             stages = reduced_to(problem, stages, [])
             last = stages[-1].fitted

@@ -8,6 +8,7 @@ from advisor.gap.holdout import HeldOut
 from advisor.gap.leftover import Leftover
 from advisor.gap.problem import Problem
 from advisor.gap.waterfall import Stage
+from advisor.gap.weight import Weight
 from advisor.gap.wind import Shear
 
 
@@ -29,3 +30,5 @@ class Evidence:
     """Shape (channels,): tolerance of channels filtered before they were recorded, else 0."""
     shear: Shear | None = None
     """Wind that changes with height: it has no name in the catalogue."""
+    weight: Weight | None = None
+    """What the accelerometer reads of the weight, where it is not all of it."""

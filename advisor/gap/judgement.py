@@ -122,7 +122,7 @@ def _air_cause(e: Evidence) -> Cause | None:
     peak, spread = e.air.gust_angle * reference, e.air.angle_std * reference
     parameters = {"sigma_w_m_s": Value(spread, 0.25 * spread)}
     if gust:
-        parameters = {"amplitude_m_s": Value(peak, 0.4 * abs(peak)), "at_s": Value(e.air.gust_at_s, 0.1)}
+        parameters = {"amplitude_m_s": Value(peak, 0.25 * abs(peak)), "at_s": Value(e.air.gust_at_s, 0.1)}
     return Cause(
         "gust" if gust else "turbulence", "air", 0.9, parameters, ("turbulence" if gust else "gust",),
         "fly more manoeuvres: a gust does not come back, turbulence does", 0.0, True,

@@ -19,7 +19,7 @@ from advisor.gap.holdout import mean_squares
 from advisor.gap.jumps import jumping_sensor
 from advisor.gap.noise import unfiltered
 from advisor.gap.origin import stick_or_motion
-from advisor.gap.probes import SENSOR_CHANNELS, Probe, disturbance_course, probe_blocks
+from advisor.gap.probes import SENSOR_CHANNELS, Probe, disturbance_courses, probe_blocks
 from advisor.gap.problem import Problem
 from advisor.gap.tone import tone_in
 
@@ -176,8 +176,8 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
         if active[c] < _RESTLESS * quiet[c]:
             return None
     if best.block in ("input", "moment_equation"):
-        courses, _ = disturbance_course(problem, last, noise, best.block, best.size)
-        if is_of_the_air(problem.flights.flights, courses):
+        course = disturbance_courses(problem, last, noise, best.block, [best.size])[0]
+        if is_of_the_air(problem.flights.flights, course.knots):
             return None
     block = _block(problem, last, noise, probes)
     return Leftover(block, best.explained, _ranking(probes, block))

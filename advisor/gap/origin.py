@@ -15,7 +15,7 @@ from advisor.gap.course import has_tone
 from advisor.gap.fit import Fitted
 from advisor.gap.flights import Flight
 from advisor.gap.holdout import folds_of
-from advisor.gap.probes import KNOTS_S, Probe, disturbance_course
+from advisor.gap.probes import KNOTS_S, Probe, disturbance_courses
 from advisor.gap.problem import Problem
 
 ALIKE = frozenset({"input", "moment_equation"})
@@ -47,8 +47,8 @@ def stick_or_motion(
     if probes[0].gain - probes[1].gain > _TIED:
         return None
     size = next(p.size for p in probes if p.block == "moment_equation")
-    courses, _ = disturbance_course(problem, fitted, noise, "moment_equation", size)
-    return followed(problem.flights.flights, courses)
+    course = disturbance_courses(problem, fitted, noise, "moment_equation", [size])[0]
+    return followed(problem.flights.flights, course.knots)
 
 
 def followed(flights: Sequence[Flight], courses: Sequence[FloatArray]) -> str | None:

@@ -125,23 +125,38 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
     return np.asarray(columns @ _colour(flight))
 
 
-def disturbance_course(
-    problem: Problem, fitted: Fitted, noise: FloatArray, block: str, size: float
-) -> tuple[list[FloatArray], list[FloatArray]]:
-    """The likeliest course of a block's disturbance at its knots, and what it leaves, per manoeuvre."""
+@dataclass(frozen=True)
+class Course:
+    """The likeliest course of a block's disturbance."""
+
+    size: float
+    """Its standard deviation beforehand."""
+    knots: tuple[FloatArray, ...]
+    """Per manoeuvre: its value at each knot."""
+    lefts: tuple[FloatArray, ...]
+    """Per manoeuvre, stacked channels, in their units: what it leaves."""
+
+
+def disturbance_courses(
+    problem: Problem, fitted: Fitted, noise: FloatArray, block: str, sizes: Sequence[float]
+) -> list[Course]:
+    """The likeliest course of a block's disturbance for each size that it may have beforehand."""
     p = problem.driving(fitted.point)
-    courses, lefts = [], []
+    courses: list[list[FloatArray]] = [[] for _ in sizes]
+    lefts: list[list[FloatArray]] = [[] for _ in sizes]
     for i, flight in enumerate(problem.flights.flights):
         w = row_weights(problem, i, 1.0 / noise)
-        B = size * disturbance_columns(problem, flight, p[i], block)
         own, prior = fitted.linear[i].measured.own, fitted.linear[i].prior
-        both = np.column_stack([own, B])
-        A = both * w[:, None]
-        chol = factor(A, np.concatenate([prior, np.ones(B.shape[1])]))
-        found = solved(chol, A.T @ (fitted.left[i] * w))
-        courses.append(np.asarray(size * _colour(flight) @ found[own.shape[1] :]))
-        lefts.append(np.asarray(fitted.left[i] - both @ found))
-    return courses, lefts
+        both = np.column_stack([own, disturbance_columns(problem, flight, p[i], block)])
+        A, colour = both * w[:, None], _colour(flight)
+        free = len(colour)
+        for k, size in enumerate(sizes):
+            chol = factor(A, np.concatenate([prior, np.full(free, 1.0 / size**2)]))
+            found = solved(chol, A.T @ (fitted.left[i] * w))
+            courses[k].append(np.asarray(colour @ found[-free:]))
+            lefts[k].append(np.asarray(fitted.left[i] - both @ found))
+    found_of = zip(sizes, courses, lefts, strict=True)
+    return [Course(size, tuple(knots), tuple(left)) for size, knots, left in found_of]
 
 
 def _colour(flight: Flight) -> FloatArray:

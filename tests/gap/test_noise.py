@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from advisor.aircraft import Aircraft
 from advisor.gap.baseline import fit_baseline
@@ -128,3 +129,35 @@ def test_one_manoeuvre_seen_alone_keeps_what_changes_between_manoeuvres():
     whole = problem.fly(problem.flights.flights[3], problem.driving(point)[3])
     alone, seen = only(problem, replace(fitted, point=point), 3)
     assert alone.fly(alone.flights.flights[0], alone.driving(seen.point)[0]) == pytest.approx(whole)
+
+
+def wandering(channel, share, memory_s, others=0.0):
+    """A flight in which an instrument wanders by a share of its largest motion, with a memory."""
+    flown = []
+    rng = np.random.default_rng(3)
+    for maneuver in fly(Setup(seed=12)):
+        channels = dict(maneuver.channels)
+        for name in ("alpha", "q", "a_z", "theta"):
+            read = channels[name]
+            size = (share if name == channel else others) * np.max(np.abs(read.y - read.y[0]))
+            decay = np.exp(-np.median(np.diff(read.t)) / memory_s)
+            course = lfilter([size * np.sqrt(1 - decay**2)], [1, -decay], rng.standard_normal(len(read.t)))
+            channels[name] = replace(read, y=read.y + course)
+        flown.append(replace(maneuver, channels=channels))
+    return flown
+
+
+@pytest.mark.parametrize(
+    ("channel", "block"),
+    [("q", "pitch_rate_sensor"), ("alpha", "alpha_sensor"), ("theta", "attitude_sensor")],
+)
+def test_an_instrument_that_wanders_alone_is_unknown_and_no_noise(channel, block):
+    found = diagnose(wandering(channel, 0.12, 1.5), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", block)
+    assert found.gap.before > 0.5
+    assert any("wanders by itself" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(("share", "memory_s", "others"), [(0.06, 0.1, 0.0), (0.03, 1.0, 0.02)])
+def test_noise_that_is_quick_or_everywhere_is_noise(share, memory_s, others):
+    assert diagnose(wandering("q", share, memory_s, others), Aircraft()).verdict == "none"

@@ -87,3 +87,17 @@ def test_damping_that_bends_is_no_sum_of_bent_moments(setup, switches, says):
     assert found.verdict == "unknown"
     assert found.where.block == "moment_equation"
     assert any(says in note for note in found.notes)
+
+
+def test_an_accelerometer_that_does_not_carry_the_weight_is_unknown_where_the_dynamics_tell_nothing():
+    stormy = Setup(gust_std=2.0, coloured=0.5, jitter=0.004, seed=37)
+    found = diagnose(scaled(stormy, "a_z", 0.78), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "accelerometer")
+    assert any("reads 0.78" in note for note in found.notes)
+    sound = diagnose(fly(stormy), Aircraft())
+    assert sound.where.block != "accelerometer"
+
+
+def test_an_accelerometers_zero_that_is_off_by_a_common_amount_is_no_cause():
+    found = diagnose(with_reading(Setup(maneuvers=6, seed=5), "a_z", lambda y: y + 0.6), Aircraft())
+    assert found.verdict == "none"
