@@ -14,6 +14,7 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
+from advisor.gravity import GRAVITY_M_S2
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
 
@@ -24,7 +25,6 @@ DERIVATIVES = tuple(k for k in range(len(PARAMETERS)) if k not in INTERCEPTS)
 _D, _C = list(DERIVATIVES), list(INTERCEPTS)
 _DD, _CC, _CD, _DC = np.ix_(_D, _D), np.ix_(_C, _C), np.ix_(_C, _D), np.ix_(_D, _C)
 _SPEED_POWER = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS], dtype=float)
-_GRAVITY = 9.80665
 
 
 class Shared(NamedTuple):
@@ -92,7 +92,7 @@ def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
 def _at_speed(estimate: Estimate, speed: float, reference: float, widening: FloatArray) -> Belief:
     scale = (reference / speed) ** _SPEED_POWER
     gravity = np.zeros(len(PARAMETERS))
-    gravity[PARAMETERS.index("Z_0")] = _GRAVITY
+    gravity[PARAMETERS.index("Z_0")] = GRAVITY_M_S2
     theta = (estimate.theta - gravity / speed) * scale + gravity / reference
     return Belief(theta, estimate.covariance_cr * widening * np.outer(scale, scale))
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from advisor.flight.clocks import place
 from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.surfaces import Surface, driven
+from advisor.gravity import GRAVITY_M_S2
 
-STANDARD_GRAVITY = 9.80665
-_MILLI_G = STANDARD_GRAVITY / 1000.0
+_MILLI_G = GRAVITY_M_S2 / 1000.0
 
 # The counters that stamp messages (field, length of a tick in s); MAVLink common.xml, ardupilotmega.xml.
 _BOOT_MS = ("time_boot_ms", 1e-3)

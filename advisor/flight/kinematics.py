@@ -15,8 +15,8 @@ import numpy as np
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.renewal import renewed
+from advisor.gravity import GRAVITY_M_S2
 
-GRAVITY_M_S2 = 9.80665
 NEEDED = ("alpha", "q", "theta", "a_z")
 CORRUPTED_BY_LAG = ("Z_delta_e", "Z_q", "Z_alpha", "M_q")
 """What a late α spoils. M_alpha and M_delta_e keep their values: the lag only mixes α with

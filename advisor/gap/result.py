@@ -152,3 +152,8 @@ class Diagnosis:
     traces: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
     maneuvers: tuple[int, ...] = field(default=())
+
+
+def spelled(effect: str) -> str:
+    """An effect's name as people write it."""
+    return effect.replace("_", " ")

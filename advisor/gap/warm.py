@@ -3,7 +3,7 @@
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.gap.plan import foresee_plan
+from advisor.gap.foresight.plan import foresee_plan
 from advisor.oem.innovations import AirModel, cost_of, gains_of
 
 _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -50.0), strict=True))

@@ -10,10 +10,11 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 from advisor.flight.renewal import renewed
+from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lost_input import restored
-from advisor.oem.problem import GRAVITY, Problem, Record, Signal
+from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.surface import Servo
 
 FEWEST_SAMPLES = 20
@@ -127,7 +128,7 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
         theta = _signal(channels["theta"])
         cosine = np.cos(_signal(channels["bank"]).at(theta.t)) if _has(channels, "bank") else 1.0
         path = Signal(theta.t, theta.y - alpha.at(theta.t))
-        gravity = Signal(theta.t, GRAVITY * np.cos(theta.y) * cosine)
+        gravity = Signal(theta.t, GRAVITY_M_S2 * np.cos(theta.y) * cosine)
     return Record(
         elevator=_signal(channels["elevator"]),
         outputs=outputs,

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gravity import GRAVITY_M_S2
 from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, SHARED, Grid, Index
 from advisor.oem.surface import Servo
 
-GRAVITY = 9.80665
 STAMP_S = 1e-9
 """Stamps closer than this are one event."""
 STAMP_DIGITS = 12
@@ -41,7 +41,7 @@ class Record:
     path: Signal | None = None
     """Flight path angle γ in rad, for gravity's part in α̇; None: constant."""
     gravity_z: Signal | None = None
-    """g·cos θ·cos φ in m/s², needed by a_z; None: 9.81."""
+    """g·cos θ·cos φ in m/s², needed by a_z; None: 9.80665."""
     held: bool = False
     """The input is held between its stamps instead of linear."""
 
@@ -207,10 +207,13 @@ class _Piece:
                 ratio = record.airspeed.at(middle) / problem.reference_airspeed_m_s
         known = np.zeros(len(step))
         if record.airspeed is not None and problem.reference_airspeed_m_s is not None:
-            known = GRAVITY / record.airspeed.at(middle) - ratio * GRAVITY / problem.reference_airspeed_m_s
+            known = (
+                GRAVITY_M_S2 / record.airspeed.at(middle)
+                - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
+            )
         if record.airspeed is not None and record.path is not None:
-            known += GRAVITY / record.airspeed.at(middle) * (np.cos(record.path.at(middle)) - 1.0)
-        gravity = np.full(len(t), GRAVITY) if record.gravity_z is None else record.gravity_z.at(t)
+            known += GRAVITY_M_S2 / record.airspeed.at(middle) * (np.cos(record.path.at(middle)) - 1.0)
+        gravity = np.full(len(t), GRAVITY_M_S2) if record.gravity_z is None else record.gravity_z.at(t)
         return cls(
             t=t,
             outputs=outputs,

@@ -12,8 +12,8 @@ from advisor.aircraft import Aircraft
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.stream import FlightStream
+from advisor.gap.candidates.known import together
 from advisor.gap.diagnose import diagnose
-from advisor.gap.known import together
 from advisor.gap.result import Diagnosis
 from advisor.mavlink.logs import open_log
 from advisor.problems import UnusableInputError

@@ -7,8 +7,8 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from advisor.gap.result import Cause, Unseen
-from advisor.report.gap_sizes import short, sizes_of, spelled
+from advisor.gap.result import Cause, Unseen, spelled
+from advisor.report.gap_sizes import short, sizes_of
 
 _LIKELY = 0.01
 """Alternatives below this probability share one line."""

@@ -12,10 +12,11 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.aircraft import Aircraft
-from advisor.gap.foresee import CONFUSED_AT, Foreseen
-from advisor.gap.notes import unusual_signs
-from advisor.gap.plan import TYPICAL_NOISE, foresee_plan
-from advisor.report.gap_sizes import in_units, spelled
+from advisor.gap.foresight.foresee import CONFUSED_AT, Foreseen
+from advisor.gap.foresight.plan import TYPICAL_NOISE, foresee_plan
+from advisor.gap.result import spelled
+from advisor.gap.verdict.notes import unusual_signs
+from advisor.report.gap_sizes import in_units
 
 _OF_LINEAR = {"M_alpha2": "M_alpha", "Z_alpha2": "Z_alpha", "M_delta2": "M_delta_e"}
 

@@ -9,11 +9,11 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from advisor.gap.result import Diagnosis
-from advisor.gap.text import place
+from advisor.gap.result import Diagnosis, spelled
+from advisor.gap.verdict.text import place
 from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, worst_maneuver, yardsticks
-from advisor.report.gap_sizes import short, spelled
+from advisor.report.gap_sizes import short
 from advisor.report.gap_where import whereabouts
 
 WIDEST = 120

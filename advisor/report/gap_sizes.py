@@ -34,11 +34,6 @@ _IN_WORDS = {"with_pitch_rate": "the pitch rate, too"}
 """Parameters that only say that something is so."""
 
 
-def spelled(effect: str) -> str:
-    """An effect's name as people write it."""
-    return effect.replace("_", " ")
-
-
 def short(x: float) -> str:
     """Three digits, never in powers of ten where people count in thousands or it might as well be nothing."""
     if abs(x) < _LEAST:

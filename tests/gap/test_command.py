@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.gap.baseline import fit_baseline
-from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
 from advisor.report.gap import maneuvers_of
 from sim.effects.fitting import flight_of
 from sim.record import record

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.gap.course import is_in_few, is_of_the_air, louder_with_the_stick, tone_of
-from advisor.gap.data import prepare
-from advisor.gap.probes import KNOTS_S
+from advisor.gap.noise.probes import KNOTS_S
+from advisor.gap.records.prepare import prepare
+from advisor.gap.unnamed.course import is_in_few, is_of_the_air, louder_with_the_stick, tone_of
 from tests.gap.generator import Setup, fly
 
 

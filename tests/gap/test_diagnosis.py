@@ -11,7 +11,7 @@ from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan, Limits
 from advisor.config import parse_aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.document import gap_document
-from advisor.gap.plan import foresee_plan
+from advisor.gap.foresight.plan import foresee_plan
 from advisor.problems import ConfigurationError, UnusableInputError
 from advisor.report.gap import improved_file, write_improved
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly

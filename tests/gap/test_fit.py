@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.causes import with_doubt
-from advisor.gap.data import prepare
-from advisor.gap.fit import fit
-from advisor.gap.layout import ENTRIES, INDEX
-from advisor.gap.linear import linearise
-from advisor.gap.problem import Point, Problem
+from advisor.gap.fitting.fit import fit
+from advisor.gap.fitting.linear import linearise
+from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Value
-from advisor.gap.score import price_of_edges
-from advisor.gap.screen import Screen
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.search.score import price_of_edges
+from advisor.gap.search.screen import Screen
+from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.gap.verdict.causes import with_doubt
 from tests.gap.generator import Setup, fly
 
 

@@ -11,13 +11,13 @@ from rich.console import Console
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.cli import advisor
-from advisor.gap.baseline import believed_derivatives
 from advisor.gap.candidates.catalogue import BLOCK_OF
-from advisor.gap.causes import LEAST_OFFSET_RAD
-from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.needs import need_of
-from advisor.gap.plan import foresee_flights, foresee_plan
+from advisor.gap.foresight.needs import need_of
+from advisor.gap.foresight.plan import foresee_flights, foresee_plan
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import believed_derivatives
+from advisor.gap.search.merit import LEAST_OFFSET_RAD
 from advisor.problems import ConfigurationError
 from advisor.report.gap_plan import ForesightScreen, size_of
 from tests.gap.generator import UAV, Setup, fly

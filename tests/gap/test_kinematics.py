@@ -7,12 +7,12 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import KinematicCheck, check_alpha, coloured_covariance, combine
-from advisor.gap.causes import alpha_bias_cause, alpha_lag_cause
-from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.layout import ENTRIES
-from advisor.gap.problem import Problem
-from advisor.gap.wind import wind_shear
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.records.prepare import prepare
+from advisor.gap.simulator.layout import ENTRIES
+from advisor.gap.unnamed.wind import wind_shear
+from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 

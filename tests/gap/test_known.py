@@ -5,10 +5,10 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.data import prepare
+from advisor.gap.candidates.known import together, with_known
 from advisor.gap.diagnose import diagnose
-from advisor.gap.known import together, with_known
-from advisor.gap.layout import ENTRIES, INDEX
+from advisor.gap.records.prepare import prepare
+from advisor.gap.simulator.layout import ENTRIES, INDEX
 from tests.gap.generator import Setup, fly
 
 

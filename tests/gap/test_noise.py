@@ -7,13 +7,13 @@ import pytest
 from scipy.signal import lfilter
 
 from advisor.aircraft import Aircraft
-from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.noise import only
-from advisor.gap.stamps import rates_of, stamp_jitter
-from advisor.gap.whitening import Filters
+from advisor.gap.fitting.whitening import Filters
+from advisor.gap.noise.quiet import only
+from advisor.gap.noise.stamps import rates_of, stamp_jitter
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
 from advisor.oem.innovations import DIFFUSE, AirModel, cost_of, gains_of
 from tests.gap.generator import Setup, fly
 

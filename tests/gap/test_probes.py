@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.gap.baseline import fit_baseline
-from advisor.gap.data import prepare
-from advisor.gap.layout import INDEX, OUTPUTS
-from advisor.gap.linear import unit_pulse
-from advisor.gap.noise import instrument_noise, only, unfiltered
-from advisor.gap.probes import DYNAMIC, probe_blocks
-from advisor.gap.reading import lane
+from advisor.gap.fitting.linear import unit_pulse
+from advisor.gap.noise.probes import DYNAMIC, probe_blocks
+from advisor.gap.noise.quiet import instrument_noise, only, unfiltered
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.simulator.layout import INDEX, OUTPUTS
+from advisor.gap.simulator.reading import lane
 from tests.gap.generator import Setup, fly
 
 LATER = 40

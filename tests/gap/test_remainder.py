@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.data import prepare
-from advisor.gap.fit import fit
-from advisor.gap.holdout import hold_out
-from advisor.gap.noise import quiet_rms
-from advisor.gap.remainder import is_of_no_use, remainder
-from advisor.gap.waterfall import Stage
+from advisor.gap.fitting.fit import fit
+from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.noise.quiet import quiet_rms
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.search.waterfall import Stage
+from advisor.gap.unnamed.remainder import is_of_no_use, remainder
 from tests.gap.generator import Setup, fly
 
 

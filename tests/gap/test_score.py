@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.fit import fit
-from advisor.gap.holdout import hold_out
-from advisor.gap.ranking import evened
-from advisor.gap.score import addition, predict_alike
-from advisor.gap.uncertainty import worth
+from advisor.gap.fitting.fit import fit
+from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.fitting.uncertainty import worth
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.search.ranking import evened
+from advisor.gap.search.score import addition, predict_alike
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 

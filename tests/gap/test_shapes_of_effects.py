@@ -7,8 +7,8 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
-from advisor.gap.layout import ENTRIES, INDEX
-from advisor.gap.surface import surface
+from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.gap.simulator.surface import surface
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 

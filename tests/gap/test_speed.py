@@ -6,17 +6,18 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.gap.airspeed import speed_of_the_motion
-from advisor.gap.baseline import fit_baseline
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.holdout import hold_out
-from advisor.gap.merit import LEAST_GAIN
-from advisor.gap.ranking import judge
-from advisor.gap.screen import Screen
-from advisor.gap.simulate import GRAVITY_M_S2, HEIGHT, SPEED, THRUST
-from advisor.gap.speed import swings, work
+from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.records.airspeed import speed_of_the_motion
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.search.merit import LEAST_GAIN
+from advisor.gap.search.ranking import judge
+from advisor.gap.search.screen import Screen
+from advisor.gap.search.speed import swings, work
+from advisor.gap.simulator.simulate import HEIGHT, SPEED, THRUST
+from advisor.gravity import GRAVITY_M_S2
 from tests.gap.generator import UAV, Setup, fly
 
 HEIGHTS = (80.0, 90.0, 85.0)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.gap.airspeed import speed_doubts
-from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.layout import DERIVATIVES, ENTRIES, INDEX
-from advisor.gap.linear import linearise
-from advisor.gap.problem import Point, Problem
-from advisor.gap.simulate import SPEED
+from advisor.gap.fitting.linear import linearise
+from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.records.airspeed import speed_doubts
+from advisor.gap.records.prepare import prepare
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
+from advisor.gap.simulator.simulate import SPEED
 from tests.gap.generator import UAV, Setup, fly
 
 

@@ -5,8 +5,8 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
-from advisor.gap.layout import ENTRIES, INDEX
-from advisor.gap.surface import surface
+from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.gap.simulator.surface import surface
 from advisor.report.gap import maneuvers_of
 from sim.effects.fitting import flight_of
 from sim.record import record

@@ -7,11 +7,11 @@ import pytest
 from scipy.signal import lfilter
 
 from advisor.aircraft import Aircraft
-from advisor.gap.baseline import fit_baseline
-from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
+from advisor.gap.records.prepare import prepare
 from advisor.gap.result import VISIBLE
-from advisor.gap.tone import line_of, tone_in
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.unnamed.tone import line_of, tone_in
 from tests.gap.generator import Setup, fly
 
 STANDS_OUT = 5.0

@@ -7,18 +7,18 @@ import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
 from advisor.aircraft import PARAMETERS, Aircraft, Alpha
-from advisor.gap.baseline import fit_baseline
-from advisor.gap.belief import log_belief, pull_of
 from advisor.gap.candidates.between import shift_moments
-from advisor.gap.data import prepare
 from advisor.gap.diagnose import diagnose
-from advisor.gap.layout import ENTRIES, INDEX
-from advisor.gap.leftover import other_than_air
-from advisor.gap.origin import followed
-from advisor.gap.probes import KNOTS_S
-from advisor.gap.smoothness import is_filtered, is_smoothed
-from advisor.gap.surface import surface
-from advisor.gap.wind import wind_shear
+from advisor.gap.fitting.belief import log_belief, pull_of
+from advisor.gap.noise.probes import KNOTS_S
+from advisor.gap.records.prepare import prepare
+from advisor.gap.records.smoothness import is_filtered, is_smoothed
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.gap.simulator.surface import surface
+from advisor.gap.unnamed.leftover import other_than_air
+from advisor.gap.unnamed.origin import followed
+from advisor.gap.unnamed.wind import wind_shear
 from tests.gap.generator import Setup, fly
 
 BELIEVED = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0])

@@ -1,1 +1,1 @@
-"""The catalogue: every named effect as low-order terms, one file a block of the simulator."""
+"""The effects that may be missing, each a few numbers in the simulator."""

@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.flights import Flights
-from advisor.gap.layout import INDEX
-from advisor.gap.variant import Values, Variant
+from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.records.flights import Flights
+from advisor.gap.simulator.layout import INDEX
 
 Change = Callable[[FloatArray, FloatArray], None]
 """Change driving numbers (manoeuvres, entries), given the relative change of each manoeuvre."""

@@ -1,10 +1,8 @@
 """All variants that these data allow, and what each effect is called and belongs to."""
 
 from advisor.gap.candidates import force, input, moment, sensors, timing
-from advisor.gap.flights import Flights
-from advisor.gap.problem import Point
-from advisor.gap.speed import SPEED_CHANGE
-from advisor.gap.variant import Variant
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.records.flights import SPEED_CHANGE, Flights
 
 BLOCK_OF = {
     "actuator_lag": "input", "actuator_rate_limit": "input", "actuator_backlash": "input",
@@ -28,15 +26,6 @@ _CHANNEL_OF = {
     "alpha_lag": "alpha", "alpha_scale": "alpha", "alpha_vane_offset": "alpha", "alpha_skew": "alpha",
     "accelerometer_offset": "a_z", "accelerometer_skew": "a_z", "attitude_skew": "theta",
 }  # fmt: skip
-
-
-def everywhere(point: Point, flights: Flights, latency_s: float = 0.0) -> Point:
-    """The point with what is part of every model."""
-    late = point.with_effect(input.LATENCY, (latency_s,))
-    if flights.alpha_is_derived:
-        filters = timing.filters(flights)
-        late = late.with_effect(filters, (0.0,) * len(filters.names))
-    return late.with_effect(moment.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 
 
 def variants_for(flights: Flights) -> list[Variant]:

@@ -4,10 +4,10 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import breaks, divide, ramps_and_steps
-from advisor.gap.flights import Flights
-from advisor.gap.layout import DERIVATIVES, INDEX
-from advisor.gap.simulate import HEIGHT
-from advisor.gap.variant import Values, Variant
+from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.records.flights import Flights
+from advisor.gap.simulator.layout import DERIVATIVES, INDEX
+from advisor.gap.simulator.simulate import HEIGHT
 
 BLOCK = "force_equation"
 _DECAYS_M = (0.1, 50.0)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.flights import Flights
-from advisor.gap.layout import INDEX
-from advisor.gap.variant import Values, Variant
+from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.records.flights import Flights
+from advisor.gap.simulator.layout import INDEX
 
 BLOCK = "input"
 _SMALL_ANGLE = 0.00175  # 0.1 deg

@@ -7,9 +7,9 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import ramps_and_steps, shift_moments, shift_stability
-from advisor.gap.flights import Flights
-from advisor.gap.simulate import GRAVITY_M_S2
-from advisor.gap.variant import Variant
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.records.flights import Flights
+from advisor.gravity import GRAVITY_M_S2
 
 BLOCK = "moment_equation"
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.gap.variant import Variant
+from advisor.gap.candidates.variant import Variant
 
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
 

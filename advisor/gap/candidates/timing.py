@@ -6,9 +6,9 @@ from functools import partial
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.flights import Flights
-from advisor.gap.layout import INDEX, OUTPUTS, SKEWS
-from advisor.gap.variant import Values, Variant
+from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.records.flights import Flights
+from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
 
 BLOCK = "timing"
 _STREAMS = (

@@ -1,0 +1,85 @@
+"""What the simulator under diagnosis has already: the effects that stand in its aircraft file.
+
+They are in every model from the start, so that a file which ``advisor gap`` improved is judged as it flies,
+and what is found is what is missing beyond it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.records.flights import Flights
+
+Effects = Mapping[str, Mapping[str, float]]
+"""Effect name to its parameters, as the aircraft file has them."""
+_OF_ITS_FLIGHT = frozenset({"cg_shift", "mass_change", "icing", "turbulence", "gust"})
+"""Effects that came at some time of one flight, and say nothing of another."""
+
+
+def with_known(
+    base: FloatArray, effects: Effects, flights: Flights, variants: Sequence[Variant]
+) -> FloatArray:
+    """Shape (entries,): the simulation's numbers with the file's effects in them."""
+    row = base[None, :].copy()
+    for effect, parameters in effects.items():
+        if effect in _OF_ITS_FLIGHT:
+            continue
+        meant = [v for v in variants if v.effect == effect and _says(v, parameters)]
+        for variant in sorted(meant, key=lambda v: (-len(v.fixed), -len(v.names)))[:1]:
+            variant.apply(row, _values(variant, parameters), flights)
+    return np.asarray(row[0])
+
+
+def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]:
+    """The candidates left: a single number may be more or less than the file says, a shape is what it is."""
+    left = []
+    for variant in variants:
+        known = effects.get(variant.effect, {}) if variant.effect not in _OF_ITS_FLIGHT else {}
+        if not known:
+            left.append(variant)
+        elif len(variant.names) == 1 and not variant.inverted:
+            left.append(_or_less(variant, known.get(variant.names[0], 0.0)))
+    return left
+
+
+def left_aside(effects: Effects) -> tuple[str, ...]:
+    """Effects of the file that belong to the flight in which they were found."""
+    return tuple(effect for effect in effects if effect in _OF_ITS_FLIGHT)
+
+
+def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
+    """The file's effects and what was found beyond them."""
+    both = {effect: dict(values) for effect, values in known.items()}
+    for effect, values in found.items():
+        before = both.get(effect, {}) if effect not in _OF_ITS_FLIGHT and len(values) == 1 else {}
+        both[effect] = before | {name: value + before.get(name, 0.0) for name, value in values.items()}
+    return both
+
+
+def _or_less(variant: Variant, known: float) -> Variant:
+    """The candidate that may also take away what the file has of it, where it could not be negative."""
+    lowest, highest = variant.bounds[0]
+    if lowest < 0.0 or known <= 0.0:
+        return variant
+    return replace(variant, starts=(*variant.starts, (-0.5 * known,)), bounds=((-known, highest),))
+
+
+def _says(variant: Variant, parameters: Mapping[str, float]) -> bool:
+    if variant.effect == "structural_mode":
+        return "frequency_hz" in parameters
+    same = all(parameters.get(name) == value for name, value in variant.fixed.items())
+    return same and all(name in parameters for name in variant.names)
+
+
+def _values(variant: Variant, parameters: Mapping[str, float]) -> list[float]:
+    """Of the variant's numbers, from the file's: the reverse of ``causes.parameters_of``."""
+    if variant.effect == "structural_mode":
+        return [
+            parameters.get("displacement_gain", 0.0), parameters.get("gain", 0.0),
+            2.0 * np.pi * parameters["frequency_hz"], parameters.get("damping", 0.0),
+        ]  # fmt: skip
+    values = [parameters[name] for name in variant.names]
+    return [1.0 / max(values[0], 1e-9), *values[1:]] if variant.inverted else values

@@ -1,0 +1,145 @@
+"""From the plain model to the evidence: effects are added, then what is left is looked at."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import beyond_known
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.fitting.fit import Fitted, solve_blocks
+from advisor.gap.fitting.holdout import HeldOut, held_out
+from advisor.gap.fitting.linear import linearise
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import worth
+from advisor.gap.noise.quiet import quiet_rms
+from advisor.gap.noise.stamps import stamp_power
+from advisor.gap.records.floor import prefiltered, stated_floor
+from advisor.gap.search.air import Air, moving_air
+from advisor.gap.search.command import is_likelier_held, may_be_held, read_as_held
+from advisor.gap.search.speed import at_constant_speed
+from advisor.gap.search.waterfall import Progress, Stage, as_measured, build_up, reduced_to
+from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.unnamed.laws import unnamed_law
+from advisor.gap.unnamed.leftover import Leftover, is_the_gust, left_over, other_than_air, swinging
+from advisor.gap.unnamed.remainder import is_of_no_use, remainder
+from advisor.gap.unnamed.wander import wandering_sensor
+from advisor.gap.verdict.evidence import Evidence
+
+
+def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Progress) -> Evidence:
+    """Build the model up, then look at what is left: the air, and whatever the motion still predicts.
+
+    Parameters
+    ----------
+    problem, baseline
+        The data, and the plain model fitted to them.
+    aircraft
+        The aircraft file: its effects are in every model.
+    progress
+        Called with a sentence and the share done.
+    """
+    variants = beyond_known(aircraft.effects, variants_for(problem.flights))
+    problem, stages = _named(problem, baseline, variants, progress)
+    law = unnamed_law(problem, stages)
+    if law is not None:
+        stages = reduced_to(problem, stages, [])
+    progress("looking at the air", 0.7)
+    stages, air = _beside_the_air(problem, stages)
+    progress("looking for what has no name", 0.8)
+    stated = _stated(problem)
+    leftover = law or _without_a_name(problem, stages, air, stated)
+    stages = as_measured(problem, stages)
+    file_model = _file_model(problem, stages[0].fitted, aircraft)
+    floor = _floor(problem, stages[-1], stated)
+    if leftover is None and air is None:
+        leftover = remainder(problem, stages, floor)
+        if leftover is None and is_of_no_use(problem, stages, file_model, floor):
+            stages = reduced_to(problem, stages, [])
+        elif leftover is None and len(stages) == 1:
+            leftover = wandering_sensor(problem, stages[-1].fitted)
+    if leftover is not None and leftover.in_quiet is not None:
+        least = np.maximum(stated_floor(problem.flights), stated)
+        floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
+    speed = at_constant_speed(problem, stages[-1].fitted)
+    return Evidence(problem, stages, leftover, air, floor, file_model, speed, stated)
+
+
+def _named(
+    problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
+) -> tuple[Problem, list[Stage]]:
+    """The model built up, with the command held instead of linear where that names the likelier effects."""
+    stages = build_up(problem, baseline, variants, progress)
+    seen = stages[0].rivals | {s.added.effect for s in stages if s.added is not None}
+    if may_be_held(problem, stages[-1].fitted, seen):
+        held, plain = read_as_held(problem, baseline)
+        others = build_up(held, plain, variants, progress)
+        if is_likelier_held(problem, stages[-1].fitted, held, others[-1].fitted):
+            return held, others
+    return problem, stages
+
+
+def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage], Air | None]:
+    """The air's motion, and the stages without what is no more than its shape."""
+    last = stages[-1].fitted
+    samples = sum(len(f.outputs["q"].t) for f in problem.flights.flights)
+    if not problem.knows_the_noise and np.min(worth(problem, last.innovations)) >= 0.5 * samples:
+        return stages, None
+    air = moving_air(problem, last)
+    if air is None:
+        return stages, None
+    named = [s.added for s in stages if s.added is not None]
+    kept = [judged.effect for judged in named if not air.may_be(judged)]
+    if len(kept) == len(named):
+        return stages, air
+    stages = reduced_to(problem, stages, kept)
+    return stages, moving_air(problem, stages[-1].fitted)
+
+
+def _without_a_name(
+    problem: Problem, stages: list[Stage], air: Air | None, stated: FloatArray
+) -> Leftover | None:
+    """What the last model leaves that is neither noise nor the air."""
+    first, last = stages[0].fitted, stages[-1].fitted
+    # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
+    swing = swinging(problem, first, last, stated)
+    if swing is not None:
+        return swing
+    leftover = left_over(problem, first, last, stated, moving_air=air is not None)
+    if air is None:
+        return leftover
+    if air.gust and leftover is not None and is_the_gust(problem, last, leftover):
+        return None
+    return other_than_air(problem, first, last) if leftover is None or leftover.block == "air" else leftover
+
+
+def _stated(problem: Problem) -> FloatArray:
+    """Shape (channels,): tolerance of channels that were filtered before they were recorded, else 0."""
+    smooth = prefiltered(problem.flights)
+    white = stated_floor(problem.flights)
+    return np.array([white[k] if smooth[c] else 0.0 for k, c in enumerate(problem.channels)])
+
+
+def _floor(problem: Problem, last: Stage, stated: FloatArray) -> FloatArray:
+    """Shape (channels,): noise as it is where nothing was flown."""
+    # Stamps that jitter are the instruments', too, but show only where something moves.
+    measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
+    return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), stated)
+
+
+def _file_model(problem: Problem, baseline: Fitted, aircraft: Aircraft) -> HeldOut | None:
+    """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
+    if any(name not in aircraft.model for name in PARAMETERS):
+        return None
+    point = replace(baseline.point, derivatives=np.array([aircraft.model[name] for name in DERIVATIVES]))
+    lefts: list[FloatArray] = []
+    for _ in range(3):
+        linear = linearise(problem, point)
+        owns = solve_blocks(problem, linear, 1.0 / baseline.noise, point).free
+        still = np.zeros(len(point.shared))
+        lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
+        point = replace(point, own=point.own + np.array([o[:4] for o in owns]))
+    return held_out(problem, lefts)

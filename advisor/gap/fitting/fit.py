@@ -1,0 +1,241 @@
+"""Output error over several manoeuvres with any effects in the model: Gauss-Newton by blocks.
+
+Shared numbers (derivatives, parameters of effects) are few; every manoeuvre adds its own initial
+state, trim, offsets and uncertain edges of the command, which are eliminated manoeuvre by manoeuvre
+(a Schur complement), so the cost is linear in manoeuvres. The noise of each channel is re-estimated
+at every step, which minimises det R of Eqs. (7)-(8) for a diagonal R.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.linear import (
+    Linear,
+    linearise,
+)
+from advisor.gap.fitting.normal import factored, solved
+from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
+from advisor.gap.simulator.layout import NUISANCES
+
+_SETTLED = 0.02
+"""Relative change of the weights below which they and the own numbers have settled together."""
+_SHORTER = 0.3
+"""A step that led uphill is shortened by this ..."""
+_SHORTEST = 0.05
+"""... but not below this: the cost is rough at the grid of the simulation."""
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """Where the search ended."""
+
+    point: Point
+    noise: FloatArray
+    """Shape (channels,): standard deviation of the innovations."""
+    cost: float
+    """-2 log likelihood, profiled over the noise, priors included."""
+    innovations: tuple[FloatArray, ...]
+    """Per manoeuvre, what is left after offsets and edges, freed of what neighbours have in common."""
+    left: tuple[FloatArray, ...]
+    """The same in the units of the channels."""
+    information: FloatArray
+    """Shape (k, k): of the shared numbers, own numbers eliminated."""
+    linear: tuple[Linear, ...]
+    iterations: int
+
+
+def factor(A: FloatArray, prior: FloatArray) -> FloatArray:
+    """Cholesky factor of AᵀA + Λ⁻¹ for one manoeuvre's own columns, weighted."""
+    normal = A.T @ A
+    diagonal = np.diagonal(normal) + prior
+    np.fill_diagonal(normal, diagonal * (1.0 + 1e-10) + 1e-12 * np.mean(diagonal))
+    return factored(normal)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A Gauss-Newton step from where the model was made linear."""
+
+    shared: FloatArray
+    """Shape (k,)."""
+    free: list[FloatArray]
+    """Per manoeuvre, shape (m,): own numbers' solution at the old shared numbers ..."""
+    follow: list[FloatArray]
+    """... and shape (m, k), what they lose per unit of the shared ones."""
+    information: FloatArray
+    """Shape (k, k)."""
+    gradient: FloatArray
+    """Shape (k,): half the decrease of the cost per unit of each shared number."""
+
+    def promised(self, shared: FloatArray) -> float:
+        """Decrease of the cost by a step of the shared numbers, were the model linear."""
+        return float(2.0 * self.gradient @ shared - shared @ self.information @ shared)
+
+    def owns(self, shared: FloatArray) -> list[FloatArray]:
+        """Per manoeuvre the own numbers' solution after some step of the shared ones."""
+        return [free - follow @ shared for free, follow in zip(self.free, self.follow, strict=True)]
+
+    def ahead(self, linear: Sequence[Linear]) -> list[FloatArray]:
+        """Per manoeuvre, the residual that the whole step should leave."""
+        return [b.after(self.shared, own) for b, own in zip(linear, self.owns(self.shared), strict=True)]
+
+
+def own_eliminated(
+    problem: Problem, i: int, block: Linear, weights: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Normal equations of the shared numbers from one manoeuvre, its own eliminated (Schur complement).
+
+    Returns
+    -------
+    Shape (k + 1, k + 1), the residual's as the last row and column; and how the own numbers follow, shape
+    (m, k + 1).
+    """
+    w = row_weights(problem, i, weights)[:, None]
+    A, X = block.own * w, np.column_stack([block.shared, block.left]) * w
+    AX = A.T @ X
+    eliminated = solved(factor(A, block.prior), AX)
+    return np.asarray(X.T @ X - AX.T @ eliminated), eliminated
+
+
+def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray, point: Point) -> Step:
+    """One Gauss-Newton step, own numbers eliminated manoeuvre by manoeuvre."""
+    k = linear[0].shared.shape[1]
+    pull, missed = problem.pull(point)
+    H, g = np.diag(pull), pull * missed
+    free, follow = [], []
+    for i, block in enumerate(linear):
+        inner, eliminated = own_eliminated(problem, i, block, weights)
+        H += inner[:k, :k]
+        g += inner[:k, k]
+        free.append(eliminated[:, k])
+        follow.append(eliminated[:, :k])
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    step = np.linalg.lstsq(H / np.outer(scale, scale), g / scale, rcond=1e-12)[0] / scale
+    return Step(step, free, follow, H, g)
+
+
+def noise_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+    """Shape (channels,): RMS of what is left, not below the smallest noise."""
+    return above_floor(problem, rms_of(problem, lefts))
+
+
+def above_floor(problem: Problem, noise: FloatArray) -> FloatArray:
+    """Noise not below the smallest, shape (channels,) or (k, channels)."""
+    return np.maximum(noise, 1e-7 if problem.smallest_noise is None else problem.smallest_noise)
+
+
+def rms_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+    """Shape (channels,): root mean square over all manoeuvres."""
+    power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
+    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+        for c, rows in enumerate(problem.rows(flight)):
+            power[c] += float(left[rows] @ left[rows])
+            count[c] += rows.stop - rows.start
+    return np.asarray(np.sqrt(power / np.maximum(count, 1.0)))
+
+
+def cost_of(
+    problem: Problem,
+    point: Point,
+    lefts: Sequence[FloatArray],
+    owns: Sequence[FloatArray],
+    linear: Sequence[Linear],
+) -> float:
+    """-2 log likelihood profiled over the noise, Σ_c N_c log σ_c², plus the priors."""
+    noise = noise_of(problem, lefts)
+    power = problem.disbelief(point) + sum(
+        float(np.sum(b.prior * o**2)) for b, o in zip(linear, owns, strict=True)
+    )
+    return float(np.sum(counts(problem) * 2.0 * np.log(noise))) + power
+
+
+def fit(
+    problem: Problem,
+    start: Point,
+    noise: FloatArray | None = None,
+    iterations: int = 12,
+    tolerance: float = 0.1,
+) -> Fitted:
+    """Minimise det R from a start. The first noise decides the weights of the first step."""
+    point = start
+    linear = linearise(problem, point)
+    weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
+    lower, upper = bounds_of(point)
+    kept = _settled(problem, point, linear, weights)
+    length, done = 1.0, 1
+    while done < iterations and length > _SHORTEST:
+        shared = np.clip(kept.point.shared + length * kept.step.shared, lower, upper)
+        change = shared - kept.point.shared
+        if kept.step.promised(change) < tolerance:
+            break
+        owns = kept.step.owns(change)
+        point = kept.point.moved(shared, kept.point.own + np.array([o[: len(NUISANCES)] for o in owns]))
+        here = _settled(problem, point, linearise(problem, point), kept.weights)
+        done += 1
+        if here.cost < kept.cost:
+            kept, length = here, 1.0
+        else:
+            length *= _SHORTER
+    still = np.zeros(len(kept.point.shared))
+    measured = tuple(
+        block.measured.after(still, own) for block, own in zip(kept.linear, kept.step.free, strict=True)
+    )
+    information = solve_blocks(problem, kept.linear, 1.0 / kept.noise, kept.point).information
+    return Fitted(kept.point, kept.noise, kept.cost, kept.left, measured, information, kept.linear, done)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A point that was flown, with the step from there."""
+
+    point: Point
+    linear: tuple[Linear, ...]
+    weights: FloatArray
+    """Shape (channels,): of the model after the step."""
+    step: Step
+    left: tuple[FloatArray, ...]
+    """Per manoeuvre, own numbers refitted."""
+    noise: FloatArray
+    cost: float
+
+
+def _settled(problem: Problem, point: Point, linear: tuple[Linear, ...], weights: FloatArray) -> _Place:
+    """Weights and own numbers settle together at a fixed linearisation: cheap, no simulation."""
+    for _ in range(4):
+        step = solve_blocks(problem, linear, weights, point)
+        before, weights = weights, 1.0 / noise_of(problem, step.ahead(linear))
+        if np.max(np.abs(np.log(weights / before))) < _SETTLED:
+            break
+    left = tuple(block.left - block.own @ own for block, own in zip(linear, step.free, strict=True))
+    cost = cost_of(problem, point, left, step.free, linear)
+    return _Place(point, linear, weights, step, left, noise_of(problem, left), cost)
+
+
+def bounds_of(point: Point) -> tuple[FloatArray, FloatArray]:
+    """Lower and upper bounds of the shared numbers."""
+    free = np.full(len(point.derivatives), np.inf)
+    lower = np.concatenate([-free, *[np.array([b[0] for b in e.bounds]) for e in point.effects]])
+    upper = np.concatenate([free, *[np.array([b[1] for b in e.bounds]) for e in point.effects]])
+    return lower, upper
+
+
+def evidence_of(problem: Problem, fitted: Fitted) -> float:
+    """-2 log marginal likelihood, up to what two ways of reading the command have in common.
+
+    The cost, plus the price of the freedom that edges and air speeds have within their priors:
+    log det(I + Λ A_eᵀ W A_e), flat numbers eliminated.
+    """
+    total = fitted.cost
+    for i, block in enumerate(fitted.linear):
+        w = row_weights(problem, i, 1.0 / fitted.noise)[:, None]
+        free = block.prior == 0.0
+        if np.all(free):
+            continue
+        flat, edges = block.own[:, free] * w, block.own[:, ~free] * w
+        q = np.linalg.qr(flat)[0]
+        left = (edges - q @ (q.T @ edges)) / np.sqrt(block.prior[~free])
+        total += float(np.linalg.slogdet(np.eye(left.shape[1]) + left.T @ left)[1])
+    return total

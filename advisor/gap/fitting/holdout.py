@@ -1,0 +1,145 @@
+"""What a model is worth on manoeuvres it has not seen.
+
+About the optimum the fit is linear, so leaving a fold out moves the shared numbers by
+(H − H_f)⁻¹ g_f and needs no simulation. Of a manoeuvre kept out only its own numbers are refitted.
+Folds are interleaved and rotated, because a gust or a change may fall into any one of them.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted, bounds_of, factor, own_eliminated, rms_of
+from advisor.gap.fitting.linear import Linear
+from advisor.gap.fitting.normal import solved
+from advisor.gap.fitting.problem import Problem, row_weights
+from advisor.gap.simulator.layout import DERIVATIVES
+
+_INDIFFERENT = 3e-4
+"""Directions the data say relatively less about stay put: they change no prediction, but a long step along
+them leaves the range in which the model is linear."""
+_ANCHOR = 1e-3
+"""Weight of "no effect" beside what all manoeuvres say of an effect's parameter."""
+_LONE = 0.9
+"""Share of the information on a number from which on a single manoeuvre tells of it."""
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Residuals of every manoeuvre as predicted by a fit of the others."""
+
+    left: tuple[FloatArray, ...]
+    """Per manoeuvre, stacked channels, in their units."""
+    innovations: FloatArray
+    """Shape (channels,): mean squares after the filter; the same as ``mean_square`` without one."""
+    mean_square: FloatArray
+    """Shape (channels,)."""
+    by_maneuver: FloatArray
+    """Shape (manoeuvres, channels): mean squares."""
+
+
+def folds_of(n: int) -> list[list[int]]:
+    """Three interleaved folds; as many as there are manoeuvres when fewer."""
+    k = min(3, n)
+    return [list(range(j, n, k)) for j in range(k)]
+
+
+def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None) -> HeldOut:
+    """Rotate every fold out. With a single manoeuvre the fit itself is returned: nothing can be kept out."""
+    n = len(problem.flights)
+    chosen = folds_of(n) if folds is None else folds
+    weights = 1.0 / fitted.noise
+    blocks = [_reduced(problem, i, block, weights) for i, block in enumerate(fitted.linear)]
+    total_H = np.sum([b[0] for b in blocks], axis=0)
+    total_g = np.sum([b[1] for b in blocks], axis=0)
+    k = len(DERIVATIVES)
+    pull, missed = problem.pull(fitted.point)
+    total_H += np.diag(pull)
+    total_g += pull * missed
+    lower, upper = bounds_of(fitted.point)
+    anchor = _ANCHOR * told_beside_others(total_H)
+    anchor[:k] = 0.0
+    lefts: list[FloatArray] = [np.empty(0)] * n
+    innovations: list[FloatArray] = [np.empty(0)] * n
+    # Where a response has kinks, the search refuses what the linear model proposes: it is no part of the fit.
+    refused = solve_scaled(total_H, total_g)
+    for fold in chosen:
+        step = np.zeros(len(total_g))
+        if len(fold) < n:
+            # What only the manoeuvres kept out could tell of an effect stays at "no effect".
+            H = total_H - np.sum([blocks[i][0] for i in fold], axis=0) + np.diag(anchor)
+            g = total_g - np.sum([blocks[i][1] for i in fold], axis=0) - anchor * fitted.point.shared
+            step = solve_scaled(H, g) - refused
+            shared = fitted.point.shared
+            step = np.clip(shared + step, lower, upper) - shared
+        for i in fold:
+            own = own_after(problem, i, fitted.linear[i], weights, step)
+            innovations[i] = fitted.linear[i].after(step, own)
+            lefts[i] = fitted.linear[i].measured.after(step, own)
+    return held_out(problem, lefts, innovations)
+
+
+def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, witnesses: Collection[int]) -> HeldOut:
+    """The same, but of some manoeuvres what the fit itself leaves: what they alone tell no other predicts."""
+    lefts = [
+        inside if i in witnesses else kept_out
+        for i, (inside, kept_out) in enumerate(zip(fitted.left, held.left, strict=True))
+    ]
+    return held_out(problem, lefts)
+
+
+def lone_witness(problem: Problem, fitted: Fitted, index: int) -> int | None:
+    """The one manoeuvre that tells of a shared number, if no other could confirm it."""
+    weights = 1.0 / fitted.noise
+    told = [_reduced(problem, i, block, weights)[0][index, index] for i, block in enumerate(fitted.linear)]
+    return int(np.argmax(told)) if max(told) > _LONE * sum(told) else None
+
+
+def held_out(
+    problem: Problem, lefts: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
+) -> HeldOut:
+    """Residuals with their mean squares."""
+    powers = mean_squares(problem, lefts)
+    total = rms_of(problem, lefts) ** 2
+    seen = total if innovations is None else rms_of(problem, innovations) ** 2
+    return HeldOut(tuple(lefts), seen, total, powers)
+
+
+def mean_squares(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+    """Shape (manoeuvres, channels)."""
+    return np.array(
+        [
+            [float(np.mean(left[rows] ** 2)) for rows in problem.rows(f)]
+            for f, left in zip(problem.flights.flights, lefts, strict=True)
+        ]
+    )
+
+
+def solve_scaled(H: FloatArray, g: FloatArray) -> FloatArray:
+    """H⁻¹ g with H scaled to a unit diagonal; directions the data say nothing about stay put."""
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    return np.asarray(np.linalg.lstsq(H / np.outer(scale, scale), g / scale, rcond=_INDIFFERENT)[0] / scale)
+
+
+def told_beside_others(H: FloatArray) -> FloatArray:
+    """Shape (k,): information on each number with all others unknown, 1 / (H⁻¹)_jj."""
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    widened = np.diag(np.linalg.pinv(H / np.outer(scale, scale), hermitian=True))
+    # Never less than one; it reads as less only where the data say nothing at all.
+    return np.asarray(scale**2 / np.maximum(widened, 1.0))
+
+
+def own_after(problem: Problem, i: int, block: Linear, weights: FloatArray, step: FloatArray) -> FloatArray:
+    """A manoeuvre's own numbers, refitted after a step of the shared ones."""
+    w = row_weights(problem, i, weights)
+    left = block.left - block.shared @ step
+    A = block.own * w[:, None]
+    return np.asarray(solved(factor(A, block.prior), A.T @ (left * w)))
+
+
+def _reduced(problem: Problem, i: int, block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Information and gradient of the shared numbers from one manoeuvre, own numbers eliminated."""
+    inner, _ = own_eliminated(problem, i, block, weights)
+    return inner[:-1, :-1], inner[:-1, -1]

@@ -1,0 +1,192 @@
+"""The model about a point: sensitivities to shared numbers and to each manoeuvre's own."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.records.flights import Flight
+from advisor.gap.simulator.layout import INDEX, NUISANCES, OUTPUTS
+from advisor.gap.simulator.reading import lane
+from advisor.gap.simulator.simulate import DISTURB_INPUT, SPEED
+
+_DERIVATIVE_STEP = 1e-3
+_OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
+"""Of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
+_SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
+_SPEED_STEP = 1e-3
+"""Of the air speed, relative."""
+_PULSE = 1e-4
+"""Area of the disturbance by which a response to a pulse is found."""
+_EDGE_VARIANCE = 1.0 / 12.0
+"""An edge of a linear command lies anywhere between two stamps: uniform over the interval."""
+_SHARES = (1.0 / 6.0, 0.5, 5.0 / 6.0)
+"""Where in the time that a servo runs on its lateness is put: at the middles of thirds."""
+_HELD_JITTER_S = 0.0015
+"""A held command changes at its stamp, give or take the stamp's resolution."""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Residual and sensitivities of one manoeuvre."""
+
+    left: FloatArray
+    """Shape (rows,): measured minus simulated."""
+    shared: FloatArray
+    """Shape (rows, k)."""
+    own: FloatArray
+    """Shape (rows, m): initial states, trim, offsets (flat priors), then errors of the air speed, edges."""
+
+    def after(self, step: FloatArray, own: FloatArray) -> FloatArray:
+        """Residual after a step of the shared and the own numbers."""
+        return np.asarray(self.left - self.shared @ step - self.own @ own)
+
+
+@dataclass(frozen=True)
+class Linear(Columns):
+    """The model of one manoeuvre made linear about a point, as innovations, before weighting."""
+
+    prior: FloatArray
+    """Shape (m,): inverse prior variances, 0 for flat."""
+    measured: Columns
+    """The same in the units of the channels, as it was before the filter."""
+
+
+def as_measured(block: Linear) -> Linear:
+    """The same without a filter: in the units of the channels."""
+    raw = block.measured
+    return Linear(raw.left, raw.shared, raw.own, block.prior, raw)
+
+
+def shared_steps(point: Point) -> FloatArray:
+    """Finite-difference steps of the shared numbers."""
+    scale = np.maximum(np.abs(point.derivatives), np.array([0.5, 0.05, 0.1, 1.0, 0.5, 1.0]))
+    return np.concatenate([_DERIVATIVE_STEP * scale, *[np.array(e.steps) for e in point.effects]])
+
+
+def shifted_points(point: Point, which: range) -> list[Point]:
+    """The point with one of the shared numbers after the other moved by its step."""
+    shifts = np.diag(shared_steps(point))[which]
+    return [point.moved(point.shared + shift, point.own) for shift in shifts]
+
+
+def measured_columns(
+    problem: Problem, i: int, p: FloatArray, shifted: FloatArray, steps: FloatArray
+) -> Columns:
+    """Manoeuvre ``i`` in the units of its channels; sensitivities are one-sided differences.
+
+    Of its own numbers all but the edges are simulated, which are shifted responses to an impulse at the start
+    (the model is nearly linear and nearly time-invariant over a manoeuvre).
+
+    Parameters
+    ----------
+    p
+        Shape (entries,): where.
+    shifted
+        Shape (k, entries): the same with each of the shared numbers moved by its step ...
+    steps
+        ... shape (k,).
+    """
+    flight, k = problem.flights.flights[i], len(steps)
+    names = (*NUISANCES, *_SPEEDS[: len(flight.speed_doubt)])
+    moves = np.full(len(names), _SPEED_STEP * flight.slow[SPEED, 0])
+    moves[: len(NUISANCES)] = _OWN_STEPS
+    others = np.tile(p, (len(names), 1))
+    others[range(len(names)), [INDEX[name] for name in names]] += moves
+    rows = np.vstack([p, shifted, others, p])
+    doses = np.zeros(len(rows))
+    doses[-1] = _PULSE
+    packs = problem.fly_all(flight, rows, unit_pulse(flight, DISTURB_INPUT, p[INDEX["lag_s"]]), doses)
+    read = problem.read_all(flight, packs, rows[:-1])
+    base, moved = read[:, :1], read[:, 1:]
+    answers = (moved[:, k:] - base) / moves
+    pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
+    late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
+    begin = flight.edges[:, 0] + late
+    if problem.held:
+        begin += 0.5 * (flight.edges[:, 2] - flight.edges[:, 3])
+    own = [
+        answers[:, : len(NUISANCES)],
+        _offsets(problem, flight),
+        answers[:, len(NUISANCES) :] @ flight.speed_doubt,
+        _answers_to_edges(problem, flight, pulse, begin, p),
+    ]
+    return Columns(problem.measured(flight) - base[:, 0], (moved[:, :k] - base) / steps, np.hstack(own))
+
+
+def _answers_to_edges(
+    problem: Problem, flight: Flight, pulse: FloatArray, begin: FloatArray, p: FloatArray
+) -> FloatArray:
+    """Shape (rows, edges): what a shift of each edge by its interval changes.
+
+    That is a pulse at the edge. A servo at its limit runs on after it, and is later all that time.
+    """
+    area, interval = flight.edges[:, 1], flight.edges[:, 2]
+    longer = np.maximum(np.abs(area / interval) * p[INDEX["slowness_s_rad"]] - interval, 0.0)
+    if not np.any(longer > 0.0):
+        return problem.read_delayed(flight, pulse, begin, p) * area
+    parts = [problem.read_delayed(flight, pulse, begin + share * longer, p) for share in _SHARES]
+    return np.asarray(sum(parts) * area / len(_SHARES))
+
+
+def _offsets(problem: Problem, flight: Flight) -> FloatArray:
+    """Shape (rows, offsets): constants of the accelerometer and of the attitude."""
+    return np.column_stack(
+        [flight.output == OUTPUTS.index(c) for c in ("a_z", "theta") if c in problem.channels]
+        or [np.empty((len(flight.stamps), 0))]
+    ).astype(float)
+
+
+def _own_prior(problem: Problem, flight: Flight, own: int) -> FloatArray:
+    """Shape (own,): inverse prior variances of a manoeuvre's own numbers, 0 for flat.
+
+    Its edges come last, before them the errors of the air speed, which are in units of their own size.
+    """
+    prior = np.zeros(own)
+    intervals, lost = flight.edges[:, 2], flight.edges[:, 3]
+    # Where stamps were lost, a held command may have changed at any of them.
+    held = (_HELD_JITTER_S**2 + problem.jitter_s**2 + _EDGE_VARIANCE * lost**2) / intervals**2
+    edges = own - len(intervals)
+    prior[edges - len(flight.speed_doubt) : edges] = 1.0
+    prior[edges:] = 1.0 / (held if problem.held else _EDGE_VARIANCE)
+    return prior
+
+
+def pulse_response(problem: Problem, flight: Flight, p: FloatArray, where: int) -> FloatArray:
+    """Response on the grid, shape (4, n + 1), to a disturbance of unit area at the start of the record.
+
+    ``where`` is a row of the disturbances of ``advisor.gap.simulator.simulate``.
+    """
+    packs = problem.fly_all(flight, np.stack([p, p]), unit_pulse(flight, where), np.array([0.0, _PULSE]))
+    return (lane(packs, 1) - lane(packs, 0)) / _PULSE
+
+
+def unit_pulse(flight: Flight, where: int, lag_s: float = 0.0) -> FloatArray:
+    """A disturbance of unit area at the start of the record, shape (4, n).
+
+    ``lag_s`` passes it through a first-order lag first, as a servo would.
+    """
+    disturbance = np.zeros((4, flight.n))
+    if lag_s > 1e-3:
+        shape = np.exp(-(np.arange(flight.n) + 0.5) * flight.h / lag_s)
+        disturbance[where] = shape / (np.sum(shape) * flight.h)
+    else:
+        disturbance[where, 0] = 1.0 / flight.h
+    return disturbance
+
+
+def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:
+    """The whole model made linear about a point."""
+    p, steps = problem.driving(point), shared_steps(point)
+    shifted = np.stack([problem.driving(moved) for moved in shifted_points(point, range(len(steps)))], axis=1)
+    blocks = []
+    for i, flight in enumerate(problem.flights.flights):
+        measured = measured_columns(problem, i, p[i], shifted[i], steps)
+        left, shared, own = measured.left, measured.shared, measured.own
+        prior = _own_prior(problem, flight, own.shape[1])
+        if problem.whitening is not None:
+            e = problem.innovations(i, np.column_stack([left, shared, own]))
+            left, shared, own = e[:, 0], e[:, 1 : len(steps) + 1], e[:, len(steps) + 1 :]
+        blocks.append(Linear(left, shared, own, prior, measured))
+    return tuple(blocks)

@@ -1,0 +1,84 @@
+"""The gap in numbers: per channel, manoeuvre, phase and frequency band."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.records.flights import Flight
+
+_BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
+_EDGE_S = 0.2
+PHASES = ("step edge", "plateau", "free response")
+
+
+def gap_of(mean_square: FloatArray, floor: FloatArray) -> FloatArray:
+    """Mean square over the floor's square, minus 1; never negative: less than the floor is no gap."""
+    return np.maximum(mean_square / floor**2 - 1.0, 0.0)
+
+
+def by_phase(problem: Problem, lefts: Sequence[FloatArray], floor: FloatArray) -> Mapping[str, float]:
+    """Gap just after the steps, between them, and after the last one."""
+    sums = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
+    counts = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
+    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
+            t = flight.outputs[name].t
+            for phase, inside in _phases(flight, t).items():
+                sums[phase][c] += float(np.sum(left[rows][inside] ** 2))
+                counts[phase][c] += np.count_nonzero(inside)
+    return {
+        phase: float(np.mean(gap_of(sums[phase] / np.maximum(counts[phase], 1.0), floor)))
+        for phase in PHASES
+        if np.all(counts[phase] > 0)
+    }
+
+
+def _phases(flight: Flight, t: FloatArray) -> Mapping[str, FloatArray]:
+    edges = flight.edges[:, 0] if len(flight.edges) else np.array([flight.first_step_s, flight.last_step_s])
+    near = (
+        np.min(np.where(t[:, None] >= edges[None, :], t[:, None] - edges[None, :], np.inf), axis=1) < _EDGE_S
+    )
+    flying = (t >= flight.first_step_s) & (t <= flight.last_step_s + _EDGE_S)
+    return {
+        "step edge": near & flying,
+        "plateau": ~near & flying,
+        "free response": (t > flight.last_step_s + _EDGE_S),
+    }
+
+
+def by_band(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[tuple[float, float, float], ...]:
+    """From, to, share of the power of the pitch-rate error."""
+    if "q" not in problem.channels:
+        return ()
+    power = np.zeros(len(_BANDS_HZ))
+    c = problem.channels.index("q")
+    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+        t, y = flight.outputs["q"].t, left[problem.rows(flight)[c]]
+        step = float(np.median(np.diff(t)))
+        even = np.interp(np.arange(t[0], t[-1], step), t, y)
+        spectrum = np.abs(np.fft.rfft(even * np.hanning(len(even)))) ** 2
+        hz = np.fft.rfftfreq(len(even), step)
+        power += [float(np.sum(spectrum[(hz >= a) & (hz < b)])) for a, b in _BANDS_HZ]
+    total = float(np.sum(power))
+    return tuple(
+        (a, b, float(s / total) if total > 0 else 0.0) for (a, b), s in zip(_BANDS_HZ, power, strict=True)
+    )
+
+
+def shrink_interval(before: FloatArray, after: FloatArray) -> tuple[float, float]:
+    """95 % interval of the shrink in per cent, by resampling manoeuvres.
+
+    Parameters
+    ----------
+    before, after
+        Shape (manoeuvres,): gap of each manoeuvre.
+    """
+    rng = np.random.default_rng(20)
+    n = len(before)
+    drawn = rng.integers(0, n, (2000, n))
+    totals = np.maximum(np.sum(before[drawn], axis=1), 1e-12)
+    percent = 100.0 * (1.0 - np.sum(after[drawn], axis=1) / totals)
+    low, high = np.percentile(percent, [2.5, 97.5])
+    return float(max(low, -100.0)), float(min(high, 100.0))

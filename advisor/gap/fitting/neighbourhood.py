@@ -1,0 +1,211 @@
+"""Around a fitted model: places flown fast, with the fit's own sensitivities, and the way on from each.
+
+Only the sensitivities to the effect that was added last are computed anew. Many places are flown together,
+so that their simulations share packs (``advisor.gap.simulator.simulate``) and their columns the filter.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted, above_floor, factor
+from advisor.gap.fitting.linear import shared_steps, shifted_points
+from advisor.gap.fitting.normal import solved
+from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
+from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.simulator.reading import differences
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point that was flown."""
+
+    point: Point
+    """With the manoeuvres' own numbers refitted."""
+    cost: float
+    noise: FloatArray
+    information: FloatArray
+    """Shape (k, k): of all shared numbers, own numbers eliminated ..."""
+    gradient: FloatArray
+    """... and shape (k,), half the decrease of the cost per unit of each."""
+
+    def step(self) -> tuple[FloatArray, float]:
+        """Step of all shared numbers, and the decrease of the cost that it promises."""
+        scale = np.sqrt(np.maximum(np.diag(self.information), 1e-300))
+        normal = self.information / np.outer(scale, scale) + 1e-9 * np.eye(len(scale))
+        step = np.linalg.lstsq(normal, self.gradient / scale, rcond=1e-12)[0] / scale
+        return step, float(self.gradient @ step)
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """Of one manoeuvre, weighted: what never changes between places."""
+
+    measured: FloatArray
+    weights: FloatArray
+    r: FloatArray
+    """Shape (rows,): what the fit left, own numbers not refitted."""
+    still: FloatArray
+    """Shape (rows, 7): sensitivities to the derivatives, and ``r``: what is known without a flight."""
+    A: FloatArray
+    """Own columns, shape (rows, m) ..."""
+    J: FloatArray
+    """... and shared ones, shape (rows, k)."""
+    chol: FloatArray
+    AJ: FloatArray
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """A point to be flown, and where its columns stand among those of all that are flown with it."""
+
+    point: Point
+    p: FloatArray
+    """Shape (manoeuvres, entries)."""
+    shifted: FloatArray
+    """Shape (numbers, manoeuvres, entries): with each number of its last effect moved by its step."""
+    steps: FloatArray
+    """Shape (numbers,)."""
+    changes: FloatArray
+    """Shape (numbers, manoeuvres, 6): what each step does to the derivatives, per unit."""
+    flown: np.ndarray
+    """Shape (numbers, manoeuvres), bool: whether it does more than that ..."""
+    moved: np.ndarray
+    """... and shape (manoeuvres,): whether there is anything to fly at all."""
+    first: int
+    """Column of what is left; those of the numbers come next."""
+
+    @property
+    def columns(self) -> slice:
+        """All of its columns."""
+        return slice(self.first, self.first + 1 + len(self.steps))
+
+
+class Neighbourhood:
+    """A fitted model made ready for many places."""
+
+    def __init__(self, problem: Problem, fitted: Fitted) -> None:
+        self.problem, self.fitted = problem, fitted
+        weights = 1.0 / fitted.noise
+        self.kept = []
+        self.p = problem.driving(fitted.point)
+        self.count = counts(problem)
+        k = len(fitted.point.shared)
+        self.information = np.zeros((k, k))
+        for i, (flight, block) in enumerate(zip(problem.flights.flights, fitted.linear, strict=True)):
+            w = row_weights(problem, i, weights)
+            A, J = block.own * w[:, None], block.shared * w[:, None]
+            chol = factor(A, block.prior)
+            AJ = A.T @ J
+            self.information += J.T @ J - AJ.T @ solved(chol, AJ)
+            r = block.left * w
+            still = np.column_stack([J[:, : len(DERIVATIVES)], r])
+            self.kept.append(_Kept(problem.measured(flight), w, r, still, A, J, chol, AJ))
+
+    def at_all(self, points: Sequence[Point]) -> list[Place | None]:
+        """Fly to every point, the manoeuvres' own numbers refitted; None where a simulation fails."""
+        problem = self.problem
+        asked: list[_Asked] = []
+        for point in points:
+            asked.append(self._asked(point, asked[-1].columns.stop if asked else 0))
+        firsts, width = [a.first for a in asked], asked[-1].columns.stop
+        failed = np.zeros(len(asked), dtype=bool)
+        squares, prior = np.zeros((len(self.count), len(asked))), np.zeros(len(asked))
+        JX = np.zeros((len(self.information), width))
+        XX = np.zeros((width, width))
+        owns = np.empty((len(asked), *self.fitted.point.own.shape))
+        for i, (flight, kept) in enumerate(zip(problem.flights.flights, self.kept, strict=True)):
+            X = self._seen(i, asked, width, failed)
+            AX = kept.A.T @ X
+            GX = solved(kept.chol, AX)
+            JX += kept.J.T @ X - kept.AJ.T @ GX
+            own = GX[:, firsts]
+            after = (X[:, firsts] - kept.A @ own) / kept.weights[:, None]
+            squares += [np.sum(after[rows] ** 2, axis=0) for rows in problem.rows(flight)]
+            prior += self.fitted.linear[i].prior @ own**2
+            owns[:, i] = own[: owns.shape[2]].T
+            XX += X.T @ X - AX.T @ GX
+        noise = above_floor(problem, np.sqrt(squares / np.maximum(self.count, 1.0)[:, None]).T)
+        costs = 2.0 * np.log(noise) @ self.count + prior
+        return [
+            None
+            if failed[j]
+            else self._place(a, costs[j], noise[j], owns[j], JX[:, a.columns], XX[a.columns, a.columns])
+            for j, a in enumerate(asked)
+        ]
+
+    def _asked(self, point: Point, first: int) -> _Asked:
+        known, k = len(self.information), len(DERIVATIVES)
+        steps = shared_steps(point)[known:]
+        p = self.problem.driving(point)
+        there = shifted_points(point, range(known, known + len(steps)))
+        shifted = np.array([self.problem.driving(one) for one in there]).reshape(len(steps), *p.shape)
+        flown = np.any(shifted[:, :, k:] != p[:, k:], axis=2)
+        moved = np.any(flown, axis=0) | np.any(p != self.p, axis=1)
+        changes = (shifted[:, :, :k] - p[:, :k]) / steps[:, None, None]
+        return _Asked(point, p, shifted, steps, changes, flown, moved, first)
+
+    def _place(
+        self, a: _Asked, cost: float, noise: FloatArray, own: FloatArray, JX: FloatArray, XX: FloatArray
+    ) -> Place:
+        pull, missed = self.problem.pull(a.point)
+        known = len(self.information)
+        H, g = np.diag(pull), pull * missed
+        H[:known, :known] += self.information
+        H[:known, known:] += JX[:, 1:]
+        H[known:, :known] += JX[:, 1:].T
+        H[known:, known:] += XX[1:, 1:]
+        g += np.concatenate([JX[:, 0], XX[1:, 0]])
+        there = a.point.moved(a.point.shared, a.point.own + own)
+        return Place(there, float(cost + pull @ missed**2), noise, H, g)
+
+    def _seen(self, i: int, asked: Sequence[_Asked], width: int, failed: np.ndarray) -> FloatArray:
+        """Weighted innovations of manoeuvre ``i`` and their sensitivities, shape (rows, width).
+
+        A change of derivatives from one manoeuvre to the next is a sum of sensitivities known already,
+        and none at all in manoeuvres it does not touch: nothing is flown for it.
+        """
+        problem, kept, flight = self.problem, self.kept[i], self.problem.flights.flights[i]
+        k = len(DERIVATIVES)
+        still = np.zeros((k + 1, width))
+        rows: list[FloatArray] = []
+        begun, base, columns, step = [], [], [], []
+        for j, a in enumerate(asked):
+            still[k, a.first] = 1.0
+            still[:k, a.first + 1 : a.columns.stop] = a.changes[:, i].T
+            if not a.moved[i]:
+                continue
+            flown = np.flatnonzero(a.flown[:, i])
+            begun.append((j, len(rows)))
+            base += [len(rows)] * (1 + len(flown))
+            columns += [a.first, *(a.first + 1 + flown)]
+            step += [0.0, *a.steps[flown]]
+            rows += [a.p[i], *a.shifted[flown, i]]
+        X = np.asarray(kept.still @ still)
+        if not rows:
+            return X
+        read = problem.fly_and_read(flight, np.array(rows))
+        finite = np.isfinite(np.sum(read, axis=0))
+        read[:, ~finite] = 0.0
+        for j, at in begun:
+            failed[j] |= not finite[at]
+        raw = differences(read, kept.measured, np.array(base), np.array(step))
+        X[:, columns] = problem.innovations(i, raw) * kept.weights[:, None]
+        return X
+
+    def choose_sides(self, point: Point, entries: Sequence[float]) -> Point:
+        """In every manoeuvre the side that leaves least, own numbers refitted."""
+        problem = self.problem
+        p = [problem.driving(replace(point, sides=np.full(len(self.kept), side))) for side in entries]
+        best = []
+        for i, (flight, kept) in enumerate(zip(problem.flights.flights, self.kept, strict=True)):
+            rows = np.stack([q[i] for q in p])
+            left = kept.measured[:, None] - problem.fly_and_read(flight, rows)
+            r = problem.innovations(i, left) * kept.weights[:, None]
+            Ar = kept.A.T @ r
+            costs = np.sum(r * r, axis=0) - np.sum(Ar * solved(kept.chol, Ar), axis=0)
+            # Without play all sides are alike but for rounding: the first is taken.
+            best.append(entries[int(np.argmax(costs <= np.min(costs) * (1.0 + 1e-9)))])
+        return replace(point, sides=np.array(best))

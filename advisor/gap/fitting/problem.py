@@ -1,0 +1,214 @@
+"""What is fitted to what: the data with the simulation, and a point of its numbers."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.fitting.belief import pull_of
+from advisor.gap.fitting.whitening import Filters, Whitening
+from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES, SKEWS
+from advisor.gap.simulator.reading import delayed, lane, packed, read_rows
+from advisor.gap.simulator.simulate import LANES, simulate
+from advisor.gap.simulator.surface import surfaces
+
+_NO_DISTURBANCE = np.zeros((4, 0))
+_SKEW_ENTRIES = np.array([INDEX[name] for name in SKEWS])
+_FLOWN_ENTRIES = np.array([i for i, name in enumerate(ENTRIES) if name not in SKEWS])
+
+
+@dataclass(frozen=True)
+class Point:
+    """Where the search stands: everything the simulation is driven by."""
+
+    derivatives: FloatArray
+    """Shape (6,)."""
+    own: FloatArray
+    """Shape (manoeuvres, 4): initial states and trim terms."""
+    effects: tuple[Variant, ...] = ()
+    values: tuple[FloatArray, ...] = ()
+    """Parameters of each effect."""
+    sides: FloatArray | None = None
+    """Shape (manoeuvres,): the side chosen in each manoeuvre, for an effect that has sides."""
+
+    @property
+    def shared(self) -> FloatArray:
+        """All shared numbers as one vector: derivatives, then parameters of effects."""
+        return np.concatenate([self.derivatives, *self.values])
+
+    def moved(self, shared: FloatArray, own: FloatArray) -> "Point":
+        """The same model elsewhere."""
+        values, at = [], len(DERIVATIVES)
+        for effect in self.effects:
+            values.append(shared[at : at + len(effect.names)])
+            at += len(effect.names)
+        return replace(self, derivatives=shared[: len(DERIVATIVES)], own=own, values=tuple(values))
+
+    def with_effect(
+        self, effect: Variant, values: Sequence[float] | FloatArray, sides: FloatArray | None = None
+    ) -> "Point":
+        """The model with one more effect in it."""
+        return replace(
+            self,
+            effects=(*self.effects, effect),
+            values=(*self.values, np.asarray(values, float)),
+            sides=self.sides if sides is None else sides,
+        )
+
+    def with_only(self, names: Collection[str]) -> "Point":
+        """The model with some of its effects; what is part of every model stays."""
+        keep = [k for k, v in enumerate(self.effects) if v.always or v.effect in names]
+        return replace(
+            self, effects=tuple(self.effects[k] for k in keep), values=tuple(self.values[k] for k in keep)
+        )
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The data, the fixed part of the simulation, and how the command moved between its stamps."""
+
+    flights: Flights
+    base: FloatArray
+    """Shape (entries,): what the aircraft file already has in it."""
+    held: bool = False
+    """Command held between stamps instead of linear."""
+    instruments: FloatArray | None = None
+    """Shape (channels,): noise of the instruments alone, without what the air adds."""
+    smallest_noise: FloatArray | None = None
+    """Shape (channels,): noise of the innovations is never taken to be below this."""
+    believed: FloatArray | None = None
+    """Shape (6,): derivatives of the aircraft file, when it has all."""
+    stated: frozenset[str] = frozenset()
+    """Effects whose size the aircraft file states: arms of the vane and the accelerometer."""
+    jitter_s: float = 0.0
+    """Standard deviation of the stamps, the command's like all others."""
+    whitening: Whitening | None = None
+    """Filter of moving air and coloured instruments; None where white noise describes what is left."""
+
+    @property
+    def knows_the_noise(self) -> bool:
+        """Whether innovations come in units of their own standard deviation."""
+        return isinstance(self.whitening, Filters)
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Outputs that are compared."""
+        return self.flights.channels
+
+    def pull(self, point: Point) -> tuple[FloatArray, FloatArray]:
+        """Inverse variances with which shared numbers are drawn to what is expected, and what they lack.
+
+        Both shape (k,). The derivatives are drawn to the file's, what is part of every model to nothing; far
+        more weakly than by any data that say something: it decides only what the data leave open. With an
+        effect in the model that derivatives imitate exactly, the file's are right within their tolerance.
+        """
+        inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
+        if self.believed is not None:
+            trusted = any(effect.twin is not None for effect in point.effects)
+            inverse, expected = [pull_of(self.believed, trusted)], [self.believed]
+        for effect, values in zip(point.effects, point.values, strict=True):
+            inverse.append(1.0 / np.array(effect.spread) ** 2 if effect.spread else np.zeros(len(values)))
+            expected.append(np.zeros(len(values)))
+        return np.concatenate(inverse), np.concatenate(expected) - point.shared
+
+    def disbelief(self, point: Point) -> float:
+        """What the pull adds to the cost."""
+        inverse, missed = self.pull(point)
+        return float(inverse @ missed**2)
+
+    def driving(self, point: Point) -> FloatArray:
+        """Shape (manoeuvres, entries): the numbers each manoeuvre is simulated with."""
+        p = np.tile(self.base, (len(self.flights), 1))
+        p[:, : len(DERIVATIVES)] = point.derivatives
+        p[:, len(DERIVATIVES) : len(DERIVATIVES) + len(NUISANCES)] = point.own
+        for effect, values in zip(point.effects, point.values, strict=True):
+            if effect.sides is not None and point.sides is not None:
+                p[:, INDEX[effect.sides[0]]] = point.sides
+            effect.apply(p, values, self.flights)
+        return p
+
+    def fly_all(
+        self,
+        flight: Flight,
+        p: FloatArray,
+        disturbance: FloatArray = _NO_DISTURBANCE,
+        doses: FloatArray | None = None,
+    ) -> FloatArray:
+        """One manoeuvre simulated with every row of ``p``, shape (k, entries), in packs for ``read_all``.
+
+        The disturbance, shape (4, n), enters each simulation by its dose, shape (k,).
+        """
+        stamps = flight.t_held if self.held else flight.t_u
+        delta = surfaces(flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim, p, LANES)
+        doses = np.zeros(len(p)) if doses is None else doses
+        return simulate(flight.h, delta, flight.slow, disturbance, doses, flight.trim, p)
+
+    def read_all(self, flight: Flight, packs: FloatArray, p: FloatArray) -> FloatArray:
+        """Shape (rows, k): of every simulation all channels at their own stamps, one after another."""
+        return self._read(flight, packs, np.arange(len(p)), p)
+
+    def fly_and_read(self, flight: Flight, p: FloatArray) -> FloatArray:
+        """Shape (rows, k): one manoeuvre as every row of ``p``, shape (k, entries), says it was measured.
+
+        Rows that differ in their channels' skews alone are flown once.
+        """
+        places: dict[bytes, int] = {}
+        flown = [places.setdefault(row.tobytes(), len(places)) for row in p[:, _FLOWN_ENTRIES]]
+        _, first = np.unique(flown, return_index=True)
+        return self._read(flight, self.fly_all(flight, p[first]), np.array(flown), p)
+
+    def _read(self, flight: Flight, packs: FloatArray, flown: np.ndarray, p: FloatArray) -> FloatArray:
+        skews = p[:, _SKEW_ENTRIES]
+        return np.asarray(read_rows(packs, flight.h, flight.stamps, flight.output, flown, skews))
+
+    def fly(self, flight: Flight, p: FloatArray) -> FloatArray:
+        """Simulated outputs of one manoeuvre on the grid, shape (4, n + 1)."""
+        return lane(self.fly_all(flight, p[None]), 0)
+
+    def read_grids(self, flight: Flight, grids: Sequence[FloatArray], p: FloatArray) -> FloatArray:
+        """Shape (rows, k): of series on the grid, each of shape (4, n + 1), the same."""
+        return self.read_all(flight, packed(grids), np.tile(p, (len(grids), 1)))
+
+    def read_delayed(
+        self, flight: Flight, response: FloatArray, delays: FloatArray, p: FloatArray
+    ) -> FloatArray:
+        """Shape (rows, k): of one series that starts later by each of the delays."""
+        return self.read_all(flight, delayed(response, flight.h, delays), np.tile(p, (len(delays), 1)))
+
+    def read(self, flight: Flight, grid: FloatArray, p: FloatArray) -> FloatArray:
+        """The same of one series as it is."""
+        return self.read_grids(flight, [grid], p)[:, 0]
+
+    def rows(self, flight: Flight) -> list[slice]:
+        """Where each channel sits in the stacked vector of one manoeuvre."""
+        out, at = [], 0
+        for c in self.channels:
+            out.append(slice(at, at + len(flight.outputs[c].t)))
+            at = out[-1].stop
+        return out
+
+    def measured(self, flight: Flight) -> FloatArray:
+        """All channels of one manoeuvre, stacked."""
+        return np.concatenate([flight.outputs[c].y for c in self.channels])
+
+    def innovations(self, i: int, columns: FloatArray) -> FloatArray:
+        """Columns of manoeuvre ``i``, shape (rows, k), freed of what neighbouring rows have in common."""
+        return columns if self.whitening is None else self.whitening.innovations(i, columns)
+
+
+def row_weights(problem: Problem, i: int, weights: FloatArray) -> FloatArray:
+    """One weight a row of manoeuvre ``i``."""
+    flight = problem.flights.flights[i]
+    return np.concatenate(
+        [np.full(len(flight.outputs[c].t), w) for c, w in zip(problem.channels, weights, strict=True)]
+    )
+
+
+def counts(problem: Problem) -> FloatArray:
+    """Shape (channels,): samples of each channel over all manoeuvres."""
+    return np.array(
+        [sum(len(f.outputs[c].t) for f in problem.flights.flights) for c in problem.channels], float
+    )

@@ -1,0 +1,87 @@
+"""A first guess of the derivatives by equation error: rates regressed on angle, pitch rate and command."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.records.flights import Flight, Flights
+
+_STEP_S = 0.02
+_SPAN = 10
+"""Steps over which the equations are integrated, to spare derivatives of the data."""
+_RIDGE = 1e-6
+_PLAIN = 0.01
+"""Share of the rates' power that is left, both equations' together, where the channels belong together ..."""
+_BETTER = 0.5
+"""... and the share of that which one of them shifted must leave at most."""
+
+
+class Late(NamedTuple):
+    """By how many seconds the channels are late."""
+
+    alpha_s: float = 0.0
+    q_s: float = 0.0
+    surface_s: float = 0.0
+    """Behind the command."""
+
+
+_SHIFTS_S = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)
+_ONE_LATE = (
+    *(Late(q_s=shift) for shift in _SHIFTS_S),
+    *(Late(alpha_s=shift) for shift in _SHIFTS_S),
+    *(Late(surface_s=shift) for shift in (0.04, 0.08, 0.12, 0.16)),
+)
+
+
+def regressions(flights: Flights) -> list[FloatArray]:
+    """Derivatives to begin from, each of shape (6,).
+
+    Where a channel is late by a good part of a radian of the short period, the regression goes astray, even
+    in sign, and no search comes back from there: then the one with a channel shifted is a start, too.
+    """
+    plain, left = _regressed(flights, Late())
+    if left < _PLAIN:
+        return [plain]
+    shifted, less = min((_regressed(flights, late) for late in _ONE_LATE), key=lambda found: found[1])
+    return [plain, shifted] if less < _BETTER * left else [plain]
+
+
+def _regressed(flights: Flights, late: Late) -> tuple[FloatArray, float]:
+    """Derivatives, shape (6,), and the product of the shares of power that the two equations leave."""
+    systems = [_system(flight, late) for flight in flights.flights]
+    moment, left = _solved([s[0] for s in systems], [s[1] for s in systems])
+    force, left_of_lift = np.zeros(2), 1.0
+    if "alpha" in flights.channels:
+        force, left_of_lift = _solved([s[2] for s in systems], [s[3] for s in systems])
+    damped = min(force[0], -0.1), min(moment[1], -0.05)
+    return np.array([damped[0], 0.0, force[1], moment[0], damped[1], moment[2]]), left * left_of_lift
+
+
+def _system(f: Flight, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Rows and rates of the moment's and the force's equation, in integral form."""
+    t = np.arange(0.0, f.duration_s, _STEP_S)
+    q = np.interp(t + late.q_s, f.outputs["q"].t, f.outputs["q"].y)
+    d = np.interp(t - late.surface_s, f.t_u, f.u) - f.u_trim
+    a = np.zeros(len(t))
+    if "alpha" in f.outputs:
+        a = np.interp(t + late.alpha_s, f.outputs["alpha"].t, f.outputs["alpha"].y) - f.trim[0]
+
+    def windowed(y: FloatArray) -> FloatArray:
+        total = np.concatenate(([0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * _STEP_S)))
+        return total[_SPAN:] - total[:-_SPAN]
+
+    X = np.column_stack([windowed(a), windowed(q), windowed(d)])
+    X = X - X.mean(axis=0)
+    dq, da = q[_SPAN:] - q[:-_SPAN], a[_SPAN:] - a[:-_SPAN] - windowed(q)
+    return X, dq - dq.mean(), X[:, [0, 2]], da - da.mean()
+
+
+def _solved(rows: list[FloatArray], rates: list[FloatArray]) -> tuple[FloatArray, float]:
+    """Ridge regression, and the share of the power that it leaves."""
+    X, y = np.vstack(rows), np.concatenate(rates)
+    scale = np.sqrt(np.mean(X**2, axis=0)) + 1e-12
+    Xs = X / scale
+    found = np.linalg.solve(Xs.T @ Xs + _RIDGE * len(X) * np.eye(X.shape[1]), Xs.T @ y)
+    left = y - Xs @ found
+    return found / scale, float(left @ left) / max(float(y @ y), 1e-300)

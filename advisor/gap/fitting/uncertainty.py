@@ -1,0 +1,63 @@
+"""How well a fit knows its shared numbers, and what that says of the aircraft file's."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.belief import NARROW, is_off, log_belief, scale_of
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.records.floor import independent_samples
+
+
+def worth(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+    """Shape (channels,): independent samples of each channel over all manoeuvres."""
+    total = np.zeros(len(problem.channels))
+    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+        for c, rows in enumerate(problem.rows(flight)):
+            total[c] += independent_samples(left[rows])
+    return total
+
+
+def belief_in(problem: Problem, fitted: Fitted, independent: FloatArray) -> float:
+    """Log probability of the derivatives, given the aircraft file; 0 without one."""
+    if problem.believed is None:
+        return 0.0
+    n = len(problem.believed)
+    known = covariance(problem, fitted, independent)[:n, :n]
+    return log_belief(fitted.point.derivatives, known, problem.believed)
+
+
+def file_is_off(problem: Problem, fitted: Fitted, plainly: bool) -> bool:
+    """Whether what was fitted says that the aircraft file's derivatives are wrong; see ``is_off``."""
+    if problem.believed is None:
+        return False
+    n = len(problem.believed)
+    known = covariance(problem, fitted, worth(problem, fitted.innovations))[:n, :n]
+    return is_off(fitted.point.derivatives, known, problem.believed, plainly)
+
+
+def shared_std(
+    problem: Problem, fitted: Fitted, independent: FloatArray, trusted: bool = False
+) -> FloatArray:
+    """Shape (k,): standard deviations of the shared numbers; arguments as ``covariance``."""
+    return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, independent, trusted)), 0.0)))
+
+
+def covariance(
+    problem: Problem, fitted: Fitted, independent: FloatArray, trusted: bool = False
+) -> FloatArray:
+    """Shape (k, k): covariance of the shared numbers, widened for coloured residuals.
+
+    Where the file's derivatives are trusted, they count as measured within their tolerance: that is how
+    well an effect is known that trades against them.
+    """
+    widened = float(np.mean(counts(problem) / np.maximum(independent, 1.0)))
+    information = fitted.information / widened
+    if trusted and problem.believed is not None:
+        n = len(problem.believed)
+        information[:n, :n] += np.diag(1.0 / (NARROW * scale_of(problem.believed)) ** 2)
+    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
+    normal = information / np.outer(scale, scale)
+    return np.asarray(np.linalg.pinv(normal, rcond=1e-12, hermitian=True) / np.outer(scale, scale))

@@ -1,0 +1,1 @@
+"""What a plan of manoeuvres could show, and what a flight could not."""

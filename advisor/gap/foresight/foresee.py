@@ -1,0 +1,224 @@
+"""What a plan can detect, before it is flown; and what a flight could not have shown.
+
+The smallest size of an effect is where its mark (``marks``) has the power that the diagnosis
+asks for before it names one: enough likelihood, and enough of a change to matter.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.foresight.marks import Marks
+from advisor.gap.foresight.needs import NEEDS, OTHERWISE, hidden_from, need_of
+from advisor.gap.records.flights import SPEED_CHANGE
+from advisor.gap.records.floor import doubts
+from advisor.gap.result import Unseen, spelled
+from advisor.gap.search.merit import LEAST_GAIN
+from advisor.gap.search.score import least_change
+from advisor.gap.search.ties import breaking
+from advisor.gap.simulator.layout import INDEX
+
+CONFUSED_AT = 0.95
+"""Cosine of two marks from which on one effect passes for the other."""
+_WORTH_TELLING = 0.8
+_MOST_CONFUSIONS = 3
+_DETECTED_AT = 5.0
+"""Standard deviations a size must have to be found in nearly every flight, not only in half of them."""
+_GROWTH = 3.0
+_CLOSE = 0.02
+_CURVES = {
+    "M_alpha2": ("M_alpha", "alpha"),
+    "Z_alpha2": ("Z_alpha", "alpha"),
+    "M_delta2": ("M_delta_e", "elevator"),
+}
+"""Curved terms: the linear term they bend, and over what."""
+
+
+@dataclass(frozen=True, slots=True)
+class Foreseen:
+    """What a plan can do for one effect."""
+
+    effect: str
+    parameter: str
+    smallest: float
+    """Smallest size that can be told from nothing, in the parameter's unit; infinite when invisible."""
+    confused_with: tuple[tuple[str, float], ...]
+    """Other effects and the cosine between their marks in the data."""
+    add: str = ""
+    """Channel or manoeuvre that would tell it apart, or show it at all."""
+    share: float | None = None
+    """Of a curved term: its smallest size as a share of the linear term at the plan's amplitude."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """One effect's mark at unit size."""
+
+    effect: str
+    parameter: str
+    vector: FloatArray
+    least: float
+    """Size below which the effect is not worth a name."""
+    most: float = float("inf")
+    """Size beyond which nobody looks for it."""
+    numbers: int = 1
+    """Parameters, each at the price of ½ ln N."""
+    inverted: bool = False
+
+
+def foresee(
+    problem: Problem,
+    fitted: Fitted,
+    variants: Sequence[Variant],
+    noise: FloatArray,
+    others: Sequence[Mark] = (),
+    rounds: int = 4,
+) -> list[Foreseen]:
+    """Smallest detectable size and confusions of every effect, at the fitted (or believed) model.
+
+    Parameters
+    ----------
+    noise
+        Shape (channels,): standard deviation of each channel; where a filter knows the noise, its own counts.
+    others
+        Marks of effects that are no variant of the model.
+    rounds
+        How often a size is refined where the response is not in proportion to it.
+    """
+    marks = Marks(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
+    present = {e.effect for e in fitted.point.effects}
+    apart = present | {mark.effect for mark in others}
+    found = [
+        _mark_of(problem, fitted, marks, v, rounds) for v in _one_each(variants) if v.effect not in apart
+    ]
+    found += others
+    shares = _shares(problem, fitted)
+    return [_foreseen(mark, found, marks, shares) for mark in found]
+
+
+def unseen_effects(
+    problem: Problem, fitted: Fitted, variants: Sequence[Variant], noise: FloatArray, present: set[str]
+) -> tuple[Unseen, ...]:
+    """Effects this flight could not have shown, and why."""
+    tried = {v.effect for v in variants} | {"alpha_bias", "airspeed_variation", "turbulence", "gust"}
+    if "climb_rate" not in problem.flights.has:
+        tried.discard("alpha_bias")
+    if not problem.flights.speed_measured or problem.flights.speed_moves < SPEED_CHANGE:
+        tried.discard("airspeed_variation")
+    flights = problem.flights
+    needed = {e: need_of(e, flights) for e in NEEDS if e not in tried and e not in present}
+    out = [Unseen(effect, need.because, need.add) for effect, need in needed.items()]
+    for seen in foresee(problem, fitted, variants, noise, rounds=1):
+        twins = [name for name, cosine in seen.confused_with if cosine > CONFUSED_AT]
+        if not np.isfinite(seen.smallest):
+            out.append(Unseen(seen.effect, *hidden_from(seen.effect, flights)))
+        elif twins and seen.effect not in present:
+            alike = " or ".join(map(spelled, twins))
+            out.append(Unseen(seen.effect, f"when small it looks like {alike}", seen.add))
+    return tuple(out)
+
+
+def _one_each(variants: Sequence[Variant]) -> list[Variant]:
+    """One variant an effect: the first, or of steps at several places the middle one."""
+    groups: dict[str, list[Variant]] = {}
+    for v in variants:
+        groups.setdefault(v.effect, []).append(v)
+    steps = {effect: [v for v in group if "at_s" in v.fixed] for effect, group in groups.items()}
+    return [
+        steps[effect][len(steps[effect]) // 2] if steps[effect] else group[0]
+        for effect, group in groups.items()
+    ]
+
+
+def _mark_of(problem: Problem, fitted: Fitted, marks: Marks, variant: Variant, rounds: int) -> Mark:
+    """The model's response to an effect, per unit of its first parameter.
+
+    An effect whose search starts at nothing is linear there, and its derivative serves. The others bend: a
+    limit that no command reaches leaves no mark at all. Their response is taken at the size that just shows.
+    """
+    low, high = variant.bounds[0]
+    sign, reach = (1.0, high) if high >= -low or variant.starts[0][0] > 0.0 else (-1.0, -low)
+    numbers = len(variant.names)
+    needed = _needed(marks, numbers)
+    size = abs(variant.starts[0][0]) or variant.steps[0]
+    vector = marks.of(_response(problem, fitted, variant, sign * size))
+    for _ in range(rounds - 1 if variant.starts[0][0] else 0):
+        just = max(marks.smallest(vector, needed), variant.smallest)
+        wanted = min(just if np.isfinite(just) else _GROWTH * size, reach)
+        if abs(wanted - size) < _CLOSE * size:
+            break
+        size = wanted
+        vector = marks.of(_response(problem, fitted, variant, sign * size))
+    return Mark(variant.effect, variant.names[0], vector, variant.smallest, reach, numbers, variant.inverted)
+
+
+def _response(problem: Problem, fitted: Fitted, variant: Variant, size: float) -> list[FloatArray]:
+    """Change of every manoeuvre's channels, shape (rows,), per unit of the effect's size."""
+    sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
+    rest = variant.starts[0][1:]
+    there, here = (
+        problem.driving(fitted.point.with_effect(variant, (value, *rest), sides)) for value in (size, 0.0)
+    )
+    changes = []
+    for i, flight in enumerate(problem.flights.flights):
+        rows = np.stack([there[i], here[i]])
+        seen = problem.fly_and_read(flight, rows)
+        changes.append((seen[:, 0] - seen[:, 1]) / size)
+    return changes
+
+
+def _needed(marks: Marks, numbers: int) -> float:
+    """Power a mark must have: found in nearly every flight, worth its numbers, enough of a change."""
+    price = numbers * float(np.log(marks.rows))
+    # A filter of moving air leaves of a change far less than the outputs show of it.
+    doubted = least_change(marks.problem) * float(np.mean(doubts(marks.problem.flights) ** 2))
+    change = 0.0 if marks.filtered else doubted * marks.rows
+    return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
+
+
+def _foreseen(mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mapping[str, float]) -> Foreseen:
+    smallest = max(marks.smallest(mark.vector, _needed(marks, mark.numbers)), mark.least)
+    if smallest > mark.most:
+        smallest = float("inf")
+    confused = sorted(
+        ((other.effect, _cosine(mark.vector, other.vector)) for other in all_marks if other is not mark),
+        key=lambda pair: -pair[1],
+    )
+    confused = [pair for pair in confused if pair[1] > _WORTH_TELLING][:_MOST_CONFUSIONS]
+    twins = [other for other, cosine in confused if cosine > CONFUSED_AT]
+    ways = [way for way in (breaking(mark.effect, other) for other in twins) if way]
+    add = "; ".join(dict.fromkeys(ways)) or (OTHERWISE if twins else "")
+    if not np.isfinite(smallest):
+        add = "; ".join(dict.fromkeys([hidden_from(mark.effect, marks.problem.flights)[1], *ways]))
+    share = None
+    if mark.parameter in shares and np.isfinite(smallest):
+        share = smallest * shares[mark.parameter]
+    size = 1.0 / smallest if mark.inverted and np.isfinite(smallest) else smallest
+    return Foreseen(mark.effect, mark.parameter, size, tuple(confused), add, share)
+
+
+def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:
+    """Curved terms to their share of the linear one, per unit, at the largest motion there is.
+
+    A linear term of nothing has no shares.
+    """
+    p = problem.driving(fitted.point)
+    flights = problem.flights.flights
+    reached = {
+        "elevator": max(float(np.max(np.abs(f.u - f.u_trim))) for f in flights),
+        "alpha": max(
+            float(np.max(np.abs(problem.fly(f, p[i])[0] - f.trim[0]))) for i, f in enumerate(flights)
+        ),
+    }
+    terms = {term: (abs(float(p[0, INDEX[linear]])), over) for term, (linear, over) in _CURVES.items()}
+    return {term: reached[over] / linear for term, (linear, over) in terms.items() if linear > 0.0}
+
+
+def _cosine(a: FloatArray, b: FloatArray) -> float:
+    lengths = float(np.linalg.norm(a) * np.linalg.norm(b))
+    return abs(float(a @ b)) / lengths if lengths > 0.0 else 0.0

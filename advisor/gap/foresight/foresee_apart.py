@@ -1,0 +1,136 @@
+"""Effects that are judged apart from the fits, foreseen: the air, the air speed, the offset of α.
+
+Moving air is found when a filter that knows of it explains the data far better than still air does; its
+expected gain in log likelihood follows from the eigenvalues of the responses to it. For a disturbance of
+size s with independent unit coefficients, seen through gains λ,
+
+    E{gain} = ½ Σ (λ + s²λ² + a²g²) s_f²/(1 + s_f²λ) − ½ Σ ln(1 + s_f²λ),
+
+where s_f is the size the filter assumes, and a²g² the part of a gust of given course.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.linear import pulse_response
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.foresight.foresee import Foreseen, Mark
+from advisor.gap.foresight.marks import Marks
+from advisor.gap.foresight.needs import need_of
+from advisor.gap.noise.probes import disturbance_columns
+from advisor.gap.records.flights import SPEED_CHANGE, Flight, Flights
+from advisor.gap.search.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
+from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
+from advisor.gap.search.ties import breaking
+from advisor.gap.simulator.simulate import DISTURB_AIR
+
+CLIMB_RATE_STD_M_S = 0.1
+"""Noise taken for a climb rate that nobody has measured yet; one independent reading a second."""
+_ANGLES = np.geomspace(1e-5, 0.5, 200)
+"""Gust angles that are tried, rad; a filter assumes one of them."""
+_SPEED_STEP = 0.01
+
+
+@dataclass(frozen=True)
+class _Air:
+    """All responses to the air in their own axes, over the manoeuvres it is sought in."""
+
+    gains: FloatArray
+    """λ of every axis, noise's variance per rad²."""
+    gust: FloatArray
+    """g of every axis for a gust of 1 rad."""
+    inside: float
+    """Cosine between the gust and its nearest course of turbulence."""
+
+    def expected(self, spread: float, peak: float) -> float:
+        """Expected gain for air of this spread and a gust of this peak, rad, at the filter's best size."""
+        power = self.gains + (spread * self.gains) ** 2 + (peak * self.gust) ** 2
+        assumed = (_ANGLES**2)[:, None]
+        taken = assumed / (1.0 + assumed * self.gains) * power - np.log1p(assumed * self.gains)
+        return float(np.max(0.5 * np.sum(taken, axis=1)))
+
+
+def foresee_air(problem: Problem, fitted: Fitted, marks: Marks, unit_s: float) -> list[Foreseen]:
+    """Smallest spread of turbulence and smallest (1 − cos) gust, two time units of the input long."""
+    if "alpha" not in problem.channels:
+        return [impossible(effect, problem.flights) for effect in ("turbulence", "gust")]
+    air = _air(problem, fitted, marks, 2.0 * unit_s)
+    speed = problem.flights.reference_m_s
+    spread = _first(lambda angle: air.expected(angle, 0.0))
+    peak = _first(lambda angle: air.expected(0.0, angle))
+    way = breaking("turbulence", "gust")
+    return [
+        Foreseen("turbulence", "sigma_w_m_s", speed * spread, (), ""),
+        Foreseen("gust", "amplitude_m_s", speed * peak, (("turbulence", air.inside),), way),
+    ]
+
+
+def speed_mark(problem: Problem, fitted: Fitted, marks: Marks) -> Mark:
+    """Every other manoeuvre flown faster, the others slower, less what a simulator at constant speed does."""
+    p = problem.driving(fitted.point)
+    columns = []
+    for i, flight in enumerate(problem.flights.flights):
+        moved = _at_speed(flight, 1.0 + (_SPEED_STEP if i % 2 else -_SPEED_STEP))
+        constant = replace(moved, trim=np.array([*flight.trim[:3], 0.0]))
+        real, believed = (problem.read(f, problem.fly(f, p[i]), p[i]) for f in (moved, constant))
+        columns.append((real - believed) / _SPEED_STEP)
+    return Mark("airspeed_variation", "change", marks.of(columns), SPEED_CHANGE)
+
+
+def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
+    """A constant offset of α against θ minus the climb angle; no derivative enters."""
+    flights = problem.flights
+    if not {"alpha", "theta"} <= set(flights.channels) or not {"climb_rate", "airspeed"} <= flights.has:
+        return impossible("alpha_bias", flights)
+    angles = [noise[flights.channels.index(c)] for c in ("alpha", "theta")]
+    reading = float(np.hypot(np.hypot(*angles), CLIMB_RATE_STD_M_S / flights.reference_m_s))
+    std = reading / np.sqrt(sum(f.duration_s for f in flights.flights))
+    way = "level the attitude's zero on the ground, and fly in still air: both look the same"
+    return Foreseen("alpha_bias", "bias_rad", max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * std), (), way)
+
+
+def impossible(effect: str, flights: Flights) -> Foreseen:
+    """An effect that the plan cannot show at any size, with what to add."""
+    need = need_of(effect, flights)
+    return Foreseen(effect, need.parameter, float("inf"), (), need.add)
+
+
+def _air(problem: Problem, fitted: Fitted, marks: Marks, length_s: float) -> _Air:
+    """The gust falls into the first manoeuvre, after its last step."""
+    p = problem.driving(fitted.point)
+    gains, gusts = [], []
+    for i, flight in enumerate(problem.flights.flights[:AIR_MANEUVERS]):
+        B = marks.within(i, disturbance_columns(problem, flight, p[i], "air"))
+        value, vector = np.linalg.eigh(B.T @ B)
+        gains.append(np.maximum(value, 0.0))
+        x = marks.within(i, _gust(problem, flight, p[i], length_s)[:, None])[:, 0] if i == 0 else None
+        gusts.append(np.zeros(len(value)) if x is None else vector.T @ (B.T @ x))
+        if x is not None:
+            seen = value > 1e-9 * value[-1]
+            inside = float(np.sqrt(np.sum(gusts[0][seen] ** 2 / value[seen]) / (x @ x)))
+    return _Air(np.concatenate(gains), np.concatenate(gusts), min(inside, 1.0))
+
+
+def _gust(problem: Problem, flight: Flight, p: FloatArray, length_s: float) -> FloatArray:
+    """Response of all channels, shape (rows,), to a (1 − cos) gust of 1 rad at its peak."""
+    n = max(round(length_s / flight.h), 2)
+    shape = 0.5 * (1.0 - np.cos(2.0 * np.pi * (np.arange(n) + 0.5) / n))
+    pulse = pulse_response(problem, flight, p, DISTURB_AIR)
+    response = np.vstack([np.convolve(row, shape)[: flight.n + 1] * flight.h for row in pulse])
+    return problem.read_delayed(flight, response, np.array([flight.last_step_s]), p)[:, 0]
+
+
+def _at_speed(flight: Flight, factor: float) -> Flight:
+    slow = flight.slow.copy()
+    slow[0] = flight.trim[2] * factor
+    return replace(flight, slow=slow)
+
+
+def _first(gain: Callable[[float], float]) -> float:
+    """The smallest gust angle whose expected gain suffices."""
+    angles = [a for a in _ANGLES if a >= LEAST_GUST_ANGLE]
+    return next((float(a) for a in angles if gain(a) >= AIR_GAIN), float("inf"))

@@ -1,0 +1,165 @@
+"""A flight that was not flown: manoeuvres made up from the aircraft file, to foresee what they can show."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.messages import FloatArray
+from advisor.flight.record import Channel
+from advisor.gap.candidates.catalogue import BLOCK_OF, variants_for
+from advisor.gap.fitting.fit import Fitted, solve_blocks
+from advisor.gap.fitting.linear import linearise
+from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.foresight.foresee import Foreseen, foresee
+from advisor.gap.foresight.foresee_apart import foresee_air, foresee_offset, impossible, speed_mark
+from advisor.gap.foresight.marks import Marks
+from advisor.gap.records.flights import Flights
+from advisor.gap.records.prepare import LEAST_SAMPLES, prepare
+from advisor.gap.search.baseline import base_entries, believed_derivatives, everywhere
+from advisor.gap.simulator.layout import OUTPUTS
+from advisor.gravity import GRAVITY_M_S2
+from advisor.problems import ConfigurationError
+
+STEPS = {
+    "3211": ((3, 0.8), (2, -1.0), (1, 1.1), (1, -1.5)),
+    "rev": ((3, -0.8), (2, 1.0), (1, -1.1), (1, 1.5)),
+    "doublet": ((2, 1.0), (2, -1.0)),
+    "pulse": ((1, 1.0),),
+}
+"""Steps of each input: units of time and share of the amplitude."""
+TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "theta": np.radians(0.1)}
+"""Standard deviations taken for instruments nobody has measured yet."""
+SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
+"""Channels that a plan may do without."""
+_APART_S = 30.0
+_HIGHEST_RATE_HZ, _LARGEST_STEP_DEG = 1000.0, 60.0
+"""No telemetry is faster, and no elevator moves further."""
+
+
+def foresee_plan(
+    aircraft: Aircraft, plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: Sequence[str] = ()
+) -> list[Foreseen]:
+    """For every effect the smallest size this plan could detect, and what it would be confused with.
+
+    Returns
+    -------
+    One entry for each effect of the catalogue, in its order.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft file has no complete ``model``, or one without an elevator; or the plan cannot be flown
+        or sampled as it says.
+    """
+    derivatives = believed_derivatives(aircraft)
+    if derivatives is None:
+        missing = ", ".join(name for name in PARAMETERS if name not in aircraft.model)
+        raise ConfigurationError(f"foresee needs the aircraft file's model: {missing} missing.")
+    if aircraft.model["M_delta_e"] == 0.0:
+        raise ConfigurationError(
+            "model.M_delta_e: an elevator of no effect (0) shows nothing; give the moment it makes, in 1/s²."
+        )
+    _refuse(plan, rate_hz, amplitude_deg, without)
+    frequency = float(np.sqrt(max(-derivatives[3] + derivatives[0] * derivatives[4], 1.0)))
+    unit = min(max(2.0 / frequency, 0.2), 1.5)
+    speed = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 25.0
+    maneuvers = [
+        _maneuver(n, name, unit, np.radians(amplitude_deg) * (1.0, 0.6)[n % 2], rate_hz, speed, without)
+        for n, name in enumerate(plan)
+    ]
+    flights = prepare(maneuvers, aircraft)
+    if not len(flights):
+        longest = max(float(m.channels["q"].t[-1] - m.channels["q"].t[0]) for m in maneuvers)
+        raise ConfigurationError(
+            f"plan: at {rate_hz:g} Hz a manoeuvre brings fewer than {LEAST_SAMPLES} samples; "
+            f"plan a rate of {np.ceil(LEAST_SAMPLES / longest) + 1:g} Hz or more."
+        )
+    noise = np.array([TYPICAL_NOISE[c] for c in flights.channels])
+    return foresee_flights(aircraft, derivatives, flights, noise, unit)
+
+
+def foresee_flights(
+    aircraft: Aircraft, derivatives: FloatArray, flights: Flights, noise: FloatArray, unit_s: float
+) -> list[Foreseen]:
+    """The same for manoeuvres made ready, of which only stamps, commands and slow channels count.
+
+    Parameters
+    ----------
+    derivatives
+        Shape (6,): at which the model is made linear.
+    noise
+        Shape (channels,): standard deviation of each channel's noise.
+    unit_s
+        Time unit of the input; a gust is taken to last two of them.
+    """
+    problem = Problem(flights, base_entries(aircraft), believed=derivatives)
+    own = np.zeros((len(flights), 4))
+    # Lift carries the weight at each manoeuvre's own speed: g/V + (V/V_r) Z_trim = 0.
+    own[:, 2] = [
+        -GRAVITY_M_S2 * (f.trim[2] if f.trim[3] else f.slow[0, 0]) / f.slow[0, 0] ** 2
+        for f in flights.flights
+    ]
+    point = everywhere(Point(derivatives, own), flights)
+    linear = linearise(problem, point)
+    step = solve_blocks(problem, linear, 1.0 / noise, point)
+    left = tuple(step.ahead(linear))
+    fitted = Fitted(point, noise, 0.0, left, left, step.information, linear, 0)
+    marks = Marks(problem, fitted, noise)
+    apart = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []
+    found = [
+        *foresee(problem, fitted, variants_for(flights), noise, apart),
+        *foresee_air(problem, fitted, marks, unit_s),
+        foresee_offset(problem, noise),
+    ]
+    by_effect = {f.effect: f for f in found}
+    return [by_effect.get(effect) or impossible(effect, flights) for effect in BLOCK_OF]
+
+
+def _refuse(plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: Sequence[str]) -> None:
+    unknown = [name for name in plan if name not in STEPS]
+    if unknown or not plan:
+        what = f"{unknown[0]!r} is none of" if unknown else "name at least one of"
+        raise ConfigurationError(f"plan: {what} {', '.join(STEPS)}.")
+    if len(plan) < 2:
+        raise ConfigurationError(
+            "plan: one manoeuvre proves no cause, for none is left to keep out of the fit; plan at least two."
+        )
+    if not (0.0 < rate_hz <= _HIGHEST_RATE_HZ and 0.0 < amplitude_deg <= _LARGEST_STEP_DEG):
+        raise ConfigurationError(
+            f"plan: the rate must be above zero and at most {_HIGHEST_RATE_HZ:g} Hz, "
+            f"the amplitude above zero and at most {_LARGEST_STEP_DEG:g} deg."
+        )
+    foreign = [name for name in without if name not in SPARED]
+    if foreign:
+        raise ConfigurationError(f"without: {foreign[0]!r} is none of {', '.join(SPARED)}.")
+
+
+def _maneuver(
+    n: int, name: str, unit: float, amplitude: float, rate_hz: float, speed: float, without: Sequence[str]
+) -> Maneuver:
+    """Stamps and command of a planned manoeuvre; its outputs are there only for their stamps."""
+    start, length = 1.0, 1.0 + unit * sum(width for width, _ in STEPS[name])
+    end = length + max(10.0 * unit, 3.0)
+    t = np.arange(0.0, end, 1.0 / rate_hz) + _APART_S * n
+    command = np.zeros(len(t))
+    at = _APART_S * n + start
+    for width, level in STEPS[name]:
+        command[(t >= at) & (t < at + width * unit)] = amplitude * level
+        at += width * unit
+    rng = np.random.default_rng(n)
+    channels = {"elevator": Channel("elevator", t, command, "plan", "commanded")}
+
+    def add(channel: str, y: FloatArray) -> None:
+        if channel not in without:
+            channels[channel] = Channel(channel, t, y, "plan", "measured")
+
+    for channel in OUTPUTS:
+        add(channel, 1e-6 * rng.standard_normal(len(t)))
+    # The throttle is closed once after every input: what thrust does to the moment shows then.
+    add("airspeed", np.full(len(t), speed * (1.0 + 0.02 * (-1) ** n)))
+    add("climb_rate", np.zeros(len(t)))
+    add("throttle", np.where(t > t[0] + length, 0.1, 0.0))
+    span = Span(t[0], t[0] + start, t[0] + length, t[-1], "other", (), "end of log")
+    return Maneuver(n + 1, 0, span, channels)

@@ -1,0 +1,166 @@
+"""Where: an unknown disturbance is let into one block at a time, and the data say which explains them.
+
+A disturbance of unknown course (first-order Gauss-Markov in time) is added to the input, to either
+equation, to the air or to one sensor of the fitted model. Its response in *all* channels is known, so
+a disturbance in the wrong block cannot explain what a disturbance in the right one does. Compared by
+marginal likelihood, which is what a Kalman filter's innovations would give, here as linear algebra.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted, factor
+from advisor.gap.fitting.linear import pulse_response
+from advisor.gap.fitting.normal import solved
+from advisor.gap.fitting.problem import Problem, row_weights
+from advisor.gap.records.flights import Flight
+from advisor.gap.simulator.layout import INDEX, OUTPUTS
+from advisor.gap.simulator.simulate import DISTURB_AIR, DISTURB_FORCE, DISTURB_INPUT, DISTURB_MOMENT
+
+KNOTS_S = 0.1
+MEMORY_S = 0.6
+SENSOR_CHANNELS = {
+    "alpha_sensor": "alpha",
+    "pitch_rate_sensor": "q",
+    "accelerometer": "a_z",
+    "attitude_sensor": "theta",
+}
+DYNAMIC = {
+    "input": DISTURB_INPUT,
+    "force_equation": DISTURB_FORCE,
+    "moment_equation": DISTURB_MOMENT,
+    "air": DISTURB_AIR,
+}
+_SIZES = np.geomspace(1e-3, 30.0, 24)
+"""Candidate sizes of the disturbance, in units in which 1 gives a response as large as the noise."""
+
+
+@dataclass(frozen=True)
+class Probe:
+    """One block's disturbance at its likeliest size."""
+
+    block: str
+    gain: float
+    """Log likelihood above white noise alone."""
+    size: float
+    """Standard deviation of the disturbance in its own unit (rad of elevator, 1/s², rad/s², rad of air)."""
+    explained: float
+    """Share of the weighted residual power that the disturbance takes up."""
+
+
+def probe_blocks(
+    problem: Problem, fitted: Fitted, noise: FloatArray, blocks: Sequence[str] | None = None
+) -> list[Probe]:
+    """Every block, likeliest first.
+
+    With a filter in the problem, what is asked for is a disturbance beyond the noise it knows.
+
+    Parameters
+    ----------
+    noise
+        Shape (channels,): of the innovations, or, without a filter, what the instruments alone leave.
+    """
+    wanted = [*DYNAMIC, *SENSOR_CHANNELS] if blocks is None else list(blocks)
+    # Of the air's motion it is α that tells.
+    needed = {**SENSOR_CHANNELS, "air": "alpha"}
+    there = [block for block in wanted if needed.get(block, "q") in problem.channels]
+    return sorted((_probe(problem, fitted, noise, block) for block in there), key=lambda p: -p.gain)
+
+
+def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> Probe:
+    weights = 1.0 / noise
+    p = problem.driving(fitted.point)
+    spectra, powers, unit = [], [], None
+    total_before = 0.0
+    for i, flight in enumerate(problem.flights.flights):
+        w = row_weights(problem, i, weights)
+        B = problem.innovations(i, disturbance_columns(problem, flight, p[i], block)) * w[:, None]
+        if unit is None:
+            unit = float(np.sqrt(np.mean(np.sum(B**2, axis=1)))) + 1e-300
+        B = B / unit
+        own = fitted.linear[i].own
+        A, r = own * w[:, None], fitted.innovations[i] * w
+        chol = factor(A, fitted.linear[i].prior)
+        AB, Ar = A.T @ B, A.T @ r
+        gram = B.T @ B - AB.T @ solved(chol, AB)
+        value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
+        spectra.append(np.maximum(value, 0.0))
+        powers.append((vector.T @ (B.T @ r - AB.T @ solved(chol, Ar))) ** 2)
+        total_before += float(r @ r)
+    value, power = np.concatenate(spectra), np.concatenate(powers)
+    gains, taken = [], []
+    for size in _SIZES:
+        shrunk = 1.0 / (1.0 / size**2 + value)
+        gains.append(0.5 * float(np.sum(power * shrunk - np.log1p(size**2 * value))))
+        taken.append(float(np.sum(power * shrunk * (2.0 - value * shrunk))))
+    best = int(np.argmax(gains))
+    assert unit is not None
+    explained = min(taken[best] / max(total_before, 1e-300), 1.0)
+    return Probe(block, gains[best], _SIZES[best] / unit, explained)
+
+
+def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: str) -> FloatArray:
+    """Response of all channels to a disturbance of unit variance with memory, shape (rows, k).
+
+    A gust is read by a vane, not by an estimate of α from inertial sensors.
+    """
+    knots = np.arange(0.0, flight.duration_s, KNOTS_S)
+    hat = round(KNOTS_S / flight.h)
+    shape = np.concatenate([np.arange(1, hat + 1), np.arange(hat - 1, 0, -1)]) / hat
+    n = flight.n + 1
+    response = np.zeros((4, n))
+    if block in SENSOR_CHANNELS:
+        response[OUTPUTS.index(SENSOR_CHANNELS[block]), : len(shape)] = shape
+    else:
+        pulse = pulse_response(problem, flight, p, DYNAMIC[block])
+        for c in range(4):
+            response[c] = np.convolve(pulse[c], shape)[:n] * flight.h
+        if block == "air" and problem.flights.alpha_is_derived:
+            response[OUTPUTS.index("alpha"), : len(shape)] -= shape * (1.0 + p[INDEX["alpha_scale"]])
+    # The hat's rising side lies before its knot.
+    columns = problem.read_delayed(flight, response, knots[1:] - KNOTS_S, p)
+    return np.asarray(columns @ _colour(flight))
+
+
+@dataclass(frozen=True)
+class Course:
+    """The likeliest course of a block's disturbance."""
+
+    size: float
+    """Its standard deviation beforehand."""
+    knots: tuple[FloatArray, ...]
+    """Per manoeuvre: its value at each knot."""
+    lefts: tuple[FloatArray, ...]
+    """Per manoeuvre, stacked channels, in their units: what it leaves."""
+
+
+def disturbance_courses(
+    problem: Problem, fitted: Fitted, noise: FloatArray, block: str, sizes: Sequence[float]
+) -> list[Course]:
+    """The likeliest course of a block's disturbance for each size that it may have beforehand."""
+    p = problem.driving(fitted.point)
+    courses: list[list[FloatArray]] = [[] for _ in sizes]
+    lefts: list[list[FloatArray]] = [[] for _ in sizes]
+    for i, flight in enumerate(problem.flights.flights):
+        w = row_weights(problem, i, 1.0 / noise)
+        own, prior = fitted.linear[i].measured.own, fitted.linear[i].prior
+        both = np.column_stack([own, disturbance_columns(problem, flight, p[i], block)])
+        A, colour = both * w[:, None], _colour(flight)
+        free = len(colour)
+        for k, size in enumerate(sizes):
+            chol = factor(A, np.concatenate([prior, np.full(free, 1.0 / size**2)]))
+            found = solved(chol, A.T @ (fitted.left[i] * w))
+            courses[k].append(np.asarray(colour @ found[-free:]))
+            lefts[k].append(np.asarray(fitted.left[i] - both @ found))
+    found_of = zip(sizes, courses, lefts, strict=True)
+    return [Course(size, tuple(knots), tuple(left)) for size, knots, left in found_of]
+
+
+def _colour(flight: Flight) -> FloatArray:
+    """Cholesky factor of the disturbance's correlation between its knots."""
+    knots = np.arange(0.0, flight.duration_s, KNOTS_S)[1:]
+    apart = np.abs(knots[:, None] - knots[None, :])
+    return np.asarray(np.linalg.cholesky(np.exp(-apart / MEMORY_S) + 1e-9 * np.eye(len(knots))))

@@ -1,0 +1,215 @@
+"""The noise of a flight, from the stretches in which nothing was flown.
+
+Before the first step and late in the free response the elevator rests: whatever moves there is
+instruments and air, not an effect that the stick excites. What is learnt there is the noise that every
+explanation of the rest is judged against.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted, rms_of
+from advisor.gap.fitting.holdout import mean_squares
+from advisor.gap.fitting.linear import as_measured
+from advisor.gap.fitting.problem import Point, Problem, row_weights
+from advisor.gap.fitting.whitening import Weighting, Whitening, filters_for, rows_in_time
+from advisor.gap.noise.probes import probe_blocks
+from advisor.gap.noise.stamps import stamp_variance
+from advisor.gap.records.floor import stated_floor
+from advisor.gap.simulator.layout import DERIVATIVES, short_period
+from advisor.oem.innovations import CHANNELS, AirModel
+from advisor.oem.turbulence import Rows, cost_of, find_turbulence
+
+_LEAST_SAMPLES = 50
+_LEAST_QUIET_S = 4.0
+"""Over all manoeuvres; less tells nothing of slow air."""
+_LONE = 8.0
+"""Power of a stretch, over that of its likes, from which on a gust may have hit it ..."""
+_MARGIN = 1.03
+"""... if the air explains it by this much better than any other place ..."""
+_FAINT, _FAINT_MARGIN = 3.0, 1.2
+"""... and the same of a manoeuvre that is less loud: a mass that changes looks like the air, too."""
+ANY_GUST = 0.2
+"""Gust angle of air of which nothing is assumed, rad: a bump is nothing like the noise of a filter."""
+_NO_LESS = 0.98
+"""Weight of a sample from which on it is as good as any."""
+_LEAST_GAIN = 15.0
+"""Log likelihood by which colour or air must beat white noise before a filter is worth it."""
+
+
+def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> Whitening | None:
+    """What this flight's noise asks for; None where it is white and alike in every sample.
+
+    At a first look, with derivatives that a gust has spoilt, manoeuvres under suspicion are set aside
+    all together; whether it was a gust is seen in the fit of the others.
+    """
+    extra = stamp_variance(problem, fitted)
+    air = noise_in_quiet(problem, fitted)
+    still = air or with_floor(
+        problem, AirModel(instrument_noise(problem), np.full(4, 1e-9), 0.3, 0.0, 1.0, _seen(problem))
+    )
+    gusts = gusts_in(problem, fitted, still, first_look)
+    if air is not None or gusts:
+        airs = [gusts.get(i, still) for i in range(len(problem.flights))]
+        filters = filters_for(problem.flights, problem.driving(fitted.point), airs, extra)
+        if filters.is_sound:
+            return filters
+    white = stated_floor(problem.flights) ** 2
+    weights = tuple(1.0 / np.sqrt(1.0 + e / row_weights(problem, i, white)) for i, e in enumerate(extra))
+    return Weighting(weights) if min(float(np.min(w)) for w in weights) < _NO_LESS else None
+
+
+def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
+    """Coloured instruments or moving air, where nothing was flown; None where white noise describes it."""
+    if not {"alpha", "q"} <= set(problem.channels):
+        return None
+    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, i, fitted.left[i])]
+    rows = _without_offsets(parts)
+    if sum(r.t[-1] - r.t[0] for r in rows) < _LEAST_QUIET_S:
+        return None
+    white = instrument_noise(problem)
+    system = system_of(problem, fitted)
+    # A gust that happens to fall into a quiet stretch is not what the flight's noise is like.
+    loud = np.array([float(np.mean((r.left / white[r.channel]) ** 2)) for r in rows])
+    rows = [r for r, power in zip(rows, loud, strict=True) if power <= _LONE * np.median(loud)]
+    found = find_turbulence(rows, system, white, bool(_seen(problem)))
+    plain = AirModel(_spread(rows), np.full(4, 1e-9), 0.3, 0.0, 1.0)
+    gain = 0.5 * (cost_of(rows, system, plain) - cost_of(rows, system, found.air))
+    return with_floor(problem, found.air) if gain > _LEAST_GAIN else None
+
+
+def loudness(problem: Problem, fitted: Fitted) -> float:
+    """Power of what is left in quiet stretches beside the instruments' noise: the median of the stretches."""
+    white = instrument_noise(problem)
+    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, i, fitted.left[i])]
+    powers = [float(np.mean((r.left / white[r.channel]) ** 2)) for r in _without_offsets(parts)]
+    return float(np.median(powers)) if powers else 0.0
+
+
+def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool) -> dict[int, AirModel]:
+    """The air of those manoeuvres that a gust fell into: far worse explained than the quietest quarter.
+
+    An effect of the stick may show in some manoeuvres only, too; but then an unknown disturbance of the air
+    does not explain its residual better than one in any other place.
+    """
+    noise = np.array([float(np.hypot(still.white[c], still.coloured[c]))
+                      for c in (CHANNELS.index(name) for name in problem.channels)])  # fmt: skip
+    power = np.mean(mean_squares(problem, fitted.left) / noise**2, axis=1)
+    louder = power / np.percentile(power, 25.0)
+    likelier = {int(i): _likelier(problem, fitted, int(i), noise) for i in np.flatnonzero(louder > _FAINT)}
+    gusty = {i for i, by in likelier.items() if by > (_MARGIN if louder[i] > _LONE else _FAINT_MARGIN)}
+    suspects = {i for i in likelier if louder[i] > _LONE} if first_look and gusty else set()
+    return {i: replace(still, gust=ANY_GUST) for i in sorted(gusty | suspects)}
+
+
+def _likelier(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> float:
+    """How much better the air explains a manoeuvre's residual than any other place; 0 where it does not."""
+    best, second, *_ = probe_blocks(*only(problem, fitted, i), noise)
+    return best.gain / max(second.gain, 1e-9) if best.block == "air" else 0.0
+
+
+def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
+    """The same fit, seen through one of its manoeuvres."""
+    problem, fitted = unfiltered(problem, fitted)
+    flights = replace(problem.flights, flights=(problem.flights.flights[i],))
+    # Effects between manoeuvres need them all: what they amount to in this one becomes part of its base.
+    p = problem.driving(fitted.point)[i]
+    return (
+        replace(problem, flights=flights, base=p),
+        replace(
+            fitted,
+            point=Point(p[: len(DERIVATIVES)], fitted.point.own[i : i + 1]),
+            innovations=(fitted.left[i],),
+            left=(fitted.left[i],),
+            linear=(fitted.linear[i],),
+        ),
+    )
+
+
+def unfiltered(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+    """The same fit with its residual as the instruments have it."""
+    linear = tuple(as_measured(block) for block in fitted.linear)
+    return replace(problem, whitening=None), replace(fitted, innovations=fitted.left, linear=linear)
+
+
+def _seen(problem: Problem) -> float:
+    """1 where the α channel reads the air, 0 where it is made from inertial sensors."""
+    return 0.0 if problem.flights.alpha_is_derived else 1.0
+
+
+def with_floor(problem: Problem, air: AirModel) -> AirModel:
+    """The model with white noise not below half of what may be called noise at all.
+
+    A record that was filtered before it was stored has next to no white noise; whitened by that, the
+    errors of a simplified model would count for a thousandfold.
+    """
+    white = air.white.copy()
+    for c, least in zip(problem.channels, 0.5 * stated_floor(problem.flights), strict=True):
+        white[CHANNELS.index(c)] = max(white[CHANNELS.index(c)], least)
+    return replace(air, white=white)
+
+
+def quiet_rms(problem: Problem, fitted: Fitted) -> FloatArray:
+    """Shape (channels,): root mean square of the residual where nothing was flown; the floor, as measured."""
+    power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
+    for flight, left in zip(problem.flights.flights, fitted.left, strict=True):
+        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
+            inside = flight.is_quiet(flight.outputs[name].t)
+            power[c] += float(np.sum(left[rows][inside] ** 2))
+            count[c] += np.count_nonzero(inside)
+    whole = rms_of(problem, fitted.left)
+    # A few samples say nothing; the residual itself, coherent or not, is then the best there is.
+    return np.where(count > _LEAST_SAMPLES, np.sqrt(power / np.maximum(count, 1.0)), whole)
+
+
+def instrument_noise(problem: Problem) -> FloatArray:
+    """Shape (4,): white noise of each channel from differences of its samples; 1 for one that is missing."""
+    white = dict(zip(problem.channels, problem.flights.white, strict=True))
+    return np.array([white.get(c, 1.0) for c in CHANNELS])
+
+
+def system_of(problem: Problem, fitted: Fitted) -> FloatArray:
+    """Z_α, Z_q, M_α, M_q by which the aircraft answers the air."""
+    return short_period(problem.driving(fitted.point)[0])
+
+
+def rows_of(problem: Problem, i: int, left: FloatArray) -> Rows:
+    """A residual of manoeuvre ``i``, stacked by channels, in order of time."""
+    t, channel, order = rows_in_time(problem.flights, i)
+    return Rows(t, channel, left[order], float(np.mean(problem.flights.flights[i].slow[0])))
+
+
+def _quiet_parts(problem: Problem, i: int, left: FloatArray) -> list[Rows]:
+    """The quiet stretches before and after, each a record of its own."""
+    flight = problem.flights.flights[i]
+    whole = rows_of(problem, i, left)
+    quiet = flight.is_quiet(whole.t)
+    before = whole.t < flight.first_step_s
+    return [
+        Rows(whole.t[inside], whole.channel[inside], whole.left[inside], whole.speed)
+        for inside in (quiet & before, quiet & ~before)
+        if np.count_nonzero(inside) > 10 * len(problem.channels)
+    ]
+
+
+def _without_offsets(rows: Sequence[Rows]) -> list[Rows]:
+    """The same less what a channel has in every stretch: an offset is an effect, no noise with a memory."""
+    offset = np.zeros(len(CHANNELS))
+    for c in range(len(CHANNELS)):
+        picked = [r.left[r.channel == c] for r in rows]
+        if sum(len(p) for p in picked):
+            offset[c] = float(np.mean(np.concatenate(picked)))
+    return [replace(r, left=r.left - offset[r.channel]) for r in rows]
+
+
+def _spread(rows: Sequence[Rows]) -> FloatArray:
+    """Shape (4,): root mean square of each channel, 1 for one that is missing."""
+    found = np.ones(4)
+    for c in range(4):
+        picked = np.concatenate([r.left[r.channel == c] for r in rows])
+        if len(picked):
+            found[c] = max(float(np.sqrt(np.mean(picked**2))), 1e-12)
+    return found

@@ -1,0 +1,149 @@
+"""The air speed during a manoeuvre: the slow, noisy instrument made smooth by the accelerometers.
+
+V̇ = a_x cos α + a_z sin α − g sin(θ − α) is integrated; a parabola in time, fitted to the measured
+air speed, takes the integral's drift out. The instrument gives the level, the accelerometers the shape.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+from advisor.gravity import GRAVITY_M_S2
+
+_LEAST_SAMPLES = 6
+"""Of the instrument in a manoeuvre, from which on a parabola may be fitted to them ..."""
+_LEAST_SPARE = 10
+"""... and in all, beyond three a manoeuvre, for its noise to be known."""
+_LONGEST_MEMORY = 0.95
+"""Correlation from one sample to the next that is taken for the instrument's: beyond it is the aircraft's."""
+_SLOW_S = 1.0
+"""Over which the thrust's excess is averaged: quicker than the speed it changes, slower than the noise."""
+
+
+def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
+    """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,)."""
+    found = maneuver.channels
+    t, y = found["airspeed"].t - start_s, found["airspeed"].y
+    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
+        return _smoothed(grid, t, y)
+
+    def at(name: str) -> FloatArray:
+        return np.interp(grid, found[name].t - start_s, found[name].y)
+
+    shape = integrated(grid, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha")))
+    inside = (t >= grid[0]) & (t <= grid[-1])
+    if np.count_nonzero(inside) < _LEAST_SAMPLES:
+        return _smoothed(grid, t, y)
+    drift = np.polyfit(t[inside], y[inside] - np.interp(t[inside], grid, shape), 2)
+    rebuilt = shape + np.polyval(drift, grid)
+    apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
+    # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
+    return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else _smoothed(grid, t, y)
+
+
+def speed_rate(a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray) -> FloatArray:
+    """Rate of the speed, m/s², that the accelerometers know of: in air that moves steadily."""
+    return a_x * np.cos(alpha) + a_z * np.sin(alpha) - GRAVITY_M_S2 * np.sin(theta - alpha)
+
+
+def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
+    """The air speed in m/s without an instrument for it: what turns specific force into rate of α.
+
+    α̇ − q = (a_z cos α − a_x sin α + g cos(θ − α))/V in integral form, over all manoeuvres; of each a
+    straight line in time is taken out, which offsets of gyro and accelerometer make. None where a channel
+    is missing, or the flight shows no force.
+    """
+    product, square = 0.0, 0.0
+    for maneuver in maneuvers:
+        found = maneuver.channels
+        if not all(name in found and len(found[name]) > 10 for name in ("alpha", "q", "a_z", "theta")):
+            return None
+        t, alpha = found["alpha"].t, found["alpha"].y
+        q, a_z, theta = (np.interp(t, found[name].t, found[name].y) for name in ("q", "a_z", "theta"))
+        a_x = np.interp(t, found["a_x"].t, found["a_x"].y) if "a_x" in found else np.zeros(len(t))
+        force = a_z * np.cos(alpha) - a_x * np.sin(alpha) + GRAVITY_M_S2 * np.cos(theta - alpha)
+        line = np.linalg.qr(np.vander(t - t[0], 2))[0]
+        turned, pushed = (y - line @ (line.T @ y) for y in (alpha - integrated(t, q), integrated(t, force)))
+        product += float(turned @ pushed)
+        square += float(pushed @ pushed)
+    return square / product if product > 0.0 else None
+
+
+def speed_without_instrument(
+    grid: FloatArray, maneuver: Maneuver, start_s: float, level_m_s: float
+) -> FloatArray:
+    """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), as the accelerometers show its change.
+
+    Before the first step the aircraft is trimmed and its speed steady, at ``level_m_s``: what is read there
+    is an offset of the accelerometers or the attitude. Constant where a channel is missing.
+    """
+    found = maneuver.channels
+    level = np.full(len(grid), level_m_s)
+    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
+        return level
+
+    def at(name: str) -> FloatArray:
+        return np.interp(grid, found[name].t - start_s, found[name].y)
+
+    rate = speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"))
+    trimmed = grid < maneuver.span.start_s - start_s
+    if not np.any(trimmed):
+        return level
+    return np.maximum(level + integrated(grid, rate - np.mean(rate[trimmed])), 0.5 * level)
+
+
+def speed_doubts(
+    stamps: Sequence[FloatArray], left: Sequence[FloatArray], durations_s: Sequence[float]
+) -> list[FloatArray]:
+    """By how much level, slope and bow of each manoeuvre's speed may be wrong for the instrument's noise.
+
+    Parameters
+    ----------
+    stamps, left
+        Per manoeuvre, shape (n,): seconds since the record's start, and what the instrument reads there
+        beyond the speed that was made of it. Its size and its memory are taken from all manoeuvres.
+    durations_s
+        Lengths of the records.
+
+    Returns
+    -------
+    Per manoeuvre a factor of the covariance of the three, shape (3, 3), m/s: of a parabola in time from -1 at
+    the record's start to 1 at its end. Shape (0, 0) where too few samples were taken to tell.
+    """
+    spare = sum(max(len(e) - 3, 0) for e in left)
+    power = sum(float(e @ e) for e in left)
+    if spare < _LEAST_SPARE or power == 0.0:
+        return [np.empty((0, 0))] * len(left)
+    memory = np.clip(sum(float(e[1:] @ e[:-1]) for e in left) / power, 0.0, _LONGEST_MEMORY)
+    sigma = float(np.sqrt(power / spare * (1.0 + memory) / (1.0 - memory)))
+    doubts = []
+    for t, duration in zip(stamps, durations_s, strict=True):
+        parabola = np.vander(2.0 * t / duration - 1.0, 3, increasing=True)
+        enough = len(t) >= _LEAST_SAMPLES
+        doubts.append(sigma * np.linalg.pinv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
+    return doubts
+
+
+def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:
+    """Trapezoidal running integral, 0 at the first sample."""
+    return np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
+
+
+def along_the_path(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
+    """Thrust less drag over mass, m/s², shape (n,): a_x cos α + a_z sin α; 0 where it was not measured."""
+    found = maneuver.channels
+    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "alpha")):
+        return np.zeros(len(grid))
+    t = found["a_z"].t
+    alpha, a_x = (np.interp(t, found[name].t, found[name].y) for name in ("alpha", "a_x"))
+    along = a_x * np.cos(alpha) + found["a_z"].y * np.sin(alpha)
+    return _smoothed(grid, t - start_s, along, seconds=_SLOW_S)
+
+
+def _smoothed(grid: FloatArray, t: FloatArray, y: FloatArray, seconds: float = 0.5) -> FloatArray:
+    """Moving mean of the linear interpolation."""
+    fine = np.interp(grid, t, y)
+    width = max(1, round(seconds / float(grid[1] - grid[0]))) | 1
+    return np.convolve(np.pad(fine, width // 2, mode="edge"), np.full(width, 1.0 / width), mode="valid")

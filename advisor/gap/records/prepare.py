@@ -1,0 +1,186 @@
+"""Manoeuvres made ready: which can be used, and what of them is put on the grid."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import compress
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+from advisor.flight.renewal import renewed
+from advisor.gap.records.airspeed import airspeed_on, along_the_path, speed_doubts, speed_without_instrument
+from advisor.gap.records.edges import edges_of, held_from, step_unseen
+from advisor.gap.records.flights import Flight, Flights, Measured
+from advisor.gap.records.provenance import is_estimate
+from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
+from advisor.gap.simulator.layout import OUTPUTS
+from advisor.gap.simulator.simulate import SPEED, THRUST
+from advisor.gravity import GRAVITY_M_S2
+
+STEP_S = 0.005
+LEAST_SAMPLES = 15
+"""Of a channel in a manoeuvre: what a derived α of 8 Hz brings in the shortest."""
+_LEAST_RENEWED = 30
+"""Renewals below which a channel that repeats itself is taken as it is: a vane may stick."""
+DEPARTED_RAD = 1.0
+"""Swing of the angle of attack that no equation about a trim describes any more."""
+_ENOUGH = 4
+"""Manoeuvres with all that is needed that are enough to leave the others out."""
+
+
+def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed: bool = True) -> Flights:
+    """Make the manoeuvres ready.
+
+    Left out are those without elevator or pitch rate, those that departed, and, where enough others are
+    left, those without an angle of attack or in which a step of the command fell into a hole of the log.
+    """
+    usable = [m for m in maneuvers if _usable(m)]
+    seen = [m for m in usable if not step_unseen(m)]
+    if len(seen) >= _ENOUGH:
+        usable = seen
+    speeds = [
+        m.channels["airspeed"].y
+        for m in usable
+        if "airspeed" in m.channels and len(m.channels["airspeed"]) > 1
+    ]
+    measured = bool(usable) and len(speeds) == len(usable) and float(np.min(np.concatenate(speeds))) > 1.0
+    if measured:
+        reference = aircraft.reference_airspeed_m_s or float(np.mean([np.mean(s) for s in speeds]))
+        moves = float(max(np.max(np.abs(s / np.mean(np.concatenate(speeds)) - 1.0)) for s in speeds))
+    else:
+        reference, moves = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 20.0, 0.0
+    flights = _about_their_mean(_ready(m, aircraft, reference, measured, scale_with_speed) for m in usable)
+    with_alpha = tuple("alpha" in f.outputs for f in flights)
+    if sum(with_alpha) >= _ENOUGH:
+        usable, flights = list(compress(usable, with_alpha)), tuple(compress(flights, with_alpha))
+    if measured:
+        flights = _with_doubt(flights, usable)
+    common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
+    channels = tuple(name for name in OUTPUTS if name in common)
+    flights = tuple(_with_rows(f, channels) for f in flights)
+    has = frozenset(
+        name
+        for name in ("airspeed", "a_x", "bank", "throttle", "height", "climb_rate")
+        if usable and all(name in m.channels and len(m.channels[name]) > 1 for m in usable)
+    )
+
+    def quiet(channel: str) -> list[FloatArray]:
+        return [y for f in flights for y in f.quiet_stretches(channel)]
+
+    smoothed = "alpha" in channels and is_smoothed(quiet("alpha"))
+    # Where a whole record went through a filter on the ground, a smooth α is no sign of an estimator.
+    rough = "alpha" in channels and is_rough(quiet("alpha"))
+    derived = any(is_estimate(m, smoothed and not is_filtered(quiet("q")), rough) for m in usable)
+    whole = [[f.outputs[c].y for f in flights] for c in channels]
+    white = np.array([white_part(series) for series in whole])
+    peaks = np.array([np.median([_departure(y) for y in series]) for series in whole])
+    return Flights(
+        flights, channels, measured, reference, moves, derived, derived or smoothed, has, white, peaks
+    )
+
+
+def _departure(y: FloatArray) -> float:
+    """The largest departure of a series from its starting value."""
+    return float(np.max(np.abs(y - np.median(y[: max(5, len(y) // 50)]))))
+
+
+def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:
+    """The same with the thrust's excess counted from its mean over all manoeuvres."""
+    found = tuple(flights)
+    if found:
+        mean = float(np.mean(np.concatenate([f.slow[THRUST] for f in found])))
+        for flight in found:
+            flight.slow[THRUST] -= mean
+    return found
+
+
+def _with_doubt(flights: Sequence[Flight], maneuvers: Sequence[Maneuver]) -> tuple[Flight, ...]:
+    """The same with what is to be doubted of their air speed."""
+    stamps, left = [], []
+    for flight, maneuver in zip(flights, maneuvers, strict=True):
+        read = maneuver.channels["airspeed"].cut(flight.started_s, flight.started_s + flight.duration_s)
+        t = read.t - flight.started_s
+        grid = (np.arange(flight.n) + 0.5) * flight.h
+        stamps.append(t)
+        left.append(read.y - np.interp(t, grid, flight.slow[SPEED]))
+    doubts = speed_doubts(stamps, left, [flight.duration_s for flight in flights])
+    return tuple(replace(f, speed_doubt=doubt) for f, doubt in zip(flights, doubts, strict=True))
+
+
+def _usable(maneuver: Maneuver) -> bool:
+    found = maneuver.channels
+    if not all(name in found and len(found[name]) >= LEAST_SAMPLES for name in ("elevator", "q")):
+        return False
+    return "alpha" not in found or float(np.ptp(found["alpha"].y)) < DEPARTED_RAD
+
+
+def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, scaled: bool) -> Flight:
+    start = max(m.channels["elevator"].t[0], m.channels["q"].t[0])
+    end = min(m.channels["elevator"].t[-1], m.channels["q"].t[-1])
+    n = int(np.ceil((end - start) / STEP_S)) + 1
+    grid: FloatArray = (np.arange(n, dtype=np.float64) + 0.5) * STEP_S
+    first = m.span.start_s - start
+
+    def on_grid(name: str, otherwise: float) -> FloatArray:
+        channel = m.channels.get(name)
+        if channel is None or len(channel) < 2:
+            return np.full(n, otherwise)
+        return np.asarray(np.interp(grid, channel.t - start, channel.y))
+
+    speed = airspeed_on(grid, m, start) if measured else speed_without_instrument(grid, m, start, reference)
+    theta_at = on_grid("theta", 0.0)
+    a_x = smooth(on_grid("a_x", GRAVITY_M_S2 * float(np.sin(theta_at[0]))), 0.05)
+    bank = smooth(on_grid("bank", 0.0), 0.1)
+    throttle = on_grid("throttle", 0.0)
+    height = on_grid("height", 1e3)
+    along = along_the_path(grid, m, start) / GRAVITY_M_S2
+    slow = np.vstack([speed, a_x, bank, throttle - float(np.mean(throttle[:20])), height, along])
+    outputs = _outputs(m, start, end)
+    t_u, u = m.channels["elevator"].t - start, m.channels["elevator"].y
+    lead = (t_u >= 0.0) & (t_u < max(first - 0.02, 0.1))
+    u_trim = float(np.median(u[lead])) if np.any(lead) else float(u[0])
+
+    def at_start(name: str, otherwise: float) -> float:
+        if name not in outputs:
+            return otherwise
+        out = outputs[name]
+        return float(np.mean(out.y[out.t <= max(first, out.t[0] + 0.1)]))
+
+    trim = np.array(
+        [at_start("alpha", 0.0), at_start("theta", at_start("alpha", 0.0)), reference, float(scaled)]
+    )
+    if "theta" in outputs:
+        trim[1] = float(np.mean(outputs["theta"].y[:3]))
+    return Flight(
+        m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, held_from(t_u), u, u_trim,
+        slow, trim, outputs, edges_of(t_u, u),
+    )  # fmt: skip
+
+
+def _with_rows(flight: Flight, channels: Sequence[str]) -> Flight:
+    """The same with the stamps of its channels laid end to end."""
+    times = [flight.outputs[c].t for c in channels]
+    output = np.repeat([OUTPUTS.index(c) for c in channels], [len(t) for t in times])
+    return replace(flight, stamps=np.concatenate(times), output=output.astype(np.int64))
+
+
+def _outputs(m: Maneuver, start: float, end: float) -> dict[str, Measured]:
+    outputs = {}
+    for name in OUTPUTS:
+        channel = m.channels.get(name)
+        if channel is None or len(channel) < LEAST_SAMPLES:
+            continue
+        cut = channel.cut(start, end)
+        t, y = renewed(cut.t - start, cut.y, _LEAST_RENEWED)
+        if len(t) >= LEAST_SAMPLES:
+            outputs[name] = Measured(t, y)
+    return outputs
+
+
+def smooth(y: FloatArray, seconds: float) -> FloatArray:
+    """Centred moving average over ``seconds`` of a series on the grid."""
+    width = max(1, round(seconds / STEP_S)) | 1
+    padded = np.pad(y, width // 2, mode="edge")
+    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")

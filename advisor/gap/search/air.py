@@ -1,0 +1,133 @@
+"""Is the air moving? Turbulence and gusts, told from coloured instrument noise by their pattern.
+
+A gust enters the vane, the lift and the moment at once; noise of instruments, however coloured, does
+not. Judged by the Kalman likelihood of ``advisor.oem.turbulence``; the course of the gust itself comes
+from the probe of the air.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.holdout import mean_squares
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.noise.probes import KNOTS_S, Course, disturbance_courses
+from advisor.gap.noise.quiet import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
+from advisor.gap.records.smoothness import robust_std
+from advisor.gap.search.merit import LEAST_BELIEF, Judged
+from advisor.oem.innovations import CHANNELS
+from advisor.oem.turbulence import find_turbulence
+
+AIR_GAIN = 40.0
+"""Log likelihood by which moving air must beat coloured instruments."""
+AIR_MANEUVERS = 5
+"""Enough to recognise turbulence by."""
+
+LEAST_GUST_ANGLE = 0.001
+"""Gust angle below which it is not worth a name, rad."""
+
+_TRIED = 6
+"""Sizes of a gust beforehand, from what turbulence would have to any ..."""
+_AS_MUCH = 0.995
+"""... and what a gentler course must take up of what the strongest does."""
+_OF_AIR = 0.02
+"""Share of the log likelihood that moving air brings which an effect must bring beside it ..."""
+_OF_POWER = 0.1
+"""... or else the share of its power that the effect must change."""
+_OF_GUST = 0.05
+"""The same beside a gust: in its manoeuvre a bump of any shape passes for anything."""
+
+
+@dataclass(frozen=True)
+class Air:
+    """Air that moves, as the data show it."""
+
+    angle_std: float
+    """Standard deviation of the gust angle w/V, rad."""
+    gain: float
+    gust: bool
+    """One or few bumps in otherwise still air, not turbulence."""
+    gust_number: int
+    """Manoeuvre in which a gust shows most."""
+    gust_angle: float
+    """Largest departure of the air's angle there, rad."""
+    gust_at_s: float
+    """Vehicle time of its peak."""
+    left: FloatArray
+    """Shape (channels,): mean square that stays when the likeliest course of the air is taken out."""
+    lefts: tuple[FloatArray, ...]
+    """The same per manoeuvre, stacked channels, in their units."""
+    power: float
+    """What its course takes up, mean over channels of the mean square beside the instruments' noise."""
+
+    def may_be(self, effect: Judged) -> bool:
+        """Whether an effect is no more than the shape of the air, which is known to low order only.
+
+        What brings the derivatives back to the aircraft file's is more.
+        """
+        if effect.belief >= LEAST_BELIEF:
+            return False
+        if self.gust:
+            return effect.gain < _OF_GUST * self.gain
+        return effect.gain < _OF_AIR * self.gain and effect.removed < _OF_POWER * self.power
+
+
+def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
+    """The air's motion when it is there; None when noise of the instruments explains the residual as well."""
+    if "alpha" not in problem.channels or "q" not in problem.channels:
+        return None
+    rows = [rows_of(problem, i, fitted.left[i]) for i in range(len(problem.flights))]
+    loudest = sorted(range(len(rows)), key=lambda i: -float(np.mean(fitted.left[i] ** 2)))[:AIR_MANEUVERS]
+    derived = problem.flights.alpha_is_derived
+    found = find_turbulence(
+        [rows[i] for i in loudest], system_of(problem, fitted), instrument_noise(problem), not derived
+    )
+    if found.gain < AIR_GAIN or found.gust_angle < LEAST_GUST_ANGLE:
+        return None
+    model = with_floor(problem, found.air)
+    instruments = np.hypot(model.white, model.coloured)[[CHANNELS.index(c) for c in problem.channels]]
+    course = disturbance_courses(problem, fitted, instruments, "air", [found.gust_angle])[0]
+    joined = np.concatenate(course.knots)
+    typical = robust_std(joined - np.median(joined))
+    # Gaussian air of this many samples reaches four times its spread, a lone gust far more.
+    gust = float(np.max(np.abs(joined))) > 6.0 * typical
+    if gust:
+        course = _of_a_gust(problem, fitted, instruments, found.gust_angle)
+    floor = 1.0 if problem.instruments is None else problem.instruments
+    before = mean_squares(problem, fitted.left)
+    # The loudest manoeuvre shows the gust: where none was, a course may wander far and change little.
+    number = int(np.argmax(np.mean((before - mean_squares(problem, course.lefts)) / floor**2, axis=1)))
+    at = int(np.argmax(np.abs(course.knots[number])))
+    flight = problem.flights.flights[number]
+    left = _mean_square(problem, course.lefts)
+    taken = np.mean(before, axis=0) - left
+    return Air(
+        angle_std=found.gust_angle, gain=found.gain,
+        gust=gust, gust_number=flight.number,
+        gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
+        left=left, lefts=course.lefts, power=float(np.mean(taken / floor**2)),
+    )  # fmt: skip
+
+
+def _of_a_gust(problem: Problem, fitted: Fitted, instruments: FloatArray, least: float) -> Course:
+    """The gentlest course that explains as much as one that may be of any size.
+
+    What the instruments hardly show would wander far in one that may be of any size.
+    """
+    sizes = [*np.geomspace(least, ANY_GUST, _TRIED)] if least < ANY_GUST else [ANY_GUST]
+    courses = disturbance_courses(problem, fitted, instruments, "air", sizes)
+    left = [float(np.sum(_mean_square(problem, c.lefts) / instruments**2)) for c in courses]
+    before = float(np.sum(np.mean(mean_squares(problem, fitted.left), axis=0) / instruments**2))
+    enough = before - _AS_MUCH * (before - left[-1])
+    return next(c for c, rest in zip(courses, left, strict=True) if rest <= enough)
+
+
+def _mean_square(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+    """Shape (channels,), over all manoeuvres; the air's own freedom (a knot each) counted against it."""
+    knots = sum(f.duration_s / KNOTS_S for f in problem.flights.flights)
+    samples = sum(len(left) for left in lefts)
+    powers = np.mean(mean_squares(problem, lefts), axis=0)
+    return np.asarray(powers / max(1.0 - knots / samples, 0.3))

@@ -1,0 +1,135 @@
+"""Between its stamps: was the command held, or did it move linearly?"""
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.gap.candidates import input
+from advisor.gap.fitting.fit import Fitted, evidence_of, fit
+from advisor.gap.fitting.neighbourhood import Neighbourhood
+from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.search.screen import Screen
+
+_NEARLY = 0.25
+"""Share of what a delay, a lag and the right reading explain which may stay unexplained without them ..."""
+_LOOKS_HELD = 0.3
+"""... and where delay and lag are half an interval together. A third would be left if they were real: the
+variance of edges anywhere in an interval, beside the square of half of it."""
+_HALF_S = 0.003
+"""How near to half an interval that is."""
+_BEND = frozenset({"actuator_rate_limit", "actuator_backlash", "actuator_deadband"})
+"""What lies between command and surface and is not linear."""
+_LIKELIER = 12.0
+"""Twice the log likelihood by which a whole diagnosis with a held command must be the better one."""
+
+
+def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+    """The plain model, with the command held or linear between its stamps as the data decide.
+
+    The choice is made with a delay and a lag in the model, else a held command would pass for a
+    delay of half a sample, or a delay for a held command.
+    """
+    delay, lag = (
+        next(v for v in input.variants() if v.effect == name) for name in ("transport_delay", "actuator_lag")
+    )
+    best = min(Screen(linear, fitted).quick_fits((delay, lag)), key=lambda s: s.cost, default=None)
+    if best is None:
+        return linear, fitted
+    other = lag if best.variant is delay else delay
+    held, plainly_held = read_as_held(linear, fitted)
+    both_linear = fit(linear, best.point.with_effect(other, (0.005,)), best.noise, 8)
+    # A held command answers half an interval later than a linear one by itself.
+    half = 0.5 * float(np.median(np.diff(linear.flights.flights[0].t_u)))
+    sooner = max(float(best.point.values[-1][0]) - half, 0.002)
+    less = fitted.point.with_effect(best.variant, (sooner,)).with_effect(other, (0.005,))
+    both_held = fit(held, less, best.noise, 8)
+    plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
+    both = {False: evidence_of(linear, both_linear), True: evidence_of(held, both_held)}
+    best_of_all = min(*plain.values(), *both.values())
+    # Held with a delay d and linear with d plus half an interval are the same motion. The held reading is
+    # believed where it needs no delay at all; else the doubt of half an interval goes into the delay's error.
+    near = best_of_all + _NEARLY * (max(plain.values()) - best_of_all)
+    price = 2.0 * float(np.log(np.sum(counts(linear))))
+    is_held = plain[True] < min(near, plain[False], both[False] + price)
+    # Just half an interval is what a held command looks like when edges are free to take up the rest.
+    late = sum(float(values[0]) for values in both_linear.point.values[-2:])
+    nearly = best_of_all + _LOOKS_HELD * (max(plain.values()) - best_of_all)
+    looks_held = abs(late - half) < _HALF_S and plain[True] < min(nearly, plain[False])
+    # The same with a lag besides: held, the lag is enough; linear, it takes half an interval of delay, too.
+    delays = {p.held: _delay_of(f) for p, f in ((linear, both_linear), (held, both_held))}
+    without_delay = delays[True] < _HALF_S and abs(delays[False] - half) < _HALF_S
+    if is_held or looks_held or (without_delay and both[True] < both[False] + price):
+        return held, plainly_held
+    return linear, fitted
+
+
+def may_be_held(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool:
+    """Whether a command read as linear shows the half interval by which a held one is later.
+
+    As a delay, or up to a whole interval before a servo that moves no faster than some rate: it would have
+    begun when the command left its old value. Or as a lag, or in the stamps of sensors, which are as late as
+    that beside a command read too early. ``fitted`` has all effects that were named, ``seen`` are those and
+    what came near to being the first.
+    """
+    if problem.held:
+        return False
+    interval = float(np.median(np.diff(problem.flights.flights[0].t_u)))
+    least, most = 0.5 * interval - _HALF_S, interval + _HALF_S
+    late = least < _delay_of(fitted) < most and not _BEND.isdisjoint(seen)
+    return late or any(least < abs(time) < most for time in _other_times_of(fitted))
+
+
+def read_as_held(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+    """The plain model with the command held between its stamps."""
+    held = replace(problem, held=True)
+    return held, with_latency(held, fit(held, fitted.point, fitted.noise))
+
+
+def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: Fitted) -> bool:
+    """Whether all that was named with a held command describes the data better, and without a delay.
+
+    It must have named what no delay or lag imitates, or do with fewer effects, each of which has its price:
+    between those two readings ``read_command`` decides.
+    """
+    if _delay_of(named_held) > 0.0:
+        return False
+    more = evidence_of(held, named_held) - evidence_of(linear, named)
+    fewer = len(named.point.effects) - len(named_held.point.effects)
+    bends = any(effect.effect in _BEND for effect in named_held.point.effects)
+    return (bends and more < -_LIKELIER) or (
+        fewer > 0 and more < fewer * float(np.log(np.sum(counts(linear))))
+    )
+
+
+def _other_times_of(fitted: Fitted) -> list[float]:
+    """Lag of the servo and skews of sensors, s."""
+    effects = zip(fitted.point.effects, fitted.point.values, strict=True)
+    return [
+        float(values[0])
+        for effect, values in effects
+        if effect.names[0] == "skew_s" or effect.effect == "actuator_lag"
+    ]
+
+
+def _delay_of(fitted: Fitted) -> float:
+    delays = zip(fitted.point.effects, fitted.point.values, strict=True)
+    return sum(float(values[0]) for effect, values in delays if effect.effect == "transport_delay")
+
+
+def with_latency(problem: Problem, fitted: Fitted) -> Fitted:
+    """The fit, begun again where another latency is better: steps make the cost rough in it.
+
+    Within the few milliseconds of its bounds the latency passes stamps, and each may hold a minimum.
+    """
+    lower, upper = input.LATENCY.bounds[0]
+    points = [
+        replace(fitted.point, values=(np.array([latency]), *fitted.point.values[1:]))
+        for latency in np.arange(lower, upper + 1e-9, 1e-3)
+    ]
+    places = Neighbourhood(problem, fitted).at_all(points)
+    best = min((place for place in places if place is not None), key=lambda place: place.cost)
+    if best.cost > fitted.cost - 1.0:
+        return fitted
+    again = fit(problem, best.point, fitted.noise)
+    return again if again.cost < fitted.cost else fitted

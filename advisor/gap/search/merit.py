@@ -1,0 +1,121 @@
+"""When an effect is worth a name: better on unseen manoeuvres, beyond noise, not too small to matter."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.holdout import HeldOut
+
+LEAST_GAIN = 6.0
+"""Log likelihood, on held-out manoeuvres and after the price of its numbers, that an effect must bring."""
+_UNCONFIRMED = 20.0
+"""The same of what a single manoeuvre tells, which no other can confirm."""
+_WITH_THE_AIR = 30.0
+"""The same in moving air of what air speed, throttle or height tell: they move with the air themselves ..."""
+_PLAINLY, _PLAIN_SIGMAS = 15.0, 5.0
+"""... unless nothing else was named, it changes ten times the least, and a number is as far from nothing."""
+LEAST_SIGMA = 3.0
+_CERTAIN = 30.0
+"""Log likelihood from which on there is no doubt that something like the effect is there."""
+_PLAIN_GAIN, _PLAIN_CHANGE = 100.0, 10.0
+"""Log likelihood, and changes of the least size, from which on twice the physical minimum is enough."""
+LEAST_OFFSET_RAD = 0.006
+"""Smaller offsets get no name: neither a vane's zero nor the attitude's, from which the path is taken, is set
+to better than a few tenths of a degree."""
+OFFSET_SIGMAS = 5.0
+"""Standard deviations that an offset of α must have to be named."""
+LEAST_BELIEF = 8.0
+"""Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
+_SUPPORT = 4.0
+"""The same of an effect that is certain anyway."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One effect as an addition to a model."""
+
+    variant: Variant
+    fitted: Fitted
+    held_out: HeldOut
+    gain: float
+    """Held-out log likelihood gained, coloured residuals at their worth, minus k/2 ln N, plus belief."""
+    removed: float
+    """What it changes in the outputs of manoeuvres kept out, mean square beside the instruments' noise."""
+    least: float
+    """What ``removed`` must exceed ..."""
+    least_certain: float
+    """... and what it must exceed where ``gain`` leaves no doubt."""
+    smallest: float
+    """Size below which it is not worth a name."""
+    belief: float
+    """Log probability gained because the derivatives it leaves agree better with the file's."""
+    beforehand: float
+    """What of ``gain`` is not the motion's: belief, the odds of an arm, less the price of its numbers."""
+    value: FloatArray
+    std: FloatArray
+    witness: int | None = None
+    """The manoeuvre that alone tells of it: ``gain`` and ``removed`` are the fit's own."""
+    with_the_air: bool = False
+    """The air moves, and with it the channel that tells of the effect."""
+    alone: bool = True
+    """Nothing else was named before."""
+
+    @property
+    def effect(self) -> str:
+        """Name in the catalogue."""
+        return self.variant.effect
+
+    @property
+    def worth_naming(self) -> bool:
+        """Better on unseen manoeuvres, by more than noise, and not smaller than matters."""
+        certain = self.gain >= _CERTAIN
+        least = self.least_certain if certain else self.least
+        supported = self.belief >= (_SUPPORT if certain else LEAST_BELIEF)
+        if self.gain < self.least_gain or not (supported or self.removed >= least):
+            return False
+        return self.sigmas > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
+
+    @property
+    def sigmas(self) -> float:
+        """Standard deviations by which a number of it differs from nothing."""
+        return float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
+
+    @property
+    def least_gain(self) -> float:
+        """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
+        confirmed = LEAST_GAIN if self.witness is None else _UNCONFIRMED
+        if self.with_the_air:
+            plain = self.alone and self.removed >= _PLAIN_CHANGE * self.least and self.sigmas > _PLAIN_SIGMAS
+            return max(confirmed, _PLAINLY) if plain else _WITH_THE_AIR
+        if self.witness is not None:
+            return confirmed
+        return 0.0 if self.variant.twin is not None and self.belief >= LEAST_BELIEF else LEAST_GAIN
+
+    @property
+    def at_its_bounds(self) -> bool:
+        """The search ran out of its range: a shape that only resembles the effect.
+
+        A bound at zero is none: the effect does without that number, as an engine without a lag.
+        """
+        ends = np.array(self.variant.bounds[1:]).reshape(-1, 2)
+        near = np.abs(ends - self.value[1:, None]) < 1e-3 * np.ptp(ends, axis=1, keepdims=True)
+        near &= ends != 0.0
+        return bool(np.any(near)) and not self.variant.one_sided
+
+    @property
+    def large_enough(self) -> bool:
+        """At or above the physical minimum; stamps that jitter hide no time that is plain all the same."""
+        plain = self.gain >= _PLAIN_GAIN and self.removed >= _PLAIN_CHANGE * self.least
+        smallest = min(self.smallest, 2.0 * self.variant.smallest) if plain else self.smallest
+        return size_of(self.variant, self.value) >= smallest
+
+
+def size_of(variant: Variant, value: FloatArray) -> float:
+    """The number of an effect that its physical minimum is about."""
+    if variant.effect == "icing":
+        # The lift slope and the stability; the elevator's share of the lift is hardly ever known.
+        return float(np.max(np.abs(value[[0, 2]])))
+    return float(abs(value[0]))

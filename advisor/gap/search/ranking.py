@@ -1,0 +1,122 @@
+"""Which: every effect is screened, the few worth it are fitted fully, and the best judgement comes first."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.fitting.belief import log_belief
+from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.problem import Point, Problem, counts
+from advisor.gap.fitting.uncertainty import belief_in, covariance, worth
+from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN, Judged, size_of
+from advisor.gap.search.score import addition, predict_alike, smallest_of
+from advisor.gap.search.screen import Screen, Screened
+from advisor.gap.simulator.layout import DERIVATIVES
+
+_PROMISE = 0.7
+"""Share of the least that the screening must promise before a full fit is spent on a candidate."""
+_ITERATIONS = 8
+_TO_THE_END = 25
+_FITS = 5
+"""Candidates that get a full fit after the screening."""
+_RIVAL = 0.3
+"""Share of the best promise below which a candidate is no rival."""
+_GROSS = 300.0
+"""Log likelihood promised by the best from which on the right model is far from where the screening looks."""
+_GROSS_FITS = 8
+_GROSS_RIVAL = 0.05
+_TELLS = 3.0
+"""Log probability beforehand by which one effect must be likelier than another to be believed for that."""
+
+
+def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]) -> list[Screened]:
+    """The screening, without the effects the model has already."""
+    present = {e.effect for e in fitted.point.effects}
+    independent = counts(problem)
+    known = covariance(problem, fitted, independent)[: len(DERIVATIVES), : len(DERIVATIVES)]
+    plain = belief_in(problem, fitted, independent)
+
+    def believed(point: Point) -> float:
+        if problem.believed is None:
+            return 0.0
+        return log_belief(point.derivatives, known, problem.believed) - plain
+
+    return Screen(problem, fitted).try_all([v for v in variants if v.effect not in present], believed)
+
+
+def judge(
+    problem: Problem, before: Fitted, held_before: HeldOut, candidates: Sequence[Screened]
+) -> list[Judged]:
+    """Full fits of the best variants of the best effects; the best judgement first."""
+    fits = [
+        fit(problem, point, s.noise, iterations=_ITERATIONS, tolerance=0.5)
+        for s in shortlist(problem, before, candidates)
+        for point in _described(s.point)
+    ]
+    if not fits:
+        return []
+    independent = worth(problem, min(fits, key=lambda f: f.cost).innovations)
+    likeliest: dict[str, Fitted] = {}
+    for fitted in sorted(fits, key=lambda f: f.cost):
+        likeliest.setdefault(fitted.point.effects[-1].effect, fitted)
+    judged = [addition(problem, before, held_before, f, e, independent) for e, f in likeliest.items()]
+    first, *rest = evened(problem, judged)
+    if first.fitted.iterations == _ITERATIONS:
+        # Far from the plain model the search is long; only what comes out first is followed to its end.
+        ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)
+        first = addition(problem, before, held_before, ended, first.effect, independent)
+    return [first, *rest]
+
+
+def _described(point: Point) -> list[Point]:
+    """The point, and the same with its last effect described another way, where there is one."""
+    other = point.effects[-1].likewise
+    return [point] if other is None else [point, replace(point, effects=(*point.effects[:-1], other))]
+
+
+def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
+    """The best judgement first; what predicts the same motion has its likelihood, if likelier beforehand.
+
+    No description to low order is better than some share of the motion: where two differ by less, what the
+    likelihood prefers is which of them takes up more of the description's own error. What is known
+    beforehand decides: above all, which of them leaves the aircraft file's derivatives alone.
+    """
+    best = max(judged, key=lambda j: j.gain)
+
+    def at_its_worth(j: Judged) -> Judged:
+        likelier = j.beforehand > best.beforehand + _TELLS
+        if not (likelier and j.worth_naming and predict_alike(problem, best.held_out, j.held_out)):
+            return j
+        return replace(j, gain=best.gain - best.beforehand + j.beforehand)
+
+    return sorted((at_its_worth(j) for j in judged), key=lambda j: -j.gain)
+
+
+def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) -> list[Screened]:
+    """Candidates worth a full fit; ``candidates`` come best first.
+
+    One too small to be named is no rival of the others. Where the gap is gross the order and the sizes that
+    the screening finds are worth less: more effects are fitted then, and two variants of each.
+    """
+
+    def promise(c: Screened) -> float:
+        return 0.5 * (before.cost - c.cost)
+
+    def best_of(some: Sequence[Screened]) -> float:
+        return max((promise(c) + c.belief for c in some), default=0.0)
+
+    gross = best_of(candidates) > _GROSS
+    if not gross:
+        candidates = [
+            c for c in candidates
+            if size_of(c.variant, c.point.values[-1]) >= smallest_of(problem, c.variant)
+        ]  # fmt: skip
+    least = (_GROSS_RIVAL if gross else _RIVAL) * best_of(candidates)
+    chosen: list[Screened] = []
+    for c in candidates:
+        worth_it = promise(c) >= _PROMISE * LEAST_GAIN or c.belief >= _PROMISE * LEAST_BELIEF
+        same = sum(c.variant.effect == other.variant.effect for other in chosen)
+        if worth_it and promise(c) + c.belief >= least and same < (2 if gross else 1):
+            chosen.append(c)
+    return chosen[: _GROSS_FITS if gross else _FITS]

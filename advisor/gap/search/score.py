@@ -1,0 +1,154 @@
+"""What an effect adds to a model, judged on manoeuvres that the fit has not seen."""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.fitting.belief import odds_of_arm
+from advisor.gap.fitting.fit import Fitted, rms_of
+from advisor.gap.fitting.holdout import HeldOut, hold_out, lone_witness, mean_squares
+from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.fitting.uncertainty import belief_in, shared_std
+from advisor.gap.records.floor import doubts
+from advisor.gap.search.merit import LEAST_BELIEF, Judged, size_of
+
+LEAST_GAP = 0.05
+"""What it must change there, mean square over the noise of the instruments, averaged over channels."""
+_FAINT = 0.15
+"""Share of it that is enough of what is certain, where the air is still and nothing else there ..."""
+_BY_NATURE = frozenset(
+    {
+        "elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift", "unsteady_lift", "alpha_dot",
+        "icing", "structural_mode", "airspeed_variation", "thrust_moment", "ground_effect",
+    }
+)  # fmt: skip
+"""... but for what every aircraft has to some degree, or what takes its shape; and times must be
+twice the least, and steps that may have come between any two manoeuvres."""
+_OF_PEAK = 0.003
+"""Share of each channel's peak that an effect must change."""
+TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
+"""Parameters that are times."""
+TIME_DOUBT_S = 0.0006
+"""Error of a delay, lag or skew for the simulation's grid and the stamps' resolution."""
+_ANY_TIME = 1.5
+"""Physical minima that a step must reach which may have come between any two manoeuvres."""
+_JITTERS = 3.0
+"""Standard deviations of the stamps by which a time must exceed its physical minimum, besides."""
+_NOT_SEEN = 0.005
+"""Difference of two predictions, mean square beside the instruments' noise, that no flight shows."""
+
+
+def smallest_of(problem: Problem, variant: Variant) -> float:
+    """Size of an effect's first parameter below which it is not worth a name, the stamps as they are."""
+    if variant.names[0] in TIMES:
+        return variant.smallest + TIME_DOUBT_S + _JITTERS * problem.jitter_s
+    return variant.smallest * (_ANY_TIME if "at_s" in variant.fixed else 1.0)
+
+
+def addition(
+    problem: Problem,
+    before: Fitted,
+    held_before: HeldOut,
+    fitted: Fitted,
+    effect: str,
+    independent: FloatArray,
+) -> Judged:
+    """What an effect of a fitted model adds to the model without it."""
+    point = fitted.point
+    k = [v.effect for v in point.effects].index(effect)
+    variant, value = point.effects[k], point.values[k]
+    at = len(point.derivatives) + sum(len(v) for v in point.values[:k])
+    held = hold_out(problem, fitted)
+    # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
+    witness = lone_witness(problem, fitted, at) if variant.needs else None
+    lone = witness is not None
+    seen_before, seen_after = (before, fitted) if lone else (held_before, held)
+    likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed=lone)
+    likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
+    numbers = len(variant.names) + (1 if variant.fixed else 0)
+    price = 0.5 * numbers * float(np.log(np.sum(independent)))
+    belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
+    odds = odds_of_arm(variant.effect, float(value[0]), problem.stated, problem.flights.alpha_is_derived)
+    least, beforehand = least_change(problem), belief + odds - price
+    return Judged(
+        variant=variant, fitted=fitted, held_out=held,
+        gain=likelihood + beforehand,
+        removed=difference(problem, seen_before, seen_after, witness),
+        least=least, least_certain=least * _share_enough(problem, before, variant, value),
+        smallest=smallest_of(problem, variant),
+        belief=belief, beforehand=beforehand, value=value, witness=witness,
+        with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=_is_alone(before),
+        std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
+    )  # fmt: skip
+
+
+def log_likelihood_gained(
+    before: Fitted,
+    held_before: HeldOut,
+    after: Fitted,
+    held_after: HeldOut,
+    independent: FloatArray,
+    unconfirmed: bool = False,
+) -> float:
+    """What was gained on manoeuvres kept out, but by luck not more than in the fit itself.
+
+    ``unconfirmed``: no other manoeuvre could confirm it, so the fit is asked alone.
+    """
+    ratios = [np.log((before.noise / after.noise) ** 2)]
+    if not unconfirmed:
+        ratios.append(np.log(held_before.innovations / held_after.innovations))
+    return min(float(np.sum(independent / 2.0 * r)) for r in ratios)
+
+
+def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:
+    """Of the least change: what is enough where an effect is certain."""
+    if not _is_alone(before) or problem.knows_the_noise or variant.effect in _BY_NATURE:
+        return 1.0
+    times = 2.0 if variant.names[0] in TIMES or variant.fixed else 1.0
+    return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0
+
+
+def _is_alone(before: Fitted) -> bool:
+    """Whether the model has nothing yet that is anyone's fault."""
+    return all(effect.always for effect in before.point.effects)
+
+
+def price_of_edges(problem: Problem, fitted: Fitted) -> float:
+    """What the cost has beside noise and belief: edges and air speeds off where they likely were.
+
+    A wrong model buys some of its fit by shifting them.
+    """
+    noise = float(np.sum(counts(problem) * 2.0 * np.log(fitted.noise)))
+    return fitted.cost - noise - problem.disbelief(fitted.point)
+
+
+def least_change(problem: Problem) -> float:
+    """Mean square change of the outputs, beside the instruments' noise, from which an effect is worth a name.
+
+    Where instruments are very good, what matters is no longer their noise: a description to low order is
+    itself no better than a share of each channel's peak.
+    """
+    if problem.instruments is None:
+        return LEAST_GAP
+    return max(LEAST_GAP, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
+
+
+def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
+    """Whether two predictions differ by next to nothing, or by what a description to low order may err."""
+    apart = rms_of(problem, [a - b for a, b in zip(one.left, other.left, strict=True)])
+    return (
+        bool(np.all(apart < _OF_PEAK * problem.flights.peaks)) or difference(problem, one, other) < _NOT_SEEN
+    )
+
+
+def difference(
+    problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted, only: int | None = None
+) -> float:
+    """Mean over channels of the squared change of the prediction, beside the noise that may be doubted.
+
+    ``only``: in this manoeuvre, where no other tells of it.
+    """
+    changed = mean_squares(problem, [a - b for a, b in zip(before.left, after.left, strict=True)])
+    noise = 1.0 if problem.instruments is None else problem.instruments * doubts(problem.flights)
+    power = np.mean(changed, axis=0) if only is None else changed[only]
+    return float(np.mean(power / noise**2))

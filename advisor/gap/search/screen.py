@@ -1,0 +1,131 @@
+"""Every candidate once, fast: the baseline's sensitivities are kept, only the effect's own are computed."""
+
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.fitting.belief import scale_of
+from advisor.gap.fitting.fit import Fitted, bounds_of
+from advisor.gap.fitting.neighbourhood import Neighbourhood, Place
+from advisor.gap.fitting.problem import Point, Problem
+
+_STEPS = 4
+_AT_ONCE = 16
+"""Points that are flown together: enough to fill the packs, few enough for the cache."""
+_HARDLY = 6.0
+"""Decrease of the cost (twice the log likelihood) below which a description is not followed any further."""
+
+
+@dataclass(frozen=True)
+class Screened:
+    """A candidate after its quick fit."""
+
+    variant: Variant
+    point: Point
+    cost: float
+    """As ``Fitted.cost``, to compare with the baseline's."""
+    noise: FloatArray
+    belief: float = 0.0
+    """Log probability gained because the derivatives agree better with the aircraft file's."""
+
+
+_Descent = Generator[Point, Place | None, Screened | None]
+"""A search that asks for one point after another and is told of each."""
+
+
+class Screen:
+    """The baseline made ready for many candidates, each of which is followed for at most some steps."""
+
+    def __init__(self, problem: Problem, fitted: Fitted, steps: int = _STEPS) -> None:
+        self.problem, self.fitted, self.steps = problem, fitted, steps
+        self.around = Neighbourhood(problem, fitted)
+
+    def try_all(self, variants: Sequence[Variant], believed: Callable[[Point], float]) -> list[Screened]:
+        """Quick fits of all, the likeliest description of the data first.
+
+        ``believed`` gives the log probability that a point gains from what the aircraft file says.
+        """
+        found = [replace(s, belief=believed(s.point)) for s in self.quick_fits(variants)]
+        price = float(np.sum(self.around.count))
+        return sorted(found, key=lambda s: s.cost - 2.0 * s.belief + penalty(s.variant, price))
+
+    def quick_fits(self, variants: Sequence[Variant]) -> list[Screened]:
+        """The best of each variant's starts, where one of them leads anywhere."""
+        began = [(n, start) for n, variant in enumerate(variants) for start in variant.starts]
+        ended = self._together([self._descend(variants[n], start) for n, start in began])
+        best: dict[int, Screened] = {}
+        for (n, _), end in zip(began, ended, strict=True):
+            if end is not None and (n not in best or end.cost < best[n].cost):
+                best[n] = end
+        return list(best.values())
+
+    def _together(self, descents: Sequence[_Descent]) -> list[Screened | None]:
+        """All descents side by side: the next points of many are flown at once."""
+        ended: list[Screened | None] = [None] * len(descents)
+        asked = {n: next(descent) for n, descent in enumerate(descents)}
+        while asked:
+            some = list(asked)[:_AT_ONCE]
+            for n, place in zip(some, self.around.at_all([asked.pop(n) for n in some]), strict=True):
+                try:
+                    asked[n] = descents[n].send(place)
+                except StopIteration as end:
+                    ended[n] = end.value
+        return ended
+
+    def _descend(self, variant: Variant, start: tuple[float, ...]) -> _Descent:
+        problem = self.problem
+        sides = None if variant.sides is None else variant.sides[1]
+        if variant.twin is not None and problem.believed is not None:
+            point = self._at_the_files(variant)
+        else:
+            resting = None if sides is None else np.zeros(len(problem.flights))
+            point = self.fitted.point.with_effect(variant, start, resting)
+        if sides is not None:
+            point = self.around.choose_sides(point, sides)
+        here = yield point
+        if here is None:
+            return None
+        lower, upper = bounds_of(point)
+        for n in range(self.steps):
+            step, promised = here.step()
+            if self.fitted.cost - here.cost + promised < _HARDLY:
+                # Not worth a flight: what the model says of the step is answer enough.
+                shared = np.clip(here.point.shared + step, lower, upper)
+                return Screened(
+                    variant, here.point.moved(shared, here.point.own), here.cost - promised, here.noise
+                )
+            # A first step along numbers that nearly mimic each other may be too long for a linear model.
+            for length in (1.0, 0.5, 0.25) if n == 0 else (1.0,):
+                shared = np.clip(here.point.shared + length * step, lower, upper)
+                point = here.point.moved(shared, here.point.own)
+                if sides is not None:
+                    point = self.around.choose_sides(point, sides)
+                there = yield point
+                if there is not None and there.cost < here.cost:
+                    break
+            if there is None or there.cost >= here.cost:
+                break
+            gained, here = here.cost - there.cost, there
+            if gained < max(0.5, 1e-3 * (self.fitted.cost - here.cost)):
+                break
+        return Screened(here.point.effects[-1], here.point, here.cost, here.noise)
+
+    def _at_the_files(self, variant: Variant) -> Point:
+        """The same motion with the effect in it, as near to the file's derivatives as it comes."""
+        plain, believed = self.fitted.point, self.problem.believed
+        assert variant.twin is not None
+        assert believed is not None
+        per_unit = variant.twin(plain.derivatives, plain.effects, self.problem.flights.reference_m_s)
+        scale = scale_of(believed)
+        change, missed = per_unit[: len(believed)] / scale, (believed - plain.derivatives) / scale
+        value = float(np.clip(change @ missed / (change @ change), *variant.bounds[0]))
+        return plain.moved(plain.shared + value * per_unit, plain.own).with_effect(variant, (value,))
+
+
+def penalty(variant: Variant, samples: float) -> float:
+    """k ln N: what a description must gain per number it adds (Schwarz)."""
+    steps = 1 if variant.fixed else 0
+    return (len(variant.names) + steps) * float(np.log(max(samples, 2.0)))

@@ -1,0 +1,124 @@
+"""The change of air speed: what ignoring it costs, and when it is the cause of a gap.
+
+The air speed swings in every flight, for a manoeuvre exchanges it for height. A simulator that is given the
+measured speed knows that; so it is a cause only where work was done on the aircraft, by an engine or
+by wind along the path, and its energy V²/2 + g h moved as much as its speed. Where accelerations were
+measured they must show that work, too, beyond what drag takes. Where it moved by little, they must have been
+measured, and the air must be still.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.holdout import HeldOut, hold_out
+from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.records.flights import SPEED_CHANGE, Flights
+from advisor.gap.result import Cause, Value
+from advisor.gap.search.air import Air
+from advisor.gap.simulator.simulate import HEIGHT, SPEED, THRUST
+from advisor.gravity import GRAVITY_M_S2
+
+_COSTS = 0.05
+"""Gap of a simulator at constant speed from which on it is worth a step of the waterfall ..."""
+_IS_CAUSE = 1.0
+"""... and from which on it may be the cause."""
+_WORK = 0.02
+"""Standard deviation of the speed that the energy alone would make, relative, that is work ..."""
+_LITTLE_WORK = 0.009
+"""... or this, if accelerations were measured and the air is still ..."""
+_PLAIN_WORK = 0.03
+"""What the accelerations must show of it at most: thrust that swings for long passes for drag in part."""
+_EXCHANGED = 0.9
+"""... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
+_GUSTS = 4.0
+"""... and both exceed this many times the air's own motion, which an air speed indicator reads, too."""
+
+
+def at_constant_speed(problem: Problem, fitted: Fitted) -> HeldOut | None:
+    """What the model leaves when derivatives do not move with the air speed, everything refitted.
+
+    None where the speed hardly moves, or is not measured.
+    """
+    flights = problem.flights
+    if not flights.speed_measured or flights.speed_moves < SPEED_CHANGE:
+        return None
+    constant = tuple(
+        replace(f, trim=np.array([f.trim[0], f.trim[1], f.trim[2], 0.0])) for f in flights.flights
+    )
+    frozen = replace(problem, flights=replace(flights, flights=constant))
+    return hold_out(frozen, fit(frozen, fitted.point, fitted.noise, iterations=4))
+
+
+def airspeed_cause(
+    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
+) -> Cause | None:
+    """The change of air speed, when ignoring it would cost."""
+    if constant is None or speed_costs(constant, last, floor) < _COSTS:
+        return None
+    return Cause(
+        "airspeed_variation", "force_equation", 0.9,
+        {"change": Value(problem.flights.speed_moves, 0.01)}, (), "",
+        float(np.mean(gap_of(last.mean_square, floor))), True,
+    )  # fmt: skip
+
+
+def speed_costs(constant: HeldOut, last: HeldOut, floor: FloatArray) -> float:
+    """What a simulator leaves at constant speed beyond one that knows it, mean square over the floor's."""
+    return float(np.mean((constant.mean_square - last.mean_square) / floor**2))
+
+
+def speed_is_a_cause(
+    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: Air | None
+) -> bool:
+    """Whether work was done on the aircraft, beyond what gusts may feign, and it matters."""
+    if constant is None or "height" not in problem.flights.has or (air is not None and air.gust):
+        return False
+    speed, energy = swings(problem.flights)
+    gusts = 0.0 if air is None else air.angle_std
+    least = max(_EXCHANGED * speed, _LITTLE_WORK)
+    felt = work(problem.flights)
+    worked = energy > least and (felt is None or felt > min(least, _PLAIN_WORK))
+    plain = energy > _WORK or (felt is not None and air is None)
+    felt_more = min(speed, energy) > _GUSTS * gusts
+    return worked and plain and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE
+
+
+def swings(flights: Flights) -> tuple[float, float]:
+    """How much the speed swings within a manoeuvre, and √(V² + 2 g h), both relative to the mean speed."""
+    speeds, energies = [], []
+    for flight in flights.flights:
+        speed, height = flight.slow[SPEED], flight.slow[HEIGHT]
+        climbed = height - np.mean(height)
+        speeds.append(float(np.std(speed)))
+        energies.append(float(np.std(np.sqrt(np.maximum(speed**2 + 2.0 * GRAVITY_M_S2 * climbed, 0.0)))))
+    mean = float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))
+    return float(np.mean(speeds)) / mean, float(np.mean(energies)) / mean
+
+
+def work(flights: Flights) -> float | None:
+    """How much work beyond drag's would make the speed swing within a manoeuvre, relative to the mean speed.
+
+    What the accelerations show along the path is freed of what goes with V² and with lift squared over V²
+    (the two parts of a parabolic polar) in all manoeuvres alike, and integrated. None where they were not
+    measured.
+    """
+    if "a_x" not in flights.has or not {"alpha", "a_z"} <= set(flights.channels):
+        return None
+    along, drag = [], []
+    for flight in flights.flights:
+        speed, a_z = flight.slow[SPEED], flight.outputs["a_z"]
+        lift = np.interp((np.arange(flight.n) + 0.5) * flight.h, a_z.t, a_z.y)
+        along.append(GRAVITY_M_S2 * flight.slow[THRUST])
+        drag.append(np.column_stack([np.ones(flight.n), speed**2, (lift / speed) ** 2]))
+    X = np.vstack(drag)
+    scale = np.max(np.abs(X), axis=0)
+    parts = np.linalg.lstsq(X / scale, np.concatenate(along), rcond=None)[0] / scale
+    gained = [
+        np.std(np.cumsum(felt - taken @ parts) * flight.h)
+        for flight, felt, taken in zip(flights.flights, along, drag, strict=True)
+    ]
+    return float(np.mean(gained) / np.mean([np.mean(f.slow[SPEED]) for f in flights.flights]))

@@ -1,0 +1,70 @@
+"""What cannot be told apart, exactly or nearly, and what would break the tie."""
+
+from collections.abc import Sequence
+
+from advisor.gap.search.merit import Judged
+
+NEAR = 5.0
+"""Difference of held-out log likelihood below which two explanations are a tie."""
+_ARMS = "measure where the vane and the IMU sit: alpha.vane_arm_m, accelerometer.arm_m"
+_SURFACE = "log the measured surface position"
+_AMPLITUDES = "fly two amplitudes: a rate limit answers larger steps later"
+_SPEEDS = "fly at two air speeds: the arm's part goes with 1/V, the other does not"
+_WEIGHT = "log fuel and weight; ice moves lift and control by different shares"
+_REPEAT = "repeat the same manoeuvre at the same air speed, early and late"
+_BREAKS = {
+    frozenset({"alpha_vane_offset", "accelerometer_offset"}): _ARMS,
+    frozenset({"transport_delay", "actuator_lag"}): _SURFACE,
+    frozenset({"transport_delay", "actuator_rate_limit"}): _AMPLITUDES,
+    frozenset({"actuator_lag", "actuator_rate_limit"}): _AMPLITUDES,
+    frozenset(
+        {"alpha_lag", "alpha_skew"}
+    ): "fly faster steps, or compare the channel's stamps with the vane's",
+    frozenset({"alpha_lag", "alpha_vane_offset"}): _SPEEDS,
+    frozenset({"alpha_skew", "alpha_vane_offset"}): _SPEEDS,
+    frozenset(
+        {"nonlinear_pitching_moment", "elevator_nonlinearity"}
+    ): "fly slow and fast steps of equal size",
+    frozenset({"mass_change", "icing"}): _WEIGHT,
+    frozenset({"mass_change", "cg_shift"}): _WEIGHT,
+    frozenset({"cg_shift", "icing"}): _WEIGHT,
+    frozenset({"airspeed_variation", "mass_change"}): _REPEAT,
+    frozenset({"airspeed_variation", "icing"}): _REPEAT,
+    frozenset({"airspeed_variation", "cg_shift"}): _REPEAT,
+    frozenset({"turbulence", "gust"}): "fly more manoeuvres: a gust does not come back, turbulence does",
+    frozenset({"alpha_dot", "unsteady_lift"}): "log the accelerometer at a higher rate",
+    frozenset({"actuator_backlash", "actuator_deadband"}): "fly two amplitudes, and steps short of neutral",
+}
+
+
+def breaking(effect: str, other: str) -> str:
+    """What would tell two effects apart; empty when nothing particular is known."""
+    return _BREAKS.get(frozenset({effect, other}), "")
+
+
+def _near(a: Judged, b: Judged) -> bool:
+    """As good as each other; the two arms always, if either is any good."""
+    arms = {a.effect, b.effect} == {"alpha_vane_offset", "accelerometer_offset"}
+    return abs(a.gain - b.gain) < (0.1 * abs(b.gain) if arms else NEAR)
+
+
+def tied_with(best: Judged, others: Sequence[Judged], channels: Sequence[str]) -> tuple[tuple[str, ...], str]:
+    """Effects that explain the data as well as ``best``, and what would tell them apart."""
+    names = [j.effect for j in others if j.effect != best.effect and _near(j, best) and j.gain > 0.0]
+    ways = []
+    for name in names:
+        found = breaking(best.effect, name)
+        if found:
+            ways.append(found)
+    if best.effect == "transport_delay":
+        names.append("an equal delay of every logged stream")
+        ways.append(_SURFACE)
+    if best.effect == "alpha_scale" and "a_z" not in channels:
+        names.append("Z_q of the model")
+        ways.append("log the accelerometer (RAW_IMU) at 50 Hz")
+    if best.effect == "actuator_deadband":
+        names.append("lower elevator effectiveness, at one amplitude")
+        ways.append("fly two amplitudes")
+    if names and not ways:
+        ways.append("fly more manoeuvres, with another time unit and another amplitude")
+    return tuple(names), "; ".join(dict.fromkeys(ways))

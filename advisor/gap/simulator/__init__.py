@@ -1,0 +1,1 @@
+"""The simulator under diagnosis: the short period with every effect in it, and how its outputs are read."""

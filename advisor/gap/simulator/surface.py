@@ -1,0 +1,189 @@
+"""From the stick to the surface: delay, lag, rate limit, play and dead band, each switched off by a zero."""
+
+import numpy as np
+from numba import njit
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.simulator.layout import INDEX
+
+_READ = tuple(INDEX[name] for name in (
+    "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
+    "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad",
+))  # fmt: skip
+DELAY, LATENCY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL = _READ
+
+_UNLIMITED = 1e6
+"""Rate of a servo without a limit, rad/s: a jump takes no time."""
+_HERE = 1e-9
+"""Deflection, rad, below which the servo has arrived."""
+_PARTS = 8
+"""Of a piece of the command, at most: at its limit, lagging, and at its limit the other way."""
+
+
+@njit(cache=True)
+def surfaces(
+    h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray, lanes: int
+) -> FloatArray:
+    """Deflections for every row of ``p``, shape (k, entries), in lanes as ``simulate`` takes them.
+
+    Shape (packs, n, lanes). Most rows differ in numbers of which the surface knows nothing: those share a
+    deflection. Lanes to spare repeat the last one.
+    """
+    packs = (len(p) + lanes - 1) // lanes
+    different = np.empty((len(p), n))
+    which = np.empty(packs * lanes, dtype=np.int64)
+    count = 0
+    for j in range(packs * lanes):
+        if j == 0 or (j < len(p) and _differ(p[j], p[j - 1])):
+            different[count] = surface(h, n, t_u, u, held, trim, p[j])
+            count += 1
+        which[j] = count - 1
+    out = np.empty((packs, n, lanes))
+    for pack in range(packs):
+        for i in range(n):
+            for lane in range(lanes):
+                out[pack, i, lane] = different[which[pack * lanes + lane], i]
+    return out
+
+
+@njit(cache=True)
+def _differ(one: FloatArray, other: FloatArray) -> bool:
+    differ = False
+    for entry in _READ:
+        differ = differ or one[entry] != other[entry]
+    return differ
+
+
+@njit(cache=True)
+def surface(
+    h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray
+) -> FloatArray:
+    """Mean deflection over each step, relative to trim, after everything between stick and surface.
+
+    The command comes in pieces that end at its stamps. What is not linear takes every piece by itself, so
+    that an edge inside a step keeps its area; all else is solved for the command's mean over the step.
+    The result is smooth in the delay.
+    """
+    out = np.empty(n)
+    k = 0
+    late = p[DELAY] + p[LATENCY]
+    tau, slow, play, dead = p[LAG], p[SLOWNESS], max(p[PLAY], 0.0), max(p[DEADBAND], 0.0)
+    decay = np.exp(-h / tau) if tau > 1e-6 else 0.0
+    # A servo of second order that trails a ramp by τ = 2 ζ/ω, solved exactly for what it is told in a step.
+    zeta = p[LAG_DAMPING] if tau > 1e-3 else 0.0
+    omega = 2.0 * zeta / max(tau, 1e-3)
+    damped = np.sqrt(max(1.0 - zeta * zeta, 1e-6))
+    fade = np.exp(-zeta * omega * h)
+    swing_cos, swing_sin = np.cos(omega * damped * h), np.sin(omega * damped * h) / damped
+    by_pieces = (slow > 0.0 or play > 0.0) and omega == 0.0
+    most = 1.0 / slow if slow > 0.0 else _UNLIMITED
+    rate = 0.0
+    servo = np.nan
+    link = 0.0
+    last = len(u) - 1
+    for i in range(n):
+        at, b = i * h - late, (i + 1) * h - late
+        while k > 0 and t_u[k] > at:
+            k -= 1
+        total = area = 0.0
+        while at < b - 1e-12:
+            if at < t_u[0]:
+                upto = min(b, t_u[0])
+                begin = end = u[0] - trim
+            else:
+                while k < last and t_u[k + 1] <= at + 1e-12:
+                    k += 1
+                upto = b if k == last else min(b, t_u[k + 1])
+                slope = 0.0 if held or k == last else (u[k + 1] - u[k]) / (t_u[k + 1] - t_u[k])
+                begin = u[k] + slope * (at - t_u[k]) - trim
+                end = begin + slope * (upto - at)
+            mean = 0.5 * (begin + end)
+            if dead > 0.0:
+                mean = _mean_beyond(begin - p[NEUTRAL], end - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
+                begin = _beyond(begin - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
+                end = _beyond(end - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
+            if np.isnan(servo):
+                servo = begin
+                link = begin + p[PLAY_SIDE] * play
+            if by_pieces:
+                servo, link, swept = _through(servo, link, begin, end, upto - at, tau, most, play)
+                area += swept
+            total += mean * (upto - at)
+            at = upto
+        if by_pieces:
+            out[i] = area / h
+            continue
+        want = total / h
+        if omega > 0.0:
+            off, before_rate = servo - want, rate
+            to = want + fade * ((swing_cos + zeta * swing_sin) * off + swing_sin * rate / omega)
+            rate = fade * ((swing_cos - zeta * swing_sin) * rate - omega * swing_sin * off)
+            mean = 0.5 * (servo + to) + h * (before_rate - rate) / 12.0
+        elif tau > 1e-6:
+            to = decay * servo + (1.0 - decay) * want
+            mean = want + (servo - want) * (tau / h) * (1.0 - decay)
+        else:
+            # First order in τ, so that the sensitivity to a lag exists at no lag at all.
+            to, mean = want, want + (servo - want) * tau / h
+        if slow > 0.0 and abs(to - servo) * slow > h:
+            to = servo + np.sign(to - servo) * h / slow
+            mean = 0.5 * (servo + to)
+        servo = to
+        if play > 0.0:
+            before = link
+            link = min(max(link, servo - play), servo + play)
+            mean = 0.5 * (before + link)
+        out[i] = mean
+    return out
+
+
+@njit(cache=True)
+def _through(
+    servo: float, link: float, begin: float, end: float, dt: float, tau: float, most: float, play: float
+) -> tuple[float, float, float]:
+    """Servo and linkage after a piece in which the command moves linearly, and the deflection's integral.
+
+    The servo moves by (command − servo)/τ, but no faster than ``most``: it lags by an exponential or runs at
+    its limit, and a piece holds a few such parts. The linkage rests until the servo has crossed its play.
+    """
+    slope, left, command, area = (end - begin) / dt, dt, begin, 0.0
+    way, limit = np.sign(slope), most * tau
+    for _ in range(_PARTS):
+        error = command - servo
+        outrun = abs(slope) > most and way * error >= limit - _HERE
+        if outrun or abs(error) > limit + _HERE:
+            side = way if outrun else np.sign(error)
+            closing = most - side * slope
+            time = left if closing <= 0.0 else min(left, max(side * error - limit, 0.0) / closing)
+            to = servo + side * most * time
+            swept = 0.5 * (servo + to) * time
+        else:
+            settled, time = slope * tau, left
+            if abs(slope) > most and tau > 0.0:
+                time = min(left, -tau * np.log((way * limit - settled) / (error - settled)))
+            trail = (error - settled) * np.exp(-time / tau) if tau > 0.0 else 0.0
+            to = command + slope * time - settled - trail
+            swept = (command + 0.5 * slope * time) * time - tau * (to - servo)
+        if play > 0.0:
+            before, link = link, min(max(link, to - play), to + play)
+            share = (link - before) / (to - servo) if link != before else 0.0
+            swept = (before + 0.5 * (link - before) * share) * time
+        area += swept
+        servo, command, left = to, command + slope * time, left - time
+        if left <= 0.0:
+            break
+    return servo, link, area
+
+
+@njit(cache=True)
+def _beyond(x: float, dead: float) -> float:
+    return float(np.sign(x) * max(abs(x) - dead, 0.0))
+
+
+@njit(cache=True)
+def _mean_beyond(begin: float, end: float, dead: float) -> float:
+    """Mean of what lies beyond the dead band while its argument moves linearly from begin to end."""
+    if abs(end - begin) < _HERE:
+        return float(_beyond(begin, dead))
+    squares = max(abs(end) - dead, 0.0) ** 2 - max(abs(begin) - dead, 0.0) ** 2
+    return float(0.5 * squares / (end - begin))

@@ -1,0 +1,47 @@
+"""A sensor that jumps: spikes, dropped bits, a plug that is loose."""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.noise.probes import SENSOR_CHANNELS
+from advisor.gap.records.floor import DOUBT
+from advisor.gap.records.smoothness import robust_std
+
+_FAR, _SURPRISE = 6.0, 4.0
+"""Standard deviations beyond which a change between two samples, and its innovation, are a jump ..."""
+_JUMPS = 0.005
+"""... share of them from which on a sensor jumps ..."""
+_SELDOM = 0.1
+"""... and what another sensor may have of that share."""
+
+
+def jumping_sensor(problem: Problem, last: Fitted, stated: FloatArray) -> str | None:
+    """The block of the one sensor that jumps now and then where nothing is flown; None where none does.
+
+    What a model leaves is smooth, and what a gust leaves is no surprise to a filter that knows of it; no
+    step of the command falls into these stretches. An autopilot's estimate of α is not judged. ``stated`` is
+    the tolerance of each channel, shape (channels,).
+    """
+    jumps = {}
+    for c, name in enumerate(problem.channels):
+        parts = []
+        flights = zip(problem.flights.flights, last.left, last.innovations, strict=True)
+        for flight, left, innovations in flights:
+            rows, quiet = problem.rows(flight)[c], flight.is_quiet(flight.outputs[name].t)
+            pair = np.column_stack([np.diff(left[rows]), innovations[rows][1:]])
+            parts.append(np.abs(pair[quiet[1:] & quiet[:-1]]))
+        changes, surprises = np.concatenate(parts).T
+        usual = [robust_std(y) if len(y) else 0.0 for y in (changes, surprises)]
+        far = max(_FAR * usual[0], DOUBT * float(stated[c]))
+        # Values that mostly repeat say nothing about how rough they are.
+        jumped = (changes > far) & (surprises > _SURPRISE * usual[1])
+        jumps[name] = float(np.mean(jumped)) if min(usual) > 0.0 else 0.0
+    worst = max(jumps, key=lambda name: jumps[name])
+    others = [share for name, share in jumps.items() if name != worst]
+    if jumps[worst] < _JUMPS or max(others, default=0.0) > _SELDOM * jumps[worst]:
+        return None
+    if problem.channels.index(worst) not in problem.flights.telling:
+        return None
+    return next(block for block, channel in SENSOR_CHANNELS.items() if channel == worst)

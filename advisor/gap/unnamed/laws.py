@@ -1,0 +1,148 @@
+"""A simple law that has no name in the catalogue: a reading out of proportion, a moment that bends.
+
+α and q may be scaled by name; a_z and θ may not, and no reading may be bent. A moment may bend by name with
+the deflection and with α, but not with the pitch rate, nor with products. Yet two or three named effects
+together imitate such a law well. One law that explains more than all of them do is likelier.
+"""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.catalogue import BLOCK_OF
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.holdout import HeldOut, hold_out
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import belief_in, worth
+from advisor.gap.search.merit import Judged
+from advisor.gap.search.score import addition, difference, log_likelihood_gained
+from advisor.gap.search.screen import Screen, penalty
+from advisor.gap.search.waterfall import Stage
+from advisor.gap.unnamed.leftover import Leftover
+
+
+def _scale(name: str, block: str, channel: str) -> Variant:
+    """A factor of what is read."""
+    entries = (f"{channel}_scale",)
+    return Variant(name, block, ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.03, entries=entries)
+
+
+def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
+    """Factors of what is read, of its square and of its cube (IEEE Std 1293); ``unit``: a usual change."""
+    return Variant(
+        name, block, ("scale", "square", "cube"), ((0.0, 0.0, 0.0),),
+        (0.002, 0.002 / unit, 0.002 / unit**2),
+        ((-0.8, 3.0), (-10.0 / unit, 10.0 / unit), (-100.0 / unit**2, 100.0 / unit**2)), 0.0,
+        entries=tuple(f"{channel}_{order}" for order in ("scale", "read2", "read3")),
+    )  # fmt: skip
+
+
+_READINGS = {
+    "a_z": (
+        _scale("accelerometer_scale", "accelerometer", "a_z"),
+        _curve("accelerometer_curve", "accelerometer", "a_z", 5.0),
+    ),
+    "alpha": (_curve("alpha_curve", "alpha_sensor", "alpha", 0.05),),
+    "theta": (_scale("attitude_scale", "attitude_sensor", "theta"),),
+}
+_MOMENTS = (
+    Variant(
+        "damping_curve", "moment_equation", ("M_q_abs", "M_q_q"), ((0.0, 0.0),), (0.05, 0.1),
+        ((-50.0, 50.0), (-200.0, 200.0)), 0.0, entries=("M_q_abs", "M_q_q"),
+    ),
+    Variant(
+        "crossed_moment", "moment_equation", ("M_alpha_q", "M_alpha_delta_e"), ((0.0, 0.0),), (0.5, 1.0),
+        ((-300.0, 300.0), (-2000.0, 2000.0)), 0.0, entries=("M_alpha_q", "M_alpha_delta_e"),
+    ),
+)  # fmt: skip
+_SAID = {
+    "accelerometer_scale": "The accelerometer reads {percent:+.1f} % against what the motion says; an air "
+    "speed that reads as much {other} looks the same: compare it with the ground speed on opposite headings.",
+    "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
+    "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
+    "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
+    "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
+    "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
+}
+_CERTAIN = 30.0
+"""Log likelihood that a law must bring: most of what a reading's does is the lift's own slope."""
+_LIKELIER = 10.0
+"""... and by how much it must beat all that was named together."""
+_BESIDE = 0.5
+"""What the named effects bring beside the law, of what they bring without, where they are another matter;
+certain is enough. And they must change that share of what the law removes: a speed that is off has
+side effects."""
+
+
+def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
+    """The law that explains more than everything that was named; None where none does."""
+    plain, held = stages[0].fitted, stages[0].held_out
+    readings = [problem.channels[c] for c in problem.flights.telling]
+    tried = [variant for channel in readings for variant in _READINGS.get(channel, ())]
+    found = Screen(problem, plain).quick_fits([*tried, *_MOMENTS])
+    samples = float(np.sum(worth(problem, plain.innovations)))
+    likeliest = min(found, key=lambda s: s.cost + penalty(s.variant, samples), default=None)
+    if likeliest is None or 0.5 * (plain.cost - likeliest.cost) < _CERTAIN:
+        return None
+    fitted = fit(problem, likeliest.point, likeliest.noise, tolerance=0.5)
+    independent = worth(problem, fitted.innovations)
+    bent = addition(problem, plain, held, fitted, likeliest.variant.effect, independent)
+    named = _gain_of_all(problem, stages)
+    if not bent.worth_naming or bent.gain < max(_CERTAIN, named + _LIKELIER):
+        return None
+    if difference(problem, stages[-1].held_out, bent.held_out) < bent.least:
+        # Next to the same motion as what was named: the name stays.
+        return None
+    if len(stages) > 1 and _is_another_matter(problem, stages, bent, independent):
+        return None
+    left = bent.held_out.mean_square / held.mean_square
+    block = likeliest.variant.block
+    rivals = {BLOCK_OF[j.effect]: _share(j, bent) for j in reversed(stages[0].considered)}
+    ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
+    share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))
+    return Leftover(block, share, ((block, 1.0), *ranking), note=_said(bent))
+
+
+def _said(bent: Judged) -> str:
+    """What the law is, and what else would look like it."""
+    percent = 100.0 * float(bent.value[0])
+    return _SAID[bent.effect].format(percent=percent, other="too low" if percent > 0.0 else "too high")
+
+
+def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:
+    """What the named effects bring together, as ``Judged.gain`` counts; 0 without any."""
+    first, last = stages[0], stages[-1]
+    numbers = sum(len(s.added.variant.names) for s in stages if s.added is not None)
+    if numbers == 0:
+        return 0.0
+    independent = worth(problem, last.fitted.innovations)
+    likelihood = log_likelihood_gained(first.fitted, first.held_out, last.fitted, last.held_out, independent)
+    belief = belief_in(problem, last.fitted, independent) - belief_in(problem, first.fitted, independent)
+    return likelihood - 0.5 * numbers * float(np.log(np.sum(independent))) + belief
+
+
+def _is_another_matter(problem: Problem, stages: list[Stage], bent: Judged, independent: FloatArray) -> bool:
+    """Whether what was named explains beside the law much of what it explains without, and matters."""
+    first, last = stages[0], stages[-1]
+    law = set(bent.variant.entries)
+    others = [v.effect for v in last.fitted.point.effects if not law & set(v.entries)]
+    both = fit(
+        problem,
+        last.fitted.point.with_only(others).with_effect(bent.variant, tuple(bent.value)),
+        bent.fitted.noise,
+        tolerance=0.5,
+    )
+
+    def gained(before: Fitted, held_before: HeldOut, after: Fitted, held_after: HeldOut) -> float:
+        return log_likelihood_gained(before, held_before, after, held_after, independent)
+
+    held = hold_out(problem, both)
+    alone = gained(first.fitted, first.held_out, last.fitted, last.held_out)
+    beside = gained(bent.fitted, bent.held_out, both, held)
+    matters = difference(problem, bent.held_out, held) > _BESIDE * bent.removed
+    return matters and beside > min(_BESIDE * alone, _CERTAIN)
+
+
+def _share(judged: Judged, best: Judged) -> float:
+    """Gain beside the best's, 0 to 1."""
+    return round(float(np.clip(judged.gain / best.gain, 0.0, 1.0)), 4)

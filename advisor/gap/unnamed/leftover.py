@@ -1,0 +1,246 @@
+"""Is anything left that noise does not explain? The question behind "none" and "unknown".
+
+What stays after the last named effect, freed of the flight's own noise, should be white, and no
+louder while the stick moves than in quiet. Otherwise something is there without a name; where, is said by the
+block whose unknown disturbance takes up most of it. A sensor that jumps now and then is no noise either.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted, rms_of
+from advisor.gap.fitting.holdout import mean_squares
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.noise.probes import SENSOR_CHANNELS, Probe, disturbance_courses, probe_blocks
+from advisor.gap.noise.quiet import unfiltered
+from advisor.gap.records.floor import DOUBT
+from advisor.gap.unnamed.clock import is_of_the_clock
+from advisor.gap.unnamed.course import is_in_few, is_of_the_air
+from advisor.gap.unnamed.jumps import jumping_sensor
+from advisor.gap.unnamed.origin import stick_or_motion
+from advisor.gap.unnamed.tone import tone_in
+
+_LEAST_GAIN = 100.0
+"""Log likelihood a disturbance must bring ..."""
+_LEAST_SHARE = 0.2
+"""... and share of what is left that it must take up: less is the roughness of any model."""
+_MOVING_SHARE = 0.1
+"""The same where the air moves: its filter is known to low order only, and leaves a few per cent."""
+_FAINT_SHARE = 0.05
+"""The least share in still air, for a disturbance that is large beside what the named effects took up ..."""
+_FAINT_OF_GAP = 0.25
+"""... by this much: then no name came near what is there."""
+_RESTLESS = 2.0
+"""Power while the stick moves over that in quiet, from which on it is no noise."""
+_LEAST_OF_GAP = 0.1
+"""Either beside what the named effects took up: less is an effect's shape, known to low order only."""
+_OF_PEAK = 0.01
+"""Share of a channel's peak that must be left: a simplified model is no better than that."""
+_OF_PEAK_SWINGING = 0.005
+"""The same for a motion at one frequency: no error of a model looks like that."""
+_PLAIN = 0.1
+"""Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
+_VISIBLE = 0.05
+"""Power of a swing, beside the instruments' noise, from which on there is something to explain."""
+_BETTER_THAN_AIR = 1.1
+"""What another block must take up of a residual, beside what the air does that moves."""
+
+
+@dataclass(frozen=True)
+class Leftover:
+    """Something without a name, and where it is."""
+
+    block: str
+    share: float
+    """Of the power that is left, taken up by an unknown disturbance there."""
+    ranking: tuple[tuple[str, float], ...]
+    """Block and score, 1 for the likeliest."""
+    in_quiet: FloatArray | None = None
+    """Shape (channels,): mean square of what it does where nothing is flown, too; None: next to nothing."""
+    note: str = ""
+    """What is known of it, in a sentence."""
+
+
+def of_the_wind(found: Leftover | None) -> Leftover:
+    """What is left where the wind is known to change with height: whatever it looks like, it is the air's."""
+    ranking = () if found is None else tuple(pair for pair in found.ranking if pair[0] != "air")
+    return Leftover("air", 1.0 if found is None else found.share, (("air", 1.0), *ranking))
+
+
+def left_over(
+    problem: Problem, first: Fitted, last: Fitted, stated: FloatArray, moving_air: bool = False
+) -> Leftover | None:
+    """What the last model leaves, if it is more than noise.
+
+    Parameters
+    ----------
+    first, last
+        The plain model and the one with every named effect.
+    stated
+        Shape (channels,): tolerance of channels that were filtered before they were recorded, else 0.
+    moving_air
+        Whether the air was found to move: then the filter that knows of it is known to low order only.
+    """
+    noise = _noise(problem)
+    probes = probe_blocks(problem, last, noise)
+    best, jumping = probes[0], jumping_sensor(problem, last, stated)
+    # What a disturbance with a memory describes did not jump.
+    if jumping is not None and best.explained < _LEAST_SHARE:
+        return Leftover(jumping, 1.0, _ranking(probes, jumping))
+    powers = (rms_of(problem, last.innovations) / noise) ** 2
+    active, quiet = unrest(problem, last.innovations)
+    telling = np.isin(np.arange(len(problem.channels)), problem.flights.telling)
+    beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - _instruments(problem) ** 2, 0.0))
+    peaks = problem.flights.peaks
+    telling &= beyond > max(_OF_PEAK, _of_the_command(problem, last)) * peaks
+    if not np.any(telling):
+        return None
+    loud = telling & (rms_of(problem, last.left) > DOUBT * stated)
+    louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
+    faint = best.explained < _LEAST_SHARE
+    least_share = _MOVING_SHARE if moving_air else _FAINT_SHARE
+    disturbed = best.gain >= _LEAST_GAIN and best.explained >= least_share and bool(np.any(loud))
+    # What a low-pass leaves of noise is like no noise with a memory: there only the stick can tell.
+    disturbed = disturbed and not problem.flights.alpha_is_smoothed
+    if not disturbed and np.max(louder) < _RESTLESS:
+        return None
+    plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
+    unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
+    taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
+    least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else _LEAST_OF_GAP
+    if unexplained < least * taken and not plain:
+        return None
+    block = _block(problem, last, _instruments(problem), probes)
+    return Leftover(block, best.explained, _ranking(probes, block))
+
+
+def swinging(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) -> Leftover | None:
+    """What swings of itself, where it is more than an instrument's noise. Arguments as in ``left_over``."""
+    noise, instruments = _noise(problem), np.maximum(_instruments(problem), 1e-12)
+    tone = tone_in(problem, last, noise)
+    if tone is None or tone.probes[0].gain < _LEAST_GAIN or tone.probes[0].block == "air":
+        return None
+    best = tone.probes[0]
+    least = _OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
+    if not np.any(tone.power > np.maximum(least * problem.flights.peaks, stated) ** 2):
+        return None
+    if float(np.mean(tone.power / instruments**2)) < _VISIBLE:
+        return None
+    powers = (rms_of(problem, last.innovations) / noise) ** 2
+    taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
+    if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
+        return None
+    note = f"It swings by itself, {tone.hz:.2g} times a second."
+    return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power, note)
+
+
+def is_the_gust(problem: Problem, last: Fitted, leftover: Leftover) -> bool:
+    """Whether what is left is the gust that was found, whose shape is known to low order only.
+
+    It is in few manoeuvres, and the air describes it nearly as well as any other block.
+    """
+    noise = _noise(problem)
+    powers = np.mean(mean_squares(problem, last.innovations) / noise**2, axis=1)
+    return dict(leftover.ranking).get("air", 0.0) * _BETTER_THAN_AIR >= 1.0 and is_in_few(powers)
+
+
+def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | None:
+    """What passes for moving air, when an unknown disturbance in another block describes it far better.
+
+    A filter that knows of moving air takes up much of any disturbance with a memory, and little of it is left
+    to be seen. So all blocks are asked about the residual as the instruments have it. Arguments as in
+    ``left_over``.
+    """
+    if problem.flights.alpha_is_derived:
+        # An estimate of α sees no gust: what it leaves out looks like a disturbance elsewhere.
+        return None
+    problem, last = unfiltered(problem, last)
+    noise = _instruments(problem)
+    probes = probe_blocks(problem, last, noise)
+    # A gust along the path changes the lift alone: a disturbance of the force is as much the air's.
+    air = max((p for p in probes if p.block in ("air", "force_equation")), key=lambda p: p.gain)
+    best = probes[0]
+    if best.explained < _BETTER_THAN_AIR * air.explained:
+        return None
+    powers = (rms_of(problem, last.left) / noise) ** 2
+    taken = float(np.sum((rms_of(problem, first.left) / noise) ** 2 - powers))
+    if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
+        return None
+    if best.block in SENSOR_CHANNELS and problem.flights.alpha_is_smoothed:
+        # What a low-pass leaves of an instrument's noise is no disturbance of it: there the stick must tell.
+        c = problem.channels.index(SENSOR_CHANNELS[best.block])
+        active, quiet = unrest(problem, last.left)
+        if active[c] < _RESTLESS * quiet[c]:
+            return None
+    if best.block in ("input", "moment_equation"):
+        course = disturbance_courses(problem, last, noise, best.block, [best.size])[0]
+        if is_of_the_air(problem.flights.flights, course.knots):
+            return None
+    block = _block(problem, last, noise, probes)
+    return Leftover(block, best.explained, _ranking(probes, block))
+
+
+def placed(problem: Problem, last: Fitted) -> Leftover:
+    """What is left, in the block whose unknown disturbance explains it best."""
+    probes = probe_blocks(problem, last, _noise(problem))
+    block = _block(problem, last, _instruments(problem), probes)
+    return Leftover(block, probes[0].explained, _ranking(probes, block))
+
+
+def _block(problem: Problem, last: Fitted, noise: FloatArray, probes: Sequence[Probe]) -> str:
+    """The likeliest block, where its neighbours do not explain the same residual better by its course."""
+    best = probes[0].block
+    if best in SENSOR_CHANNELS and is_of_the_clock(problem, last, SENSOR_CHANNELS[best]):
+        return "timing"
+    return stick_or_motion(problem, last, noise, probes) or best
+
+
+def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Mean squares while the elevator works, and while all is quiet; both shape (channels,)."""
+    sums, counts = np.zeros((2, len(problem.channels))), np.zeros((2, len(problem.channels)))
+    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+        free = flight.duration_s - flight.last_step_s
+        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
+            t = flight.outputs[name].t
+            active = (t >= flight.first_step_s) & (t <= flight.last_step_s + 0.3 * free)
+            for k, inside in enumerate((active, flight.is_quiet(t))):
+                sums[k, c] += float(np.sum(left[rows][inside] ** 2))
+                counts[k, c] += np.count_nonzero(inside)
+    active_power, quiet_power = sums / np.maximum(counts, 1.0)
+    # Without a quiet stretch there is nothing to compare with.
+    return active_power, np.where(counts[1] > 0, quiet_power, active_power)
+
+
+def _of_the_command(problem: Problem, last: Fitted) -> float:
+    """Share of a response's peak, as an RMS, that hangs on how the command went between two stamps.
+
+    A step is known as a ramp from one stamp to the next, shifted as fits best. While it lasts the pitch rate
+    is off by up to ω T/4 of its peak, ω being the short period's frequency; the steps of an input take about
+    a tenth of its record.
+    """
+    if problem.held:
+        return 0.0
+    derivatives = last.point.derivatives
+    frequency = float(np.sqrt(max(derivatives[0] * derivatives[4] - derivatives[3], 0.0)))
+    interval = float(np.median(np.concatenate([np.diff(f.t_u) for f in problem.flights.flights])))
+    return frequency * interval / 12.0
+
+
+def _noise(problem: Problem) -> FloatArray:
+    """Shape (channels,): what innovations are measured against."""
+    return np.ones(len(problem.channels)) if problem.knows_the_noise else _instruments(problem)
+
+
+def _instruments(problem: Problem) -> FloatArray:
+    return np.zeros(len(problem.channels)) if problem.instruments is None else problem.instruments
+
+
+def _ranking(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ...]:
+    best = max(probes[0].gain, 1e-9)
+    scores = {first: 1.0}
+    for p in probes:
+        scores.setdefault(p.block, round(min(max(p.gain, 0.0) / best, 1.0), 4))
+    return tuple(scores.items())

@@ -1,0 +1,49 @@
+"""A name must explain most of the gap: what leaves much of it only resembles what is there, or is nothing."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.search.waterfall import Stage
+from advisor.gap.unnamed.leftover import Leftover, placed
+
+_MOST = 0.5
+"""Share of the gap that right names may leave, in still air, or else ..."""
+_SEEN = 0.3
+"""... this gap: an effect that is not in the catalogue leaves more beside its likeness."""
+
+_USE = 0.1
+"""Share of the gap that names must take away."""
+
+
+def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> Leftover | None:
+    """What is there, where the named effects leave too much of the gap on manoeuvres kept out.
+
+    All of the gap is placed: the names took up a part that was not theirs.
+
+    ``floor`` is the noise of each channel, shape (channels,).
+    """
+    before, after = (float(np.mean(gap_of(s.held_out.mean_square, floor))) for s in (stages[0], stages[-1]))
+    if len(stages) < 2 or after < max(_SEEN, _MOST * before):
+        return None
+    return placed(problem, stages[0].fitted)
+
+
+def is_of_no_use(
+    problem: Problem, stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray
+) -> bool:
+    """Whether the named effects leave the gap as it was: likelier for the noise's filter, and no cause.
+
+    ``file_model`` is what the aircraft file's own derivatives leave, if it has them. Fitted ones may take up
+    what an effect does; that it does without them is of use, too. Only what tells a cause by itself counts.
+    """
+    telling = problem.flights.telling
+    before = stages[0].held_out if file_model is None else file_model
+    was, now = (
+        float(np.mean(gap_of(held.mean_square, floor)[telling])) for held in (before, stages[-1].held_out)
+    )
+    return len(stages) > 1 and now > (1.0 - _USE) * was

@@ -1,0 +1,132 @@
+"""What swings of itself: one frequency, in quiet as much as under the stick.
+
+A propeller's beat, fuel that sloshes, a servo that hunts or a sensor that shakes go on where nothing is
+flown, and there a flight's noise is learnt: most of such a swing passes for noise with a memory. But no
+memory gathers power in one line of the spectrum. What is left of a line after the noise's own filter shows
+it; where it comes from, is said by the block in which a swing of that frequency, of any amplitude and phase
+in each manoeuvre, explains all channels best.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted, factor
+from advisor.gap.fitting.linear import pulse_response
+from advisor.gap.fitting.normal import solved
+from advisor.gap.fitting.problem import Problem, row_weights
+from advisor.gap.noise.probes import DYNAMIC, SENSOR_CHANNELS, Probe
+from advisor.gap.simulator.layout import OUTPUTS
+
+_SWINGS = 5.0
+"""Periods that a record must hold: slower motion is a drift, or the aircraft's own."""
+_LINE = 3.0
+"""Half the width of a line, over the inverse of a record's length (Hann's window and a little damping)."""
+_ABOVE = 5.0
+"""Power of the line, over the white noise's and over the highest elsewhere."""
+_POINTS = 4096
+"""Of the spectrum, at least."""
+
+
+@dataclass(frozen=True)
+class Tone:
+    """A swing that goes on by itself."""
+
+    hz: float
+    """Its frequency."""
+    probes: tuple[Probe, ...]
+    """Every block with a swing of this frequency, likeliest first; sizes are amplitudes."""
+    power: FloatArray
+    """Shape (channels,): mean square of what it does to each, SI."""
+
+
+def tone_in(problem: Problem, fitted: Fitted, noise: FloatArray) -> Tone | None:
+    """The tone in what a fit leaves; None where no line stands out of the spectrum of any channel.
+
+    Parameters
+    ----------
+    noise
+        Shape (channels,): of the innovations.
+    """
+    lines = (line_of(*_records(problem, fitted, c)) for c in problem.flights.telling)
+    hz, stands_out = max(lines, key=lambda line: line[1])
+    if stands_out < _ABOVE:
+        return None
+    blocks = [b for b in DYNAMIC if b != "air" or "alpha" in problem.channels]
+    blocks += [b for b, channel in SENSOR_CHANNELS.items() if channel in problem.channels]
+    found = sorted((_swing(problem, fitted, noise, b, hz) for b in blocks), key=lambda x: -x[0].gain)
+    return Tone(hz, tuple(probe for probe, _ in found), found[0][1])
+
+
+def line_of(records: Sequence[FloatArray], interval_s: float) -> tuple[float, float]:
+    """The strongest line of the records' spectrum, Hz, and how far it stands out.
+
+    That is the smaller of its power over white noise's of the same variance and over the highest power
+    off the line. Samples count as equally far apart.
+    """
+    long = [r for r in records if len(r) > 2.0 * _SWINGS]
+    if not long:
+        return 0.0, 0.0
+    points = max(_POINTS, *map(len, long))
+    hz = np.fft.rfftfreq(points, interval_s)
+    power = np.mean([_spectrum(r, points) for r in long], axis=0)
+    per_record = 1.0 / (interval_s * float(np.median([len(r) for r in long])))
+    fast = hz >= _SWINGS * per_record
+    if not np.any(fast):
+        return 0.0, 0.0
+    peak = int(np.argmax(np.where(fast, power, 0.0)))
+    off = np.abs(hz - hz[peak]) > _LINE * per_record
+    return float(hz[peak]), float(power[peak] / max(1.0, float(np.max(power[off], initial=0.0))))
+
+
+def _spectrum(record: FloatArray, points: int) -> FloatArray:
+    """Power at each frequency, 1 in the mean for white noise."""
+    window = np.hanning(len(record))
+    swing = np.fft.rfft((record - record.mean()) * window, points)
+    return np.asarray(np.abs(swing) ** 2 / max(float(window @ window) * float(np.var(record)), 1e-300))
+
+
+def _records(problem: Problem, fitted: Fitted, channel: int) -> tuple[list[FloatArray], float]:
+    """Innovations of one channel by manoeuvre, and the interval of its samples in s."""
+    name = problem.channels[channel]
+    records, intervals = [], []
+    for flight, e in zip(problem.flights.flights, fitted.innovations, strict=True):
+        records.append(e[problem.rows(flight)[channel]])
+        intervals.append(np.diff(flight.outputs[name].t))
+    return records, float(np.median(np.concatenate(intervals)))
+
+
+def _swing(
+    problem: Problem, fitted: Fitted, noise: FloatArray, block: str, hz: float
+) -> tuple[Probe, FloatArray]:
+    """A swing in one block, its amplitude and phase free in every manoeuvre; and its power by channel."""
+    p = problem.driving(fitted.point)
+    gain, before, sizes = 0.0, 0.0, []
+    power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
+    for i, flight in enumerate(problem.flights.flights):
+        turning = np.exp(2j * np.pi * hz * flight.h * np.arange(flight.n + 1))
+        if block in SENSOR_CHANNELS:
+            response = np.zeros((4, flight.n + 1), dtype=complex)
+            response[OUTPUTS.index(SENSOR_CHANNELS[block])] = turning
+        else:
+            pulse = pulse_response(problem, flight, p[i], DYNAMIC[block])
+            response = turning * np.cumsum(pulse * turning.conj(), axis=1) * flight.h
+        seen = problem.read_grids(flight, [response.real, response.imag], p[i])
+        w = row_weights(problem, i, 1.0 / noise)
+        B, A = problem.innovations(i, seen) * w[:, None], fitted.linear[i].own * w[:, None]
+        r = fitted.innovations[i] * w
+        chol = factor(A, fitted.linear[i].prior)
+        AB = A.T @ B
+        pull = B.T @ r - AB.T @ solved(chol, A.T @ r)
+        found = np.linalg.lstsq(B.T @ B - AB.T @ solved(chol, AB), pull, rcond=1e-10)[0]
+        gain += 0.5 * float(pull @ found)
+        before += float(r @ r)
+        sizes.append(float(np.hypot(*found)))
+        swung = seen @ found
+        for c, rows in enumerate(problem.rows(flight)):
+            power[c] += float(np.sum(swung[rows] ** 2))
+            count[c] += len(swung[rows])
+    explained = min(2.0 * gain / max(before, 1e-300), 1.0)
+    return Probe(block, gain, float(np.median(sizes)), explained), power / np.maximum(count, 1.0)

@@ -1,0 +1,1 @@
+"""From evidence to the answer: verdict, causes, numbers, sentence."""

@@ -1,0 +1,105 @@
+"""From evidence to the answer: the numbers beside the judgement, and the sentence."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.kinematics import KinematicCheck
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.moment import PROPELLER
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import covariance, worth
+from advisor.gap.foresight.foresee import unseen_effects
+from advisor.gap.result import Cause, Diagnosis, Verdict, Where
+from advisor.gap.search.merit import LEAST_SIGMA
+from advisor.gap.verdict.causes import block_ranking
+from advisor.gap.verdict.evidence import Evidence
+from advisor.gap.verdict.judgement import judgement
+from advisor.gap.verdict.notes import notes_of
+from advisor.gap.verdict.numbers import (
+    fidelity_of,
+    gap_numbers,
+    kept_out,
+    model_of,
+    over_maneuvers,
+    shrink_of,
+    traces_of,
+    waterfall_of,
+    without_air,
+)
+from advisor.gap.verdict.text import sentence_of
+
+
+def answer(
+    e: Evidence,
+    aircraft: Aircraft,
+    kinematics: KinematicCheck,
+    holdout: int | None,
+) -> Diagnosis:
+    """Turn the evidence into the diagnosis."""
+    problem, stages, floor = e.problem, e.stages, e.floor
+    judged = judgement(e, kinematics)
+    verdict, causes = judged.verdict, judged.causes
+    before, last = judged.before, stages[-1].held_out
+    kept, folds = kept_out(problem, holdout)
+    if holdout is not None:
+        last = hold_out(problem, stages[-1].fitted, folds)
+        before = e.file_model if e.file_model is not None else hold_out(problem, stages[0].fitted, folds)
+    if e.air is not None:
+        # From here on the air is one of the causes: the floor is what stays without its motion.
+        floor = np.minimum(floor, np.sqrt(e.air.left))
+        last, e = without_air(last, e.air), replace(e, floor=floor)
+    before, last = (over_maneuvers(problem, held, kept) for held in (before, last))
+    gap = gap_numbers(e, before, last, judged.bias)
+    where = _where(e, verdict, causes)
+    shrink = shrink_of(e, kept, gap, before, last) if verdict in ("effect", "parameters") else None
+    fitted = stages[-1].fitted
+    known = covariance(problem, fitted, worth(problem, fitted.innovations))
+    waterfall = waterfall_of(stages, floor, judged.apart, judged.speed, gap.before)
+    present = {c.effect for c in causes if c.present}
+    effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
+    diagnosis = Diagnosis(
+        verdict=verdict, sentence="", gap=gap, where=where, causes=causes, shrink=shrink, waterfall=waterfall,
+        cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), floor, present),
+        kinematics=kinematics, model=model_of(problem, fitted, known),
+        reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
+        effects=effects,
+        yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
+        notes=notes_of(e, aircraft, holdout, effects.keys() - present),
+        maneuvers=tuple(f.number for f in problem.flights.flights),
+    )  # fmt: skip
+    return replace(diagnosis, sentence=sentence_of(diagnosis))
+
+
+def _speed_is_known(problem: Problem, aircraft: Aircraft) -> bool:
+    """Whether the derivatives' speed was measured, is the file's, or what the motion shows."""
+    stated = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
+    return problem.flights.speed_measured or stated is not None
+
+
+def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) -> dict[str, dict[str, float]]:
+    """What the improved simulator gets: the named effects, and the propeller's share where it shows."""
+    effects = {c.effect: {k: v.value for k, v in c.parameters.items()} for c in causes if c.present}
+    at = len(fitted.point.derivatives)
+    for variant, values in zip(fitted.point.effects, fitted.point.values, strict=True):
+        error = std[at : at + len(values)]
+        if variant is PROPELLER and np.any(np.abs(values) > LEAST_SIGMA * error):
+            thrust = effects.setdefault("thrust_moment", {})
+            thrust.update(zip(variant.names, map(float, values), strict=True))
+        at += len(values)
+    return effects
+
+
+def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
+    if verdict == "unknown" and e.leftover is not None:
+        return Where(e.leftover.block, e.leftover.share, e.leftover.ranking)
+    ranking = block_ranking(e.stages[0], causes)
+    total = max(float(np.mean(gap_of(e.stages[0].held_out.mean_square, e.floor))), 1e-12)
+    left = float(np.mean(gap_of(e.stages[-1].held_out.mean_square, e.floor)))
+    block = next((c.block for c in causes if c.present), ranking[0][0] if ranking else "force_equation")
+    return Where(block, float(np.clip(1.0 - left / total, 0.0, 1.0)) if causes else 0.0, ranking)

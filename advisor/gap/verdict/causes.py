@@ -1,0 +1,190 @@
+"""From judged candidates to causes people can read: probability, parameters, ties."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.kinematics import KinematicCheck
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.catalogue import BLOCK_OF
+from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.result import Cause, Value
+from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS, Judged
+from advisor.gap.search.score import TIME_DOUBT_S, TIMES
+from advisor.gap.search.ties import tied_with
+from advisor.gap.search.waterfall import Stage
+
+TEMPERATURE = 3.0
+"""Log likelihoods of a model that is itself approximate count for less: divided by this before they
+become probabilities. Set on development data so that stated and observed frequencies agree."""
+_SHAPE_DOUBT = 0.03
+"""Relative error of a size for describing its effect to low order only."""
+_TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
+"""Effects that a common shift of all steps of the command would imitate, and their parameter."""
+_SCALED_BY = 0.2
+"""Share of what a scale error makes of the trimmed angle that an offset may depart from it."""
+_BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
+_OF_INTERVAL = 0.2
+"""Share of the interval between an estimate's samples that its lag must reach to be named."""
+
+
+def causes_of(
+    stages: Sequence[Stage], floor: FloatArray, unexplained: float, channels: Sequence[str]
+) -> tuple[Cause, ...]:
+    """What was added, in order, then the alternatives to the first addition."""
+    added = [s.added for s in stages if s.added is not None]
+    first = stages[0].considered
+    shares = probabilities(first, unexplained)
+    causes = []
+    removed = sum(max(j.removed, 1e-6) for j in added)
+    for stage, judged in zip(stages, added, strict=False):
+        confidence = probabilities(stage.considered, unexplained).get(judged.effect, 0.5)
+        if any(j.effect == judged.effect and not j.worth_naming for j in stage.considered):
+            # Too small for a name until the other was found beside it.
+            confidence = 0.5
+        share = (
+            1.0 if len(added) == 1 else 0.5 + 0.5 * judged.removed / removed if judged is added[0] else 0.0
+        )
+        if judged is not added[0]:
+            share = max(judged.removed, 1e-6) / removed * 0.5
+        causes.append(_cause(judged, stage.considered, confidence * share, floor, channels, True))
+    taken = {c.effect for c in causes}
+    rest = max(1.0 - sum(c.probability for c in causes), 0.0)
+    others = [j for j in first if j.effect not in taken and j.gain > 0.0]
+    total = sum(shares[j.effect] for j in others)
+    for j in others:
+        p = min(shares[j.effect], rest * shares[j.effect] / total) if total > 0.0 else 0.0
+        causes.append(_cause(j, first, p, floor, channels, False))
+    return tuple(causes[:5])
+
+
+def probabilities(considered: Sequence[Judged], unexplained: float) -> dict[str, float]:
+    """Effect to probability; what is missing to 1 is for no effect and for one without a name."""
+    if not considered:
+        return {}
+    # What is not worth a name is no rival, whatever it gains.
+    gains = [(j.gain if j.worth_naming else min(j.gain, 0.0)) - j.least_gain for j in considered]
+    scores = np.array([*gains, 0.0]) / TEMPERATURE
+    weights = np.exp(scores - np.max(scores))
+    weights = (1.0 - 0.9 * unexplained) * weights / np.sum(weights)
+    return {j.effect: float(w) for j, w in zip(considered, weights, strict=False)}
+
+
+def parameters_of(judged: Judged) -> dict[str, Value]:
+    """Parameters as the aircraft file spells them."""
+    v = judged.variant
+    found = {n: Value(float(x), float(s)) for n, x, s in zip(v.names, judged.value, judged.std, strict=True)}
+    if v.inverted:
+        x = max(float(judged.value[0]), 1e-9)
+        found[v.names[0]] = Value(1.0 / x, float(judged.std[0]) / x**2)
+    if judged.effect == "structural_mode":
+        to_hz = 1.0 / (2.0 * np.pi)
+        found = {
+            "frequency_hz": Value(found["omega_rad_s"].value * to_hz, found["omega_rad_s"].std * to_hz),
+            "damping": found["damping"], "gain": found["rate_gain"], "displacement_gain": found["gain"],
+        }  # fmt: skip
+    for name, value in v.fixed.items():
+        found[name] = Value(value, 0.0)
+    return found
+
+
+def with_doubt(cause: Cause, problem: Problem) -> Cause:
+    """Sizes with the errors that no fit shows: effects are described to low order, on a grid of time."""
+    doubted = {
+        name: Value(v.value, float(np.hypot(v.std, _doubt(name, v.value))))
+        for name, v in cause.parameters.items()
+        if v.std > 0.0
+    }
+    return _with_edge_doubt(replace(cause, parameters={**cause.parameters, **doubted}), problem)
+
+
+def _doubt(name: str, value: float) -> float:
+    """Standard deviation of a size beyond its fit's: a share of it, and for times part of a step."""
+    return float(np.hypot(_SHAPE_DOUBT * value, TIME_DOUBT_S if name in TIMES else 0.0))
+
+
+def _with_edge_doubt(cause: Cause, problem: Problem) -> Cause:
+    """A delay or lag with the error that comes of steps lying anywhere between two stamps of the command."""
+    intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
+    if problem.held or not intervals or cause.effect not in _TIMING:
+        return cause
+    doubt = float(np.median(np.concatenate(intervals))) / np.sqrt(12.0)
+    name = _TIMING[cause.effect]
+    value = cause.parameters[name]
+    parameters = {**cause.parameters, name: Value(value.value, float(np.hypot(value.std, doubt)))}
+    return replace(cause, parameters=parameters)
+
+
+def _cause(
+    judged: Judged,
+    considered: Sequence[Judged],
+    probability: float,
+    floor: FloatArray,
+    channels: Sequence[str],
+    present: bool,
+) -> Cause:
+    ties, way = tied_with(judged, considered, channels)
+    left = float(np.mean(gap_of(judged.held_out.mean_square, floor)))
+    return Cause(
+        judged.effect, BLOCK_OF[judged.effect], probability, parameters_of(judged), ties, way, left, present
+    )
+
+
+def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, float], ...]:
+    """Blocks by the best any of their effects does, 1 for the best."""
+    scores: dict[str, float] = {}
+    for cause in causes:
+        if cause.present:
+            scores.setdefault(cause.block, 1.0)
+    best = max((j.gain for j in first.considered), default=0.0)
+    for j in first.considered:
+        block = BLOCK_OF[j.effect]
+        if best > 0.0 and j.gain > 0.0:
+            scores[block] = max(scores.get(block, 0.0), round(j.gain / best, 4))
+    return tuple(sorted(scores.items(), key=lambda item: -item[1]))
+
+
+def alpha_bias_cause(
+    check: KinematicCheck, named: Sequence[Judged], problem: Problem, left: float
+) -> Cause | None:
+    """A constant offset of α, from the climb rate: the dynamics cannot tell it from Z_0 and M_0.
+
+    A scale error shifts the trim, too; only what the named one leaves over is an offset. ``left`` is the gap
+    of the last model: what the motion alone shows takes nothing off it.
+    """
+    if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
+        return None
+    least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * check.bias_std_rad)
+    trim = float(np.mean([flight.trim[0] for flight in problem.flights.flights]))
+    scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
+    # The trim was read with the offset taken out already: what a scale makes of it is no offset.
+    scaled = scale * trim
+    if abs(check.bias_rad) < least or abs(check.bias_rad - scaled) < max(least, _SCALED_BY * abs(scaled)):
+        return None
+    return Cause(
+        "alpha_bias", "alpha_sensor", 0.9, {"bias_rad": Value(check.bias_rad, check.bias_std_rad)},
+        ("an offset of the attitude's zero", "steady up- or downwash"),
+        "level the attitude reference on the ground; fly in still air", left, True,
+    )  # fmt: skip
+
+
+def alpha_lag_cause(
+    check: KinematicCheck, problem: Problem, named: Sequence[Judged], left: float
+) -> Cause | None:
+    """A late α that the motion shows and the fit cannot: an autopilot's estimate is smooth and coarse.
+
+    A lag far below the interval of its samples is none: their stamps are not known that well.
+    """
+    intervals = [np.diff(f.outputs["alpha"].t) for f in problem.flights.flights if "alpha" in f.outputs]
+    least_s = _OF_INTERVAL * float(np.median(np.concatenate(intervals))) if intervals else 0.0
+    found_there = any(BLOCK_OF[j.effect] in ("alpha_sensor", "accelerometer") for j in named)
+    if not problem.flights.alpha_is_derived or found_there or check.finding != "late":
+        return None
+    if check.lag_s < least_s:
+        return None
+    return Cause(
+        "alpha_lag", "alpha_sensor", 0.9, {"lag_s": Value(check.lag_s, check.lag_std_s)},
+        ("alpha_skew", "alpha_vane_offset"), _BREAK_ALPHA_LAG, left, True,
+    )  # fmt: skip

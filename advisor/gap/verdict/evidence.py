@@ -1,0 +1,34 @@
+"""What an answer is made from: stages, what is left, the air, the floor."""
+
+from dataclasses import dataclass
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.search.air import Air
+from advisor.gap.search.waterfall import Stage
+from advisor.gap.unnamed.leftover import Leftover
+from advisor.gap.unnamed.weight import Weight
+from advisor.gap.unnamed.wind import Shear
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Everything the answer is made from."""
+
+    problem: Problem
+    stages: list[Stage]
+    leftover: Leftover | None
+    """Something without a name that is still there."""
+    air: Air | None
+    floor: FloatArray
+    file_model: HeldOut | None
+    """The aircraft file's own parameters, unfitted."""
+    constant_speed: HeldOut | None
+    """The final model without the change of air speed."""
+    stated: FloatArray
+    """Shape (channels,): tolerance of channels filtered before they were recorded, else 0."""
+    shear: Shear | None = None
+    """Wind that changes with height: it has no name in the catalogue."""
+    weight: Weight | None = None
+    """What the accelerometer reads of the weight, where it is not all of it."""

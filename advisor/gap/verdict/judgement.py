@@ -1,0 +1,129 @@
+"""What the evidence amounts to: the verdict and its causes, before any number of the gap is written down."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.kinematics import KinematicCheck
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.uncertainty import file_is_off
+from advisor.gap.result import VISIBLE, Cause, Value, Verdict
+from advisor.gap.search.speed import airspeed_cause, speed_is_a_cause
+from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
+from advisor.gap.verdict.evidence import Evidence
+
+_PLAIN = 0.5
+"""Gap of the file's own derivatives beside fitted ones from which on it takes less to call them wrong."""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Verdict and causes."""
+
+    verdict: Verdict
+    causes: tuple[Cause, ...]
+    """Likeliest first, at most five."""
+    apart: tuple[Cause, ...]
+    """Those of them that no fit judges: the air, the offset, a late angle of attack, the air speed."""
+    speed: Cause | None
+    """The change of air speed, when ignoring it would cost, cause or not."""
+    bias: Cause | None
+    before: HeldOut
+    """What the simulator left before anything was added to it."""
+
+
+def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
+    """Weigh what was found."""
+    problem, stages, floor = e.problem, e.stages, e.floor
+    first, last = stages[0].held_out, stages[-1].held_out
+    left = float(np.mean(gap_of(last.mean_square, floor)))
+    named = [s.added for s in stages if s.added is not None]
+    bias = alpha_bias_cause(kinematics, named, problem, left)
+    late = alpha_lag_cause(kinematics, problem, named, left)
+    speed = None
+    if all(judged.effect != "airspeed_variation" for judged in named):
+        speed = airspeed_cause(problem, e.constant_speed, last, floor)
+    unknown = e.leftover is not None and late is None
+    wrong_values = _wrong_values(e)
+    apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
+    explained = bool(named or bias or late or wrong_values)
+    if speed is not None and not explained:
+        worked = speed_is_a_cause(problem, e.constant_speed, last, floor, e.air)
+        apart = (speed, *apart) if worked else apart
+    unexplained = e.leftover.share if e.leftover is not None else 0.0
+    causes = tuple(
+        with_doubt(cause, problem) for cause in causes_of(stages, floor, unexplained, problem.channels)
+    )
+    if unknown:
+        causes = tuple(
+            replace(c, probability=0.5 * c.probability) for c in causes if not c.present or not named
+        )
+    causes = _merge(causes, apart)
+    if bias is not None and not unknown and not problem.flights.alpha_is_derived:
+        removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
+        offset = (bias.parameters["bias_rad"].value / floor[problem.channels.index("alpha")]) ** 2
+        causes = _bias_first(causes, float(offset) / len(floor) > max(removed, 0.0))
+    verdict: Verdict = "none"
+    if unknown:
+        verdict = "unknown"
+    elif wrong_values and not (named or bias or late):
+        # Moving air may be there besides: it comes with the day, wrong numbers stay.
+        verdict = "parameters"
+    elif any(c.present for c in causes):
+        verdict = "effect"
+    if verdict in ("none", "parameters"):
+        causes = tuple(replace(c, probability=0.05 * c.probability) for c in causes)
+    before = e.file_model if e.file_model is not None else first
+    if e.constant_speed is not None and speed in apart:
+        before = e.constant_speed
+    return Judgement(verdict, causes, apart, speed, bias, before)
+
+
+def _wrong_values(e: Evidence) -> bool:
+    """Whether the file's own parameters leave a gap, and cannot be right within their tolerance."""
+    if e.file_model is None:
+        return False
+    more = float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2))
+    return more > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted, plainly=more > _PLAIN)
+
+
+def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ...]:
+    """Causes judged apart from the fits (air, constant offset, speed) beside those judged by it."""
+    present, other = [c for c in causes if c.present], [c for c in causes if not c.present]
+    if extra and not present:
+        # The first is the larger one; where there is only one, it has no rival.
+        shares = [0.95] if len(extra) == 1 else [0.9, *[0.05 / (len(extra) - 1)] * (len(extra) - 1)]
+        other = [replace(c, probability=0.05 * c.probability) for c in other]
+        named = (replace(c, probability=p) for c, p in zip(extra, shares, strict=True))
+        return (*named, *other)[:5]
+    if extra:
+        present = [replace(c, probability=0.96 * c.probability) for c in present]
+        extra = [replace(c, probability=0.03 / len(extra)) for c in extra]
+        other = [replace(c, probability=0.2 * c.probability) for c in other]
+    return (*present, *extra, *other)[:5]
+
+
+def _bias_first(causes: tuple[Cause, ...], larger: bool) -> tuple[Cause, ...]:
+    """The constant offset ahead of everything else, when it makes the larger part of the gap."""
+    if not larger:
+        return causes
+    bias = next(c for c in causes if c.effect == "alpha_bias")
+    rest = tuple(replace(c, probability=0.08 * c.probability) for c in causes if c is not bias)
+    return (replace(bias, probability=0.9), *rest)
+
+
+def _air_cause(e: Evidence) -> Cause | None:
+    if e.air is None:
+        return None
+    reference = e.problem.flights.reference_m_s
+    gust = e.air.gust
+    peak, spread = e.air.gust_angle * reference, e.air.angle_std * reference
+    parameters = {"sigma_w_m_s": Value(spread, 0.25 * spread)}
+    if gust:
+        parameters = {"amplitude_m_s": Value(peak, 0.25 * abs(peak)), "at_s": Value(e.air.gust_at_s, 0.1)}
+    return Cause(
+        "gust" if gust else "turbulence", "air", 0.9, parameters, ("turbulence" if gust else "gust",),
+        "fly more manoeuvres: a gust does not come back, turbulence does", 0.0, True,
+    )  # fmt: skip

@@ -1,0 +1,115 @@
+"""What a reader should know beside the answer: what was assumed, missing, unusual, or could not be done."""
+
+from collections.abc import Collection, Mapping, Sequence
+
+from advisor.aircraft import Aircraft
+from advisor.gap.candidates.known import Effects, left_aside
+from advisor.gap.result import spelled
+from advisor.gap.verdict.evidence import Evidence
+
+
+def notes_of(
+    e: Evidence, aircraft: Aircraft, holdout: int | None, nobodys_fault: Collection[str]
+) -> tuple[str, ...]:
+    """Every note that these flights and their aircraft file call for, a sentence each.
+
+    ``nobodys_fault`` are effects that the improved simulator gets though they are no cause.
+    """
+    notes = []
+    flights = e.problem.flights
+    if holdout is not None and holdout >= len(flights):
+        notes.append(
+            f"{holdout} manoeuvres cannot be kept out of {len(flights)}: each was kept out in turn instead. "
+            f"Keep out {len(flights) - 1} at most."
+        )
+    notes.append(
+        "The command was held between its stamps." if e.problem.held
+        else "The command was taken as linear between its stamps, its edges anywhere between two."
+    )  # fmt: skip
+    if not flights.speed_measured:
+        shown = "a_x" in flights.has and {"alpha", "a_z", "theta"} <= set(flights.channels)
+        from_there = "from there it is what the accelerometers make of it" if shown else "it stays there"
+        notes.append(
+            f"No air speed in the log: {flights.reference_m_s:.1f} m/s before each manoeuvre, as the "
+            f"aircraft file says or else the motion shows; {from_there}."
+        )
+    if e.shear is not None:
+        per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
+        notes.append(f"The wind changed with height, by {per_metre} a metre.")
+    if e.weight is not None:
+        notes.append(e.weight.sentence)
+    if e.leftover is not None and e.leftover.note:
+        notes.append(e.leftover.note)
+    for judged in (stage.added for stage in e.stages):
+        if judged is not None and judged.witness is not None:
+            number = flights.flights[judged.witness].number
+            notes.append(
+                f"Manoeuvre {number} alone tells of the {spelled(judged.effect)}: "
+                "it is measured there, for no other could confirm it."
+            )
+    if e.air is not None:
+        notes.append(
+            "What is shown as after has the likeliest course of the air in it: that belongs to the day, and "
+            "no file can hold it. It is fitted to these very samples, so that little of the gap can stay."
+        )
+        if e.air.gust:
+            notes.append(f"The gust shows most in manoeuvre {e.air.gust_number}.")
+        if flights.alpha_is_derived:
+            notes.append(
+                "The angle of attack is an estimate that sees no gust: this flight's derivatives are rough, "
+                "and the gusts read too strong."
+            )
+    if nobodys_fault:
+        notes.append(
+            f"The improved simulator has the propeller's share, too ({_listed(sorted(nobodys_fault))}): "
+            "part of every aircraft that has one, and no cause."
+        )
+    notes += _known(aircraft.effects)
+    missing = [c for c in ("a_z", "theta") if c not in flights.channels]
+    if missing:
+        notes.append(f"Without {' and '.join(missing)} several instrument effects cannot be seen.")
+    if len(flights) < 6:
+        notes.append(
+            f"Only {len(flights)} manoeuvres: intervals are wide, changes between manoeuvres hard to see."
+        )
+    notes += unusual_signs(aircraft.model)
+    if aircraft.elevator.lag_s is None:
+        notes.append(
+            "The servo's lag is not in the aircraft file: a lag found here may simply be the servo's."
+        )
+    return tuple(notes)
+
+
+def left_out(numbers: Sequence[int]) -> tuple[str, ...]:
+    """Which manoeuvres were not used, and why that may be."""
+    if not numbers:
+        return ()
+    which = ", ".join(map(str, numbers))
+    return (
+        f"Left out: manoeuvre {which}. It departed, lacks a channel, or a step fell into a hole of the log.",
+    )
+
+
+def _known(effects: Effects) -> list[str]:
+    """What was made of the effects that stand in the aircraft file."""
+    aside = left_aside(effects)
+    notes = []
+    if had := [effect for effect in effects if effect not in aside]:
+        notes.append(f"The simulator has the file's {_listed(had)}; what is found here is beyond that.")
+    if aside:
+        notes.append(f"The file's {_listed(aside)} belongs to the flight that showed it: left aside.")
+    return notes
+
+
+def _listed(effects: Sequence[str]) -> str:
+    return ", ".join(map(spelled, effects))
+
+
+def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
+    """What of an aircraft file's model is right for few aircraft only."""
+    if model.get("M_delta_e", 0.0) <= 0.0:
+        return ()
+    return (
+        f"The aircraft file's M_delta_e is {model['M_delta_e']:g}, above zero: unusual, for an elevator is "
+        "positive trailing edge down and pitches the nose down; right for a canard.",
+    )

@@ -1,0 +1,172 @@
+"""The numbers of a diagnosis: gap, shrink, waterfall, model, yardsticks, traces."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.holdout import HeldOut, folds_of
+from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.records.floor import prefiltered
+from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
+from advisor.gap.search.air import Air
+from advisor.gap.search.waterfall import Stage
+from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.verdict.evidence import Evidence
+from advisor.gap.verdict.yardsticks import yardsticks
+from advisor.gravity import GRAVITY_M_S2
+
+
+def gap_numbers(e: Evidence, before: HeldOut, last: HeldOut, bias: Cause | None) -> Gap:
+    """The gap of the plain and of the final model, as numbers."""
+    problem, floor = e.problem, e.floor
+    offset = np.zeros(len(problem.channels))
+    if bias is not None:
+        offset[problem.channels.index("alpha")] = bias.parameters["bias_rad"].value ** 2
+    here, there = gap_of(before.mean_square + offset, floor), gap_of(last.mean_square, floor)
+    smooth = [c for c, yes in prefiltered(problem.flights).items() if yes]
+    note = "measured where nothing was flown, before the first step and late in the free response"
+    if smooth:
+        note = f"stated as 2 % of peak for {', '.join(smooth)} (filtered before storage); else measured"
+    return Gap(
+        before=float(np.mean(here)), after=float(np.mean(there)),
+        floor=dict(zip(problem.channels, map(float, floor), strict=True)), floor_note=note,
+        by_channel=dict(zip(problem.channels, map(float, here), strict=True)),
+        by_channel_after=dict(zip(problem.channels, map(float, there), strict=True)),
+        by_maneuver=tuple(
+            (f.number, float(np.mean(gap_of(b, floor))), float(np.mean(gap_of(a, floor))))
+            for f, b, a in zip(problem.flights.flights, before.by_maneuver, last.by_maneuver, strict=True)
+        ),
+        by_phase=by_phase(problem, before.left, floor), by_band_hz=by_band(problem, before.left),
+    )  # fmt: skip
+
+
+def kept_out(problem: Problem, holdout: int | None) -> tuple[list[int], list[list[int]]]:
+    """Manoeuvres the gap is measured on, and folds that keep them out: the last ones, or each in turn."""
+    n = len(problem.flights)
+    if holdout is None or not 0 < holdout < n:
+        return list(range(n)), folds_of(n)
+    kept = list(range(n - holdout, n))
+    return kept, [kept, *[[i for i in fold if i not in kept] for fold in folds_of(n)]]
+
+
+def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> HeldOut:
+    """The mean squares over some manoeuvres only; as in a fit, every sample counts alike."""
+    flights = [problem.flights.flights[i] for i in kept]
+    samples = np.array([[len(f.outputs[c].t) for c in problem.channels] for f in flights], float)
+    sums = np.sum(samples * held.by_maneuver[list(kept)], axis=0)
+    return replace(held, mean_square=sums / np.sum(samples, axis=0))
+
+
+def without_air(held: HeldOut, air: Air) -> HeldOut:
+    """Held-out errors with the share of the moving air taken out, alike in every manoeuvre.
+
+    The courses of the errors are those that the air's likeliest course leaves.
+    """
+    share = np.minimum(air.left / held.mean_square, 1.0)
+    powers = held.by_maneuver * share
+    return replace(held, left=air.lefts, mean_square=held.mean_square * share, by_maneuver=powers)
+
+
+def shrink_of(e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut) -> Shrink:
+    """How far the gap shrinks on the manoeuvres kept out, with an interval from resampling them."""
+    was = np.mean(before.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
+    now = np.mean(last.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
+    percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
+    low, high = shrink_interval(was, now)
+    numbers = tuple(e.problem.flights.flights[i].number for i in kept)
+    interval = (min(low, percent), max(high, percent))
+    return Shrink(numbers, gap.before, gap.after, percent, interval, _beyond_air(e))
+
+
+def _beyond_air(e: Evidence) -> float | None:
+    """Shrink of the innovations, per cent; see ``Shrink``."""
+    if e.air is None or len(e.stages) < 2:
+        return None
+    noise = e.stages[-1].fitted.noise ** 2
+    was, now = (float(np.mean(s.held_out.innovations / noise)) - 1.0 for s in (e.stages[0], e.stages[-1]))
+    return float(np.clip(100.0 * (1.0 - now / was), 0.0, 100.0)) if was > 1e-9 else None
+
+
+def waterfall_of(
+    stages: list[Stage],
+    floor: FloatArray,
+    extra: Sequence[Cause],
+    speed: Cause | None,
+    start: float,
+) -> tuple[tuple[str, float], ...]:
+    """Effect and gap after adding it, in order.
+
+    A simulator that is given the measured speed has its change already: ``start`` is what that one leaves.
+    """
+    steps: list[tuple[str, float]] = []
+    if speed is not None and speed not in extra:
+        steps.append((speed.effect, start))
+    for stage, following in pairwise(stages):
+        assert stage.added is not None
+        steps.append((stage.added.effect, float(np.mean(gap_of(following.held_out.mean_square, floor)))))
+    for cause in extra:
+        steps.append((cause.effect, min(cause.gap_after, steps[-1][1] if steps else start)))
+    return tuple(steps)
+
+
+def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, Value]:
+    """The eight parameters about zero angles, from the trimmed ones of each manoeuvre.
+
+    ``known``, shape (k, k), is the covariance of the shared numbers: what the derivatives are off by moves
+    the terms at zero angles of all manoeuvres together, through the angles at which they are trimmed.
+    """
+    d, own = fitted.point.derivatives, fitted.point.own
+    trims = np.array([[f.trim[0], f.u_trim] for f in problem.flights.flights])
+    gravity = np.array([GRAVITY_M_S2 / float(np.mean(f.slow[0])) for f in problem.flights.flights])
+    slopes = {"Z_0": (0, 2), "M_0": (3, 5)}
+    terms = {"Z_0": own[:, 2] + gravity, "M_0": own[:, 3]}
+    values = {}
+    for name, pair in slopes.items():
+        each = terms[name] - trims @ d[list(pair)]
+        mean_trim = np.mean(trims, axis=0)
+        together = mean_trim @ known[np.ix_(pair, pair)] @ mean_trim
+        apart = np.var(each, ddof=1) / len(each)
+        values[name] = Value(float(np.mean(each)), float(np.sqrt(apart + max(together, 0.0))))
+    for k, name in enumerate(DERIVATIVES):
+        values[name] = Value(float(d[k]), float(np.sqrt(max(known[k, k], 0.0))))
+    return {name: values[name] for name in PARAMETERS}
+
+
+def fidelity_of(problem: Problem, before: HeldOut, last: HeldOut) -> dict[str, tuple[Yardsticks, Yardsticks]]:
+    """Accepted yardsticks of every channel, before and after."""
+    found = {}
+    for c, name in enumerate(problem.channels):
+        measured = np.concatenate([f.outputs[name].y for f in problem.flights.flights])
+        pair = []
+        for held in (before, last):
+            left = np.concatenate([
+                x[problem.rows(f)[c]] for f, x in zip(problem.flights.flights, held.left, strict=True)
+            ])  # fmt: skip
+            pair.append(yardsticks(name, measured, measured - left))
+        found[name] = (pair[0], pair[1])
+    return found
+
+
+def traces_of(problem: Problem, before: HeldOut, last: HeldOut) -> tuple[Trace, ...]:
+    """Measured and simulated courses, for plotting."""
+    traces = []
+    for i, flight in enumerate(problem.flights.flights):
+        for name, rows in zip(problem.channels, problem.rows(flight), strict=True):
+            out = flight.outputs[name]
+            traces.append(
+                Trace(
+                    flight.number,
+                    name,
+                    out.t,
+                    out.y,
+                    out.y - before.left[i][rows],
+                    out.y - last.left[i][rows],
+                )
+            )
+    return tuple(traces)

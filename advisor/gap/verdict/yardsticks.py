@@ -1,0 +1,33 @@
+"""Accepted measures of a simulator's fidelity, beside our own.
+
+Theil's inequality coefficient with its split into bias, variance and covariance (Theil 1966; Jategaonkar,
+*Flight Vehicle System Identification*, section 11.3), R², and the band that qualification of training
+simulators allows the short period: ±1.5° of pitch or ±2 °/s, ±0.10 g (EASA CS-FSTD(A), test 2.c.10).
+"""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.result import Yardsticks
+from advisor.gravity import GRAVITY_M_S2
+
+_BAND = {"theta": np.radians(1.5), "q": np.radians(2.0), "a_z": 0.10 * GRAVITY_M_S2}
+
+
+def yardsticks(channel: str, measured: FloatArray, simulated: FloatArray) -> Yardsticks:
+    """All measures of one channel; both arrays shape (n,)."""
+    error = measured - simulated
+    power = float(np.mean(error**2))
+    size = float(np.sqrt(np.mean(measured**2)) + np.sqrt(np.mean(simulated**2)))
+    spread_m, spread_s = float(np.std(measured)), float(np.std(simulated))
+    bias = float(np.mean(error)) ** 2
+    variance = (spread_m - spread_s) ** 2
+    band = _BAND.get(channel)
+    return Yardsticks(
+        theil=float(np.sqrt(power)) / size if size > 0.0 else float("nan"),
+        bias=bias / power if power > 0.0 else 0.0,
+        variance=variance / power if power > 0.0 else 0.0,
+        covariance=max(1.0 - (bias + variance) / power, 0.0) if power > 0.0 else 1.0,
+        r2=1.0 - power / spread_m**2 if spread_m > 0.0 else float("nan"),
+        within_tolerance=None if band is None else float(np.mean(np.abs(error) <= band)),
+    )
