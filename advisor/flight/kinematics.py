@@ -18,6 +18,8 @@ from advisor.flight.renewal import renewed
 from advisor.gravity import GRAVITY_M_S2
 
 NEEDED = ("alpha", "q", "theta", "a_z")
+_FOLLOW_S = np.array([0.08, 0.2, 0.5, 1.2])
+"""Lags that span the responses of aircraft, from the fastest short period to the slowest."""
 CORRUPTED_BY_LAG = ("Z_delta_e", "Z_q", "Z_alpha", "M_q")
 """What a late α spoils. M_alpha and M_delta_e keep their values: the lag only mixes α with
 its own rate, and the rate of α enters the moment equation as a change of M_q."""
@@ -111,7 +113,20 @@ def check_alpha(
         / speed
     )
     rebuilt = np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
-    return _compare(t, rebuilt, rate, t_alpha, alpha, _bias(maneuver, airspeed_m_s))
+    commanded = _followers(t, at("elevator")) if "elevator" in found else None
+    return _compare(t, rebuilt, rate, commanded, t_alpha, alpha, _bias(maneuver, airspeed_m_s))
+
+
+def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
+    """What follows the command through two equal lags, shape (n, k): together they span the response."""
+    moved = command - command[0]
+    first = np.zeros(len(_FOLLOW_S))
+    found = np.zeros((len(t), len(_FOLLOW_S)))
+    for i, dt in enumerate(np.diff(t), start=1):
+        share = -np.expm1(-dt / _FOLLOW_S)
+        first = first + share * (moved[i - 1] - first)
+        found[i] = found[i - 1] + share * (first - found[i - 1])
+    return found
 
 
 def _bias(maneuver: Maneuver, airspeed_m_s: float | None) -> tuple[float, float]:
@@ -135,25 +150,35 @@ def _compare(
     t: FloatArray,
     rebuilt: FloatArray,
     rate: FloatArray,
+    commanded: FloatArray | None,
     t_alpha: FloatArray,
     alpha: FloatArray,
     bias: tuple[float, float],
 ) -> KinematicCheck:
-    """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b."""
+    """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b.
+
+    A gust moves the vane at once and the aircraft after it, which reads as a lag and a scale. It knows
+    nothing of the command: what follows that is the instrument of the fit (two-stage least squares).
+    """
     inside = (t_alpha >= t[0] + 0.3) & (t_alpha <= t[-1] - 0.3)
     tm, y = t_alpha[inside], alpha[inside]
     if len(tm) < 12 or np.ptp(y) < 1e-4:
         return KinematicCheck("not possible", "alpha cannot be checked against the motion: it hardly moved.")
     s = (tm - tm.mean()) / max(np.ptp(tm), 1e-9)
     slow = np.column_stack([np.ones_like(s), s, s**2])
+    instruments = None
+    if commanded is not None:
+        followed = np.column_stack([np.interp(tm, t, column) for column in commanded.T])
+        instruments = _orthogonal(np.column_stack([slow, followed]))
     best: tuple[float, FloatArray, FloatArray, FloatArray] | None = None
     for start in (0.0, 0.08, -0.08):
         tau = start
         for _ in range(12):
             shape, slope = np.interp(tm - tau, t, rebuilt), np.interp(tm - tau, t, rate)
-            linear = np.linalg.lstsq(np.column_stack([shape, slow]), y, rcond=None)[0]
-            jacobian = np.column_stack([-linear[0] * slope, shape, slow])
-            left = y - jacobian[:, 1:] @ linear
+            told = _told_by(instruments, np.column_stack([shape, slow, slope]))
+            linear = np.linalg.lstsq(told[:, :-1], y, rcond=None)[0]
+            jacobian = np.column_stack([-linear[0] * told[:, -1], told[:, :-1]])
+            left = y - np.column_stack([shape, slow]) @ linear
             step = float(np.linalg.lstsq(jacobian, left, rcond=None)[0][0])
             tau = float(np.clip(tau + np.clip(step, -0.05, 0.05), -0.29, 0.29))
             if abs(step) < 1e-5:
@@ -170,6 +195,19 @@ def _compare(
         finding, sentence, (), float(fitted[0]), float(std[0]), float(fitted[1] - 1.0), float(std[1]), *bias,
         float(fitted[3] / max(np.ptp(tm), 1e-9)), float(np.sqrt(cost / len(y))), explained,
     )  # fmt: skip
+
+
+def _orthogonal(columns: FloatArray) -> FloatArray:
+    """Orthonormal columns of the same span, without directions that are next to none."""
+    left, size, _ = np.linalg.svd(
+        columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False
+    )
+    return np.asarray(left[:, size > 1e-4 * size[0]])
+
+
+def _told_by(instruments: FloatArray | None, columns: FloatArray) -> FloatArray:
+    """The part of the columns that lies in the instruments' span; all of it without any."""
+    return columns if instruments is None else np.asarray(instruments @ (instruments.T @ columns))
 
 
 def _judge(

@@ -16,8 +16,8 @@ from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 
-def flown(**changes):
-    return fly(Setup(maneuvers=3, seed=5, **changes))
+def flown(seed=5, **changes):
+    return fly(Setup(maneuvers=3, seed=seed, **changes))
 
 
 def checked(**changes):
@@ -167,3 +167,16 @@ def test_a_wind_that_plainly_changes_with_height_is_told_from_air_that_moves_bes
     assert diagnose(moving, Aircraft()).causes[0].effect == "turbulence"
     found = diagnose([blown(m, 0.25) for m in moving], Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "air")
+
+
+@pytest.mark.parametrize("seed", [3, 4, 5])
+def test_a_vane_that_reads_gusts_is_neither_late_nor_scaled(seed):
+    found = checked(gust_std=0.3, seed=seed)
+    assert found.finding == "consistent"
+    assert abs(found.lag_s) < 3.0 * found.lag_std_s
+
+
+def test_a_late_vane_is_late_by_as_much_in_air_that_moves():
+    found = checked(gust_std=0.3, skew={"alpha": 0.06}, seed=3)
+    assert found.finding == "late"
+    assert abs(found.lag_s - 0.06) < 3.0 * found.lag_std_s
