@@ -11,6 +11,7 @@ from advisor.gap.simulator.simulate import HEIGHT
 
 BLOCK = "force_equation"
 _DECAYS_M = (0.1, 50.0)
+"""Height over which the ground's influence may decay, m: a fraction of any span to more than a span."""
 _ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
 
 

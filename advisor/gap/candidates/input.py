@@ -10,7 +10,8 @@ from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import INDEX
 
 BLOCK = "input"
-_SMALL_ANGLE = 0.00175  # 0.1 deg
+_SMALL_ANGLE = 0.00175
+"""0.1 deg: no linkage is free of less."""
 _DAMPING = 0.7
 """Of a servo of second order: that of position loops tuned to be quick without overshoot."""
 

@@ -5,6 +5,7 @@ import numpy as np
 from advisor.gap.candidates.variant import Variant
 
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
+"""Where the search for a structural mode begins; it ends between them."""
 
 
 def variants(least_s: float) -> list[Variant]:

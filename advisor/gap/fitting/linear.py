@@ -12,6 +12,7 @@ from advisor.gap.simulator.reading import lane
 from advisor.gap.simulator.simulate import DISTURB_INPUT, SPEED
 
 _DERIVATIVE_STEP = 1e-3
+"""Finite-difference step of a derivative, relative to its size: far above rounding, far below curvature."""
 _OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
 """Of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
 _SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")

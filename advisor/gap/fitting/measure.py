@@ -9,7 +9,9 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import Flight
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
+"""A short period lies in the middle ones; below is the drift of trim, above structure and noise."""
 _EDGE_S = 0.2
+"""After each step: what lies between command and surface shows there."""
 PHASES = ("step edge", "plateau", "free response")
 
 

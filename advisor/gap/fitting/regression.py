@@ -8,9 +8,11 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.records.flights import Flight, Flights
 
 _STEP_S = 0.02
+"""Grid of the regression, s."""
 _SPAN = 10
 """Steps over which the equations are integrated, to spare derivatives of the data."""
 _RIDGE = 1e-6
+"""Keeps directions that a flight does not excite from running away."""
 _PLAIN = 0.01
 """Share of the rates' power that is left, both equations' together, where the channels belong together ..."""
 _BETTER = 0.5
@@ -27,6 +29,7 @@ class Late(NamedTuple):
 
 
 _SHIFTS_S = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)
+"""Up to about a radian of a fast short period."""
 _ONE_LATE = (
     *(Late(q_s=shift) for shift in _SHIFTS_S),
     *(Late(alpha_s=shift) for shift in _SHIFTS_S),

@@ -27,10 +27,12 @@ CONFUSED_AT = 0.95
 """Cosine of two marks from which on one effect passes for the other."""
 _WORTH_TELLING = 0.8
 _MOST_CONFUSIONS = 3
+"""Cosine from which on a likeness is listed, and how many are."""
 _DETECTED_AT = 5.0
 """Standard deviations a size must have to be found in nearly every flight, not only in half of them."""
 _GROWTH = 3.0
 _CLOSE = 0.02
+"""A size that does not show is tried so many times larger, until two in a row are as close as this."""
 _CURVES = {
     "M_alpha2": ("M_alpha", "alpha"),
     "Z_alpha2": ("Z_alpha", "alpha"),

@@ -33,6 +33,7 @@ CLIMB_RATE_STD_M_S = 0.1
 _ANGLES = np.geomspace(1e-5, 0.5, 200)
 """Gust angles that are tried, rad; a filter assumes one of them."""
 _SPEED_STEP = 0.01
+"""Relative change of speed by which its mark is taken."""
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from advisor.gap.simulator.simulate import DISTURB_AIR, DISTURB_FORCE, DISTURB_I
 
 KNOTS_S = 0.1
 MEMORY_S = 0.6
+"""Distance of a disturbance's knots, and the memory it has: quicker and slower ones are combinations."""
 SENSOR_CHANNELS = {
     "alpha_sensor": "alpha",
     "pitch_rate_sensor": "q",

@@ -24,6 +24,7 @@ from advisor.oem.innovations import CHANNELS, AirModel
 from advisor.oem.turbulence import Rows, cost_of, find_turbulence
 
 _LEAST_SAMPLES = 50
+"""Of a channel in quiet stretches, from which on they tell its noise."""
 _LEAST_QUIET_S = 4.0
 """Over all manoeuvres; less tells nothing of slow air."""
 _LONE = 8.0

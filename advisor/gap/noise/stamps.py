@@ -19,6 +19,7 @@ _LEAST = {"q": 0.3, "a_z": 0.45}
 its noise, that error counts. The accelerometer is rough at every step of the command, stamps or not."""
 _THIRD = np.array([1.0, -3.0, 3.0, -1.0])
 _BINS = 12
+"""Of the channel's rate, over which roughness is followed."""
 _MEDIAN = 0.455
 """Of the square of a standard normal number."""
 _FAR = 2.0

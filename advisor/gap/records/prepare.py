@@ -20,6 +20,7 @@ from advisor.gap.simulator.simulate import SPEED, THRUST
 from advisor.gravity import GRAVITY_M_S2
 
 STEP_S = 0.005
+"""Grid of the simulation: a hundredth of the fastest short period, as fine as stamps are known."""
 LEAST_SAMPLES = 15
 """Of a channel in a manoeuvre: what a derived α of 8 Hz brings in the shortest."""
 _LEAST_RENEWED = 30

@@ -18,6 +18,7 @@ _WITH_THE_AIR = 30.0
 _PLAINLY, _PLAIN_SIGMAS = 15.0, 5.0
 """... unless nothing else was named, it changes ten times the least, and a number is as far from nothing."""
 LEAST_SIGMA = 3.0
+"""Standard deviations by which a number of it must differ from nothing."""
 _CERTAIN = 30.0
 """Log likelihood from which on there is no doubt that something like the effect is there."""
 _PLAIN_GAIN, _PLAIN_CHANGE = 100.0, 10.0

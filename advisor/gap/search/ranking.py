@@ -18,6 +18,7 @@ _PROMISE = 0.7
 """Share of the least that the screening must promise before a full fit is spent on a candidate."""
 _ITERATIONS = 8
 _TO_THE_END = 25
+"""Of a full fit of a candidate, and of the one that comes out first."""
 _FITS = 5
 """Candidates that get a full fit after the screening."""
 _RIVAL = 0.3
@@ -26,6 +27,7 @@ _GROSS = 300.0
 """Log likelihood promised by the best from which on the right model is far from where the screening looks."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
+"""Full fits then, and the share of the best promise that earns one."""
 _TELLS = 3.0
 """Log probability beforehand by which one effect must be likelier than another to be believed for that."""
 

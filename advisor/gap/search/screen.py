@@ -13,6 +13,7 @@ from advisor.gap.fitting.neighbourhood import Neighbourhood, Place
 from advisor.gap.fitting.problem import Point, Problem
 
 _STEPS = 4
+"""Gauss-Newton steps of a quick fit."""
 _AT_ONCE = 16
 """Points that are flown together: enough to fill the packs, few enough for the cache."""
 _HARDLY = 6.0

@@ -15,6 +15,7 @@ from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
 
 MOST_EFFECTS = 3
+"""More names in one flight are hardly ever right."""
 _NEAR = 0.5
 """Share of the best candidate's gain from which on another one is a rival."""
 _CERTAIN = 100.0

@@ -23,6 +23,7 @@ _FEW = 0.1
 """Power in a usual manoeuvre over that in the loudest."""
 _SLOWEST_HZ = 0.1
 _POINTS = 512
+"""Slower lines are drifts; points of the spectrum, padded."""
 
 
 def is_of_the_air(flights: Sequence[Flight], courses: Sequence[FloatArray]) -> bool:

@@ -26,6 +26,7 @@ _TELLING = 0.1
 _RIDGE = 0.1
 _GRID_S = 0.02
 _LAGS_S = (0.0, 0.1, 0.2, 0.4)
+"""Of the regression of a course on what the stick or the motion did, its grid, and how long before."""
 _WIDTHS = (0.15, 0.3, 0.6)
 """Of play and stiction, as shares of the stick's largest deflection."""
 

@@ -16,6 +16,7 @@ from advisor.gravity import GRAVITY_M_S2
 
 _NEEDED = ("a_z", "alpha", "theta")
 _LEAST_MANEUVERS = 3
+"""A scatter needs as many."""
 _LEVEL_RAD = 0.26
 """Bank beyond which the pitch angle's rate is no measure of the pitch rate."""
 _ENDS_S = 0.3

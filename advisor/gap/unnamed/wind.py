@@ -17,9 +17,11 @@ from advisor.gap.records.airspeed import integrated, speed_rate
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
+"""Of the air speed in a manoeuvre, beyond the parabola's three."""
 _LEAST_PER_S = 0.1
 """Change of the wind, m/s per metre, from which on it is felt: a knot in five metres."""
 _LEAST_MANEUVERS = 4
+"""That must agree on a gradient."""
 _CHANCE = 1e-3
 """Of a gradient that large by the scatter between so many manoeuvres (Student's t) ..."""
 _PLAIN_CHANCE = 5e-3
