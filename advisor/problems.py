@@ -1,5 +1,6 @@
 """What goes wrong and how to mend it: the two errors a user may meet."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -25,12 +26,21 @@ class Problem:
 class UnusableInputError(Exception):
     """The input cannot serve this purpose (exit code 3)."""
 
-    def __init__(self, code: str, text: str, fix: str = "") -> None:
+    def __init__(self, code: str, text: str, fix: str = "", further: Sequence[Problem] = ()) -> None:
         self.problem = Problem(code, text, fix)
-        super().__init__(str(self.problem))
+        self.problems = (self.problem, *further)
+        """All that is wrong with it."""
+        super().__init__("\n".join(map(str, self.problems)))
 
-    def __reduce__(self) -> tuple[type["UnusableInputError"], tuple[str, str, str]]:
-        return type(self), (self.problem.code, self.problem.text, self.problem.fix)
+    @classmethod
+    def of(cls, problems: Sequence[Problem]) -> "UnusableInputError":
+        """The error that lists all of these, at least one."""
+        first, *further = problems
+        return cls(first.code, first.text, first.fix, further)
+
+    def __reduce__(self) -> tuple[type["UnusableInputError"], tuple[str, str, str, tuple[Problem, ...]]]:
+        first, *further = self.problems
+        return type(self), (first.code, first.text, first.fix, tuple(further))
 
 
 class ConfigurationError(Exception):

@@ -23,9 +23,9 @@ PROCESSES = 2
 def answer(case: Path) -> tuple[str, dict[str, Any], float]:
     """Return the case's name, the document of ``advisor gap --json`` (empty without one), CPU seconds."""
     from advisor.commands.options import read_aircraft
+    from advisor.diagnosis import diagnose_logs
     from advisor.gap.document import gap_document
     from advisor.problems import UnusableInputError
-    from advisor.report.gap import diagnose_logs
 
     began = time.process_time()
     try:
@@ -47,7 +47,7 @@ def main() -> None:
         answered = {json.loads(line)["case"] for line in answers.read_text(encoding="utf-8").splitlines()}
     cases = sorted(path for path in folder.iterdir() if path.is_dir() and path.name not in answered)
     # Imported before the fork, so that every process finds it ready.
-    import advisor.report.gap  # noqa: F401
+    import advisor.diagnosis  # noqa: F401
 
     forked = multiprocessing.get_context("fork")
     with answers.open("a", encoding="utf-8") as out, forked.Pool(PROCESSES, maxtasksperchild=1) as pool:

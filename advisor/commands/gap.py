@@ -82,8 +82,9 @@ def command(
             raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
     elif not os.access(Path(), os.W_OK):
         raise ConfigurationError("This folder cannot be written to: name a file in another with --out.")
+    from advisor.diagnosis import diagnose_logs
     from advisor.gap.document import gap_document
-    from advisor.report.gap import diagnose_logs, improved_name, write_improved
+    from advisor.report.improved import improved_name, write_improved
 
     watched = sys.stderr.isatty()
     try:
@@ -92,8 +93,8 @@ def command(
         )
     except UnusableInputError as error:
         if as_json:
-            click.echo(json.dumps(gap_document(None, [error.problem]), indent=1))
-        click.echo(str(error.problem), err=True)
+            click.echo(json.dumps(gap_document(None, error.problems), indent=1))
+        click.echo(str(error), err=True)
         return UNUSABLE
     finally:
         if watched:

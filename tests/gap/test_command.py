@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.diagnosis import maneuvers_of
 from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
-from advisor.report.gap import maneuvers_of
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario

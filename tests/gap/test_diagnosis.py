@@ -13,7 +13,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.document import gap_document
 from advisor.gap.foresight.plan import foresee_plan
 from advisor.problems import ConfigurationError, UnusableInputError
-from advisor.report.gap import improved_file, write_improved
+from advisor.report.improved import improved_file, write_improved
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0), strict=True))

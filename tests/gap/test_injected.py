@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft, Elevator
+from advisor.diagnosis import maneuvers_of
 from advisor.gap.diagnose import diagnose
-from advisor.report.gap import maneuvers_of
 
 LOG = Path(__file__).parents[2] / "logs" / "arduplane-calm.tlog"
 SERVO = Elevator(calibration=((1000.0, 25.0), (1500.0, 0.0), (2000.0, -25.0)), lag_s=0.14)

@@ -3,8 +3,8 @@
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.diagnosis import diagnose_logs
 from advisor.gap.diagnose import diagnose
-from advisor.report.gap import diagnose_logs
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.diagnosis import maneuvers_of
 from advisor.gap.diagnose import diagnose
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
-from advisor.report.gap import maneuvers_of
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from advisor import cli
+from advisor import diagnosis as reading
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
-from advisor.report import gap
 from tests.flights import TWO, recorded
 from tests.gap.generator import Setup, fly
 from tests.gap.test_report_screen import diagnosis
@@ -84,7 +84,7 @@ def test_where_there_is_nothing_to_improve_it_says_that_no_file_was_written(
     capsys, monkeypatch, tmp_path, verdict
 ):
     found: Diagnosis = diagnosis(verdict=verdict)
-    monkeypatch.setattr(gap, "diagnose_logs", lambda *_: found)
+    monkeypatch.setattr(reading, "diagnose_logs", lambda *_: found)
     out: Path = tmp_path / "better.yaml"
     code, error = said(capsys, monkeypatch, "flight.tlog", "--out", out)
     assert code == 0
@@ -99,18 +99,18 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
         judged.extend(maneuvers)
         return diagnosis(notes=("The command was held.",))
 
-    monkeypatch.setattr(gap, "diagnose", noted)
+    monkeypatch.setattr(reading, "diagnose", noted)
     log = recorded("uav", 1.0, maneuvers=TWO)
-    once = gap.maneuvers_of([log], Aircraft())
-    found = gap.diagnose_logs([log, log], Aircraft())
+    once = reading.maneuvers_of([log], Aircraft())
+    found = reading.diagnose_logs([log, log], Aircraft())
     assert [m.number for m in judged] == [m.number for m in once]
     assert found.notes[0].startswith(f"{len(once)} of {2 * len(once)} manoeuvres came twice")
 
 
 def test_two_flights_of_the_same_plan_both_count():
     flights = [recorded("uav", 1.0, seed, TWO) for seed in (11, 12)]
-    once = gap.maneuvers_of(flights[:1], Aircraft())
-    assert len(gap.maneuvers_of(flights, Aircraft())) == 2 * len(once)
+    once = reading.maneuvers_of(flights[:1], Aircraft())
+    assert len(reading.maneuvers_of(flights, Aircraft())) == 2 * len(once)
 
 
 def test_more_manoeuvres_to_keep_out_than_there_are_and_an_unusual_elevator_are_noted():

@@ -1,0 +1,81 @@
+"""From logs to a diagnosis: every manoeuvre once, then ``advisor.gap``."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.events import ManeuverFlown
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.stream import FlightStream
+from advisor.gap.diagnose import diagnose
+from advisor.gap.result import Diagnosis
+from advisor.mavlink.logs import open_log
+from advisor.problems import Problem, UnusableInputError
+
+
+def maneuvers_of(
+    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None
+) -> list[Maneuver]:
+    """Every manoeuvre of all logs once, numbered through.
+
+    Raises
+    ------
+    UnusableInputError
+        A log cannot be read or cannot serve.
+    """
+    return _each_once(_recorded(logs, aircraft, target_system))
+
+
+def _recorded(logs: Sequence[Path], aircraft: Aircraft, target_system: int | None) -> list[Maneuver]:
+    """What the logs hold, log by log."""
+    found: list[Maneuver] = []
+    for log in logs:
+        stream = FlightStream(aircraft, target_system)
+        events = [event for columns in open_log(log) for event in stream.feed(columns)]
+        events += stream.finish()
+        found_wrong = [Problem(p.code, f"{log.name}: {p.text}", p.fix) for p in stream.problems()]
+        if found_wrong:
+            raise UnusableInputError.of(found_wrong)
+        found += [e.maneuver for e in events if isinstance(e, ManeuverFlown)]
+    return found
+
+
+def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
+    """Without what comes again, as from a copy of a log: it would confirm itself."""
+    found: list[Maneuver] = []
+    for maneuver in recorded:
+        if not any(_is_the_same(maneuver, other) for other in found):
+            found.append(replace(maneuver, number=len(found) + 1))
+    return found
+
+
+def _is_the_same(a: Maneuver, b: Maneuver) -> bool:
+    """Whether two records are of one manoeuvre: every channel at the same stamps, to the last digit."""
+    return a.channels.keys() == b.channels.keys() and all(
+        np.array_equal(channel.t, b.channels[name].t) and np.array_equal(channel.y, b.channels[name].y)
+        for name, channel in a.channels.items()
+    )
+
+
+def diagnose_logs(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    holdout: int | None = None,
+    target_system: int | None = None,
+    progress: Callable[[str, float], None] = lambda *_: None,
+) -> Diagnosis:
+    """Read logs and diagnose their gap."""
+    progress("reading", 0.0)
+    recorded = _recorded(logs, aircraft, target_system)
+    maneuvers = _each_once(recorded)
+    found = diagnose(maneuvers, aircraft, holdout, progress)
+    again = len(recorded) - len(maneuvers)
+    if not again:
+        return found
+    note = (
+        f"{again} of {len(recorded)} manoeuvres came twice, as from the same log or a copy: they count once."
+    )
+    return replace(found, notes=(note, *found.notes))

@@ -1,0 +1,66 @@
+"""The improved simulator as a file: the aircraft file with what the flight showed."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from advisor.aircraft import Aircraft
+from advisor.gap.candidates.known import together
+from advisor.gap.result import Diagnosis
+
+
+def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
+    """The aircraft file with the fitted model and the effects found in it."""
+    content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
+    kept = replace(aircraft, name=Aircraft().name, model={}, effects={})
+    content.update(_beyond(asdict(kept), asdict(Aircraft())))
+    if diagnosis.reference_airspeed_m_s is not None:
+        content["reference_airspeed_m_s"] = round(diagnosis.reference_airspeed_m_s, 4)
+    content["model"] = {name: _digits(v.value) for name, v in diagnosis.model.items()}
+    content["effects"] = {
+        effect: {name: _digits(value) for name, value in values.items()}
+        for effect, values in together(aircraft.effects, diagnosis.effects).items()
+    }
+    return content
+
+
+def _beyond(content: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
+    """What a file must say because it is not what is taken without it, section by section."""
+    found = {}
+    for key, value in content.items():
+        if isinstance(value, Mapping) and (inside := _beyond(value, usual.get(key, {}))):
+            found[key] = inside
+        elif not isinstance(value, Mapping) and value != usual.get(key):
+            found[key] = value
+    return found
+
+
+def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path:
+    """Write the improved simulator as a file that ``advisor`` and ``python -m sim`` load."""
+    text = yaml.safe_dump(_plain(improved_file(diagnosis, aircraft)), sort_keys=False, allow_unicode=True)
+    head = "# Written by `advisor gap`: the simulator with what the flight showed.\n"
+    path.write_text(head + text, encoding="utf-8")
+    return path
+
+
+def improved_name(diagnosis: Diagnosis, aircraft_file: Path | None) -> str:
+    """``<aircraft>-with-<effect>.yaml``."""
+    stem = aircraft_file.stem if aircraft_file is not None else "aircraft"
+    first = next(iter(diagnosis.effects), "fitted-model")
+    return f"{stem}-with-{first.replace('_', '-')}.yaml"
+
+
+def _digits(x: float) -> float:
+    return float(f"{x:.6g}")
+
+
+def _plain(value: Any) -> Any:
+    """Tuples as lists, so that the file reads as people write it."""
+    if isinstance(value, Mapping):
+        return {k: _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return value
