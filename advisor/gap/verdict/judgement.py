@@ -14,6 +14,24 @@ from advisor.gap.search.speed import airspeed_cause, speed_is_a_cause
 from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
 
+_ALONE = 0.95
+"""Probability of what no fit judges (the air, an offset, the speed) where nothing else was found ..."""
+_FIRST, _OTHERS = 0.9, 0.05
+"""... of the first of several of them, and of all the others together ..."""
+_KEPT, _BESIDE = 0.96, 0.03
+"""... and beside what a fit has named: what that keeps of its own, and what they get. All these were held
+against how often such answers were right on development flights (calibration, ``docs/gap-results.md``)."""
+_REFUTED, _RIVAL = 0.05, 0.2
+"""What an alternative keeps of its probability beside an answer that makes it needless, and beside a mere
+companion of what was named."""
+_BEHIND = 0.08
+"""The same of everything behind an offset that makes the larger part of the gap."""
+_HALF = 0.5
+"""The same of what was named where something without a name is there besides."""
+_AIR_DOUBT = 0.25
+"""Relative error of the air's strength: its course is known to low order only."""
+_AIR_DOUBT_S = 0.1
+"""Of a gust's time: the distance between two knots of its course."""
 _PLAIN = 0.5
 """Gap of the file's own derivatives beside fitted ones from which on it takes less to call them wrong."""
 
@@ -58,7 +76,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     )
     if unknown:
         causes = tuple(
-            replace(c, probability=0.5 * c.probability) for c in causes if not c.present or not named
+            replace(c, probability=_HALF * c.probability) for c in causes if not c.present or not named
         )
     causes = _merge(causes, apart)
     if bias is not None and not unknown and not problem.flights.alpha_is_derived:
@@ -74,7 +92,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     elif any(c.present for c in causes):
         verdict = "effect"
     if verdict in ("none", "parameters"):
-        causes = tuple(replace(c, probability=0.05 * c.probability) for c in causes)
+        causes = tuple(replace(c, probability=_REFUTED * c.probability) for c in causes)
     before = e.file_model if e.file_model is not None else first
     if e.constant_speed is not None and speed in apart:
         before = e.constant_speed
@@ -94,14 +112,15 @@ def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ..
     present, other = [c for c in causes if c.present], [c for c in causes if not c.present]
     if extra and not present:
         # The first is the larger one; where there is only one, it has no rival.
-        shares = [0.95] if len(extra) == 1 else [0.9, *[0.05 / (len(extra) - 1)] * (len(extra) - 1)]
-        other = [replace(c, probability=0.05 * c.probability) for c in other]
+        rest = len(extra) - 1
+        shares = [_ALONE] if not rest else [_FIRST, *[_OTHERS / rest] * rest]
+        other = [replace(c, probability=_REFUTED * c.probability) for c in other]
         named = (replace(c, probability=p) for c, p in zip(extra, shares, strict=True))
         return (*named, *other)[:5]
     if extra:
-        present = [replace(c, probability=0.96 * c.probability) for c in present]
-        extra = [replace(c, probability=0.03 / len(extra)) for c in extra]
-        other = [replace(c, probability=0.2 * c.probability) for c in other]
+        present = [replace(c, probability=_KEPT * c.probability) for c in present]
+        extra = [replace(c, probability=_BESIDE / len(extra)) for c in extra]
+        other = [replace(c, probability=_RIVAL * c.probability) for c in other]
     return (*present, *extra, *other)[:5]
 
 
@@ -110,8 +129,8 @@ def _bias_first(causes: tuple[Cause, ...], larger: bool) -> tuple[Cause, ...]:
     if not larger:
         return causes
     bias = next(c for c in causes if c.effect == "alpha_bias")
-    rest = tuple(replace(c, probability=0.08 * c.probability) for c in causes if c is not bias)
-    return (replace(bias, probability=0.9), *rest)
+    rest = tuple(replace(c, probability=_BEHIND * c.probability) for c in causes if c is not bias)
+    return (replace(bias, probability=_FIRST), *rest)
 
 
 def _air_cause(e: Evidence) -> Cause | None:
@@ -120,9 +139,12 @@ def _air_cause(e: Evidence) -> Cause | None:
     reference = e.problem.flights.reference_m_s
     gust = e.air.gust
     peak, spread = e.air.gust_angle * reference, e.air.angle_std * reference
-    parameters = {"sigma_w_m_s": Value(spread, 0.25 * spread)}
+    parameters = {"sigma_w_m_s": Value(spread, _AIR_DOUBT * spread)}
     if gust:
-        parameters = {"amplitude_m_s": Value(peak, 0.25 * abs(peak)), "at_s": Value(e.air.gust_at_s, 0.1)}
+        parameters = {
+            "amplitude_m_s": Value(peak, _AIR_DOUBT * abs(peak)),
+            "at_s": Value(e.air.gust_at_s, _AIR_DOUBT_S),
+        }
     return Cause(
         "gust" if gust else "turbulence", "air", 0.9, parameters, ("turbulence" if gust else "gust",),
         "fly more manoeuvres: a gust does not come back, turbulence does", 0.0, True,
