@@ -104,7 +104,7 @@ def _numbers(d: Diagnosis) -> Text:
             f"kept out of the fit: {_counted(d.shrink.holdout)}"
         )
         if d.shrink.beyond_air_percent is not None:
-            lines.append(f"of what is not the air's motion {d.shrink.beyond_air_percent:.0f} % less")
+            lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
     return Text("\n".join(lines))
 
 

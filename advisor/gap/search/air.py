@@ -66,13 +66,14 @@ class Air:
     def may_be(self, effect: Judged) -> bool:
         """Whether an effect is no more than the shape of the air, which is known to low order only.
 
-        What brings the derivatives back to the aircraft file's is more.
+        What brings the derivatives back to the aircraft file's is more, and beside turbulence what is plain.
         """
         if effect.belief >= LEAST_BELIEF:
             return False
         if self.gust:
             return effect.gain < _OF_GUST * self.gain
-        return effect.gain < _OF_AIR * self.gain and effect.removed < _OF_POWER * self.power
+        little = effect.gain < _OF_AIR * self.gain and effect.removed < _OF_POWER * self.power
+        return little and not effect.is_plain
 
 
 def moving_air(problem: Problem, fitted: Fitted) -> Air | None:

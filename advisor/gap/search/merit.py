@@ -89,11 +89,20 @@ class Judged:
         """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
         confirmed = LEAST_GAIN if self.witness is None else _UNCONFIRMED
         if self.with_the_air:
-            plain = self.alone and self.removed >= _PLAIN_CHANGE * self.least and self.sigmas > _PLAIN_SIGMAS
-            return max(confirmed, _PLAINLY) if plain else _WITH_THE_AIR
+            return max(confirmed, _PLAINLY) if self.alone and self.changes_plainly else _WITH_THE_AIR
         if self.witness is not None:
             return confirmed
         return 0.0 if self.variant.twin is not None and self.belief >= LEAST_BELIEF else LEAST_GAIN
+
+    @property
+    def changes_plainly(self) -> bool:
+        """Ten times the least change, by a number that is far from nothing."""
+        return self.removed >= _PLAIN_CHANGE * self.least and self.sigmas > _PLAIN_SIGMAS
+
+    @property
+    def is_plain(self) -> bool:
+        """More than the shape of moving air, which is known to low order only, feigns."""
+        return self.gain >= _PLAINLY and self.changes_plainly
 
     @property
     def at_its_bounds(self) -> bool:
