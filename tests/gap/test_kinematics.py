@@ -180,3 +180,15 @@ def test_a_late_vane_is_late_by_as_much_in_air_that_moves():
     found = checked(gust_std=0.3, skew={"alpha": 0.06}, seed=3)
     assert found.finding == "late"
     assert abs(found.lag_s - 0.06) < 3.0 * found.lag_std_s
+
+
+def test_a_wind_that_changes_in_a_layer_only_is_told_by_the_manoeuvres_flown_in_it():
+    heights = (150.0, 40.0, 152.0, 60.0, 148.0, 30.0, 155.0, 50.0, 145.0)
+    flown = fly(Setup(seed=9, heights_m=heights))
+    layered = [blown(m, 0.2) if h > 100.0 else m for m, h in zip(flown, heights, strict=True)]
+    assert wind_shear(flown) is None
+    found = wind_shear(layered)
+    assert abs(found.gradient_per_s - 0.2) < 0.05
+    # Winds of every second manoeuvre in height make no layer.
+    low_to_high = [m for _, m in sorted(zip(heights, flown, strict=True), key=lambda pair: pair[0])]
+    assert wind_shear([blown(m, 0.2) if k % 2 else m for k, m in enumerate(low_to_high)]) is None

@@ -51,10 +51,30 @@ class Shear:
 
 
 def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
-    """The gradient of the wind when it is there; None when the air speed follows from the accelerations."""
-    pairs = [p for p in (_apart(m) for m in maneuvers) if p is not None]
+    """The gradient of the wind when it is there; None when the air speed follows from the accelerations.
+
+    Wind may change in a layer only: then manoeuvres that follow one another in height agree on it.
+    """
+    apart = [(_height_of(m), p) for m, p in ((m, _apart(m)) for m in maneuvers) if p is not None]
+    pairs = [p for _, p in sorted(apart, key=lambda found: found[0])]
     if len(pairs) < _LEAST_MANEUVERS:
         return None
+    everywhere = _gradient(pairs)
+    chance = _PLAIN_CHANCE if everywhere.is_plain else _CHANCE
+    if everywhere.share >= _LEAST_SHARE and _agreed(everywhere, len(pairs), chance):
+        return everywhere
+    if any(np.isnan(height) for height, _ in apart):
+        return None
+    sizes = range(_LEAST_MANEUVERS, len(pairs))
+    layers = [pairs[i : i + size] for size in sizes for i in range(len(pairs) - size + 1)]
+    # With so many layers to choose from, one must be as much less likely by chance, and plain.
+    found = [(_gradient(layer), len(layer)) for layer in layers]
+    there = [s for s, n in found if s.is_plain and _agreed(s, n, _CHANCE / len(layers))]
+    return max(there, key=lambda s: abs(s.gradient_per_s) / s.std, default=None)
+
+
+def _gradient(pairs: Sequence[tuple[FloatArray, FloatArray]]) -> Shear:
+    """The gradient over some manoeuvres."""
     products = np.array([float(height @ speed) for height, speed in pairs])
     squares = np.array([float(height @ height) for height, _ in pairs])
     gradient = float(np.sum(products) / np.sum(squares))
@@ -62,12 +82,18 @@ def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     n = len(pairs)
     std = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
     power = sum(float(speed @ speed) for _, speed in pairs)
-    share = gradient * float(np.sum(products)) / max(power, 1e-300)
-    found = Shear(gradient, std, share)
-    sigmas = float(stdtrit(n - 1, 1.0 - (_PLAIN_CHANCE if found.is_plain else _CHANCE)))
-    if abs(gradient) < max(_LEAST_PER_S, sigmas * std) or share < _LEAST_SHARE:
-        return None
-    return found
+    return Shear(gradient, std, gradient * float(np.sum(products)) / max(power, 1e-300))
+
+
+def _agreed(found: Shear, n: int, chance: float) -> bool:
+    """Whether ``n`` manoeuvres agree on it, and it is felt."""
+    return abs(found.gradient_per_s) >= max(_LEAST_PER_S, float(stdtrit(n - 1, 1.0 - chance)) * found.std)
+
+
+def _height_of(maneuver: Maneuver) -> float:
+    """Mean height, m; NaN without one."""
+    height = maneuver.channels.get("height")
+    return float("nan") if height is None or not len(height) else float(np.mean(height.y))
 
 
 def _apart(maneuver: Maneuver) -> tuple[FloatArray, FloatArray] | None:
