@@ -63,8 +63,9 @@ def answer(
     waterfall = waterfall_of(stages, floor, judged.apart, judged.speed, gap.before)
     present = {c.effect for c in causes if c.present}
     effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
-    diagnosis = Diagnosis(
-        verdict=verdict, sentence="", gap=gap, where=where, causes=causes, shrink=shrink, waterfall=waterfall,
+    return Diagnosis(
+        verdict=verdict, sentence=sentence_of(verdict, gap, where, causes, shrink), gap=gap, where=where,
+        causes=causes, shrink=shrink, waterfall=waterfall,
         cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), floor, present),
         kinematics=kinematics, model=model_of(problem, fitted, known),
         reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
@@ -73,7 +74,6 @@ def answer(
         notes=notes_of(e, aircraft, holdout, effects.keys() - present),
         maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
-    return replace(diagnosis, sentence=sentence_of(diagnosis))
 
 
 def _speed_is_known(problem: Problem, aircraft: Aircraft) -> bool:

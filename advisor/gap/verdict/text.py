@@ -1,8 +1,9 @@
 """The diagnosis in a sentence, as a pilot hears it."""
 
 import math
+from collections.abc import Sequence
 
-from advisor.gap.result import VISIBLE, Cause, Diagnosis, spelled
+from advisor.gap.result import VISIBLE, Cause, Gap, Shrink, Verdict, Where, spelled
 
 _WHAT = {
     "transport_delay": "The simulator answers {delay_s_ms:.0f} ms too early: "
@@ -78,32 +79,34 @@ def place(block: str) -> str:
     return _BLOCK[block]
 
 
-def sentence_of(d: Diagnosis) -> str:
+def sentence_of(
+    verdict: Verdict, gap: Gap, where: Where, causes: Sequence[Cause], shrink: Shrink | None
+) -> str:
     """One sentence for the crew."""
-    if d.verdict == "none":
-        if d.gap.before < VISIBLE:
+    if verdict == "none":
+        if gap.before < VISIBLE:
             left = "nothing is left above the noise"
-        elif d.gap.after < 0.5 * d.gap.before:
-            percent = 100.0 * (1.0 - d.gap.after / d.gap.before)
+        elif gap.after < 0.5 * gap.before:
+            percent = 100.0 * (1.0 - gap.after / gap.before)
             left = f"its numbers are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
         else:
             left = "too little for a name is left above the noise"
         return f"The simulator flies like the aircraft: {left}."
-    removed = f"{max(d.shrink.percent, 0.0):.0f} % of the gap" if d.shrink is not None else "the gap"
-    if d.verdict == "parameters":
+    removed = f"{max(shrink.percent, 0.0):.0f} % of the gap" if shrink is not None else "the gap"
+    if verdict == "parameters":
         return f"The simulator has the right structure and wrong numbers: the fitted eight remove {removed}."
-    if d.verdict == "unknown":
-        tried = next((c for c in d.causes if c.probability > 0.02), None)
+    if verdict == "unknown":
+        tried = next((c for c in causes if c.probability > 0.02), None)
         near = f"; nearest, but not enough: {spelled(tried.effect)}" if tried is not None else ""
-        return f"Something {place(d.where.block)} that no known effect explains{near}."
-    present = [c for c in d.causes if c.present]
+        return f"Something {place(where.block)} that no known effect explains{near}."
+    present = [c for c in causes if c.present]
     also = ""
     if len(present) > 1:
         also = "; also " + ", ".join(spelled(c.effect) for c in present[1:])
     if present[0].block == "air" and len(present) == 1:
         return f"{what(present[0])}: that is the air, not the simulator."
-    if d.shrink is not None and d.shrink.beyond_air_percent is not None:
-        removed = f"{d.shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
-    if present[0].effect == "alpha_lag" and d.shrink is not None and round(d.shrink.percent) <= 0:
+    if shrink is not None and shrink.beyond_air_percent is not None:
+        removed = f"{shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
+    if present[0].effect == "alpha_lag" and shrink is not None and round(shrink.percent) <= 0:
         return f"{what(present[0])}: the motion itself shows it{also}."
     return f"{what(present[0])}; adding it removes {removed}{also}."
