@@ -12,7 +12,7 @@ from sim import hangar
 from sim.atmosphere import DrydenTurbulence
 from sim.autopilot import Autopilot, Demand, Pilot, Planned, plan
 from sim.fittings import Fittings, complete
-from sim.loading import ScenarioError
+from sim.loading import DepartureError
 from sim.motion import Controls, Motion
 from sim.scenario import Maneuver, Noise, Scenario
 from sim.sensors import NOISY, ChannelNoise, Reading, ideal
@@ -103,7 +103,7 @@ class Flight:
 
         Raises
         ------
-        ScenarioError
+        DepartureError
             The aircraft departs from all flight: its model is unstable.
         """
         dt, period = self.scenario.step_s, self._steps * self.scenario.step_s
@@ -143,7 +143,7 @@ class Flight:
                 if self._fittings.skews and step < self._steps:
                     past.append((now + step * dt, copy(reading)))
             if not abs(motion.q) < _DEPARTED_RAD_S:
-                raise ScenarioError(
+                raise DepartureError(
                     [f"the motion grows without bound {now:.1f} s after the start: the aircraft is unstable"]
                 )
             pulse, demand = next_pulse, following

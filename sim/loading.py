@@ -16,6 +16,10 @@ class ScenarioError(ValueError):
         self.problems = list(problems)
 
 
+class DepartureError(ScenarioError):
+    """The aircraft departs from all flight: its motion grows without bound."""
+
+
 def load(kind: type[T], data: Mapping[str, Any]) -> T:
     """Build a ``kind`` from a mapping.
 

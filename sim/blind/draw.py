@@ -11,6 +11,7 @@ from sim.blind.visibility import structural_gap
 from sim.effects.fitting import KINDS, flight_of, without_effects
 from sim.flight import Sample, noise_sigma
 from sim.linear import ShortPeriod
+from sim.loading import DepartureError
 from sim.scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
 from sim.trim import TrimError
 
@@ -216,7 +217,10 @@ def _gap(
     if name in OFFSETS:
         channel, size = ("alpha", "bias_rad") if name == "alpha_bias" else ("q", "bias_rad_s")
         return (scenario.effects[name][size] / sigma[channel]) ** 2
-    changed = list(flight_of(scenario).samples())
+    try:
+        changed = list(flight_of(scenario).samples())
+    except DepartureError:
+        return 0.0
     motions = np.array([(s.motion.airspeed, s.motion.height, s.motion.alpha) for s in changed])
     if not np.isfinite(motions).all() or motions[:, 1].min() < 0.0 or np.abs(motions[:, 2]).max() > 0.35:
         return 0.0
