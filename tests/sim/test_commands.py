@@ -83,3 +83,17 @@ def test_sealed_cases_are_made_committed_and_revealed(tmp_path, sim):
     assert code == 0
     assert "false alarms without an effect" in table
     assert key_beside(folder).exists()
+
+
+@pytest.mark.parametrize(
+    ("m_alpha", "said"), [(400.0, "grows without bound"), (float("nan"), "must be a number")]
+)
+def test_an_aircraft_that_cannot_fly_is_refused_in_a_sentence(sim, tmp_path, m_alpha, said):
+    path = tmp_path / "aircraft.yaml"
+    model = dict.fromkeys(("Z_0", "Z_q", "Z_delta_e", "M_0"), 0.0)
+    model |= {"Z_alpha": -1.0, "M_alpha": m_alpha, "M_q": -1.5, "M_delta_e": -7.2}
+    path.write_text(yaml.safe_dump({"model": model, "airspeed_m_s": 22.0}))
+    code, _, error = sim("record", "--aircraft", path, "--out", tmp_path / "flight.tlog")
+    assert code == 2
+    assert said in error
+    assert error.count("\n") == 1
