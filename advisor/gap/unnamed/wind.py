@@ -70,7 +70,7 @@ def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     # With so many layers to choose from, one must be as much less likely by chance, and plain.
     found = [(_gradient(layer), len(layer)) for layer in layers]
     there = [s for s, n in found if s.is_plain and _agreed(s, n, _CHANCE / len(layers))]
-    return max(there, key=lambda s: abs(s.gradient_per_s) / s.std, default=None)
+    return max(there, key=lambda s: abs(s.gradient_per_s) / max(s.std, 1e-12), default=None)
 
 
 def _gradient(pairs: Sequence[tuple[FloatArray, FloatArray]]) -> Shear:
