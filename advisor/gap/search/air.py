@@ -37,6 +37,9 @@ _OF_AIR = 0.02
 """Share of the log likelihood that moving air brings which an effect must bring beside it ..."""
 _OF_POWER = 0.1
 """... or else the share of its power that the effect must change."""
+_LATE, _OF_AIR_LATE = "accelerometer_skew", 0.05
+"""The first of these shares for accelerometers that seem late, plain or not: gusts meet a vane before they
+meet the wing, and its lift takes time, which no model here knows."""
 _OF_GUST = 0.05
 """The same beside a gust: in its manoeuvre a bump of any shape passes for anything."""
 
@@ -72,8 +75,10 @@ class Air:
             return False
         if self.gust:
             return effect.gain < _OF_GUST * self.gain
-        little = effect.gain < _OF_AIR * self.gain and effect.removed < _OF_POWER * self.power
-        return little and not effect.is_plain
+        late = effect.effect == _LATE
+        of_air = _OF_AIR_LATE if late else _OF_AIR
+        little = effect.gain < of_air * self.gain and effect.removed < _OF_POWER * self.power
+        return little and (late or not effect.is_plain)
 
 
 def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
