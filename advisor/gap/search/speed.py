@@ -35,7 +35,8 @@ _PLAIN_WORK = 0.03
 _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
 _GUSTS = 4.0
-"""... and both exceed this many times the air's own motion, which an air speed indicator reads, too."""
+"""... and both, or energy and what the accelerations show, exceed this many times the air's own motion: an air
+speed indicator reads that, too."""
 
 
 def at_constant_speed(problem: Problem, fitted: Fitted) -> HeldOut | None:
@@ -83,7 +84,8 @@ def speed_is_a_cause(
     felt = work(problem.flights)
     worked = energy > least and (felt is None or felt > min(least, _PLAIN_WORK))
     plain = energy > _WORK or (felt is not None and air is None)
-    felt_more = min(speed, energy) > _GUSTS * gusts
+    # An air speed indicator reads gusts; accelerometers along the path do not.
+    felt_more = min(max(speed, felt or 0.0), energy) > _GUSTS * gusts
     return worked and plain and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE
 
 
