@@ -35,8 +35,8 @@ _PLAIN_WORK = 0.03
 _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
 _GUSTS = 4.0
-"""... and both, or energy and what the accelerations show, exceed this many times the air's own motion: an air
-speed indicator reads that, too."""
+"""... and both, or energy and what the accelerations show, exceed this many times the air's own motion: an
+air speed indicator reads that, too."""
 
 
 def at_constant_speed(problem: Problem, fitted: Fitted) -> HeldOut | None:
