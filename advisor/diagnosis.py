@@ -18,15 +18,17 @@ from advisor.problems import Problem, UnusableInputError
 
 def maneuvers_of(
     logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None
-) -> list[Maneuver]:
-    """Every manoeuvre of all logs once, numbered through.
+) -> tuple[list[Maneuver], int]:
+    """Every manoeuvre of all logs once, numbered through, and how many came again.
 
     Raises
     ------
     UnusableInputError
         A log cannot be read or cannot serve.
     """
-    return _each_once(_recorded(logs, aircraft, target_system))
+    recorded = _recorded(logs, aircraft, target_system)
+    maneuvers = _each_once(recorded)
+    return maneuvers, len(recorded) - len(maneuvers)
 
 
 def _recorded(logs: Sequence[Path], aircraft: Aircraft, target_system: int | None) -> list[Maneuver]:
@@ -69,13 +71,10 @@ def diagnose_logs(
 ) -> Diagnosis:
     """Read logs and diagnose their gap."""
     progress("reading", 0.0)
-    recorded = _recorded(logs, aircraft, target_system)
-    maneuvers = _each_once(recorded)
+    maneuvers, again = maneuvers_of(logs, aircraft, target_system)
     found = diagnose(maneuvers, aircraft, holdout, progress)
-    again = len(recorded) - len(maneuvers)
     if not again:
         return found
-    note = (
-        f"{again} of {len(recorded)} manoeuvres came twice, as from the same log or a copy: they count once."
-    )
+    every = len(maneuvers) + again
+    note = f"{again} of {every} manoeuvres came twice, as from the same log or a copy: they count once."
     return replace(found, notes=(note, *found.notes))

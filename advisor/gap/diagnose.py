@@ -14,10 +14,7 @@ from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.merit import OFFSET_SIGMAS
 from advisor.gap.search.waterfall import Progress
-from advisor.gap.unnamed.leftover import (
-    Leftover,
-    of_the_wind,
-)
+from advisor.gap.unnamed.leftover import Leftover, of_the_wind
 from advisor.gap.unnamed.weight import weight_carried
 from advisor.gap.unnamed.wind import wind_shear
 from advisor.gap.verdict.answer import answer

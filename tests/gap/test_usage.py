@@ -101,7 +101,7 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
 
     monkeypatch.setattr(reading, "diagnose", noted)
     log = recorded("uav", 1.0, maneuvers=TWO)
-    once = reading.maneuvers_of([log], Aircraft())
+    once = reading.maneuvers_of([log], Aircraft())[0]
     found = reading.diagnose_logs([log, log], Aircraft())
     assert [m.number for m in judged] == [m.number for m in once]
     assert found.notes[0].startswith(f"{len(once)} of {2 * len(once)} manoeuvres came twice")
@@ -109,8 +109,8 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
 
 def test_two_flights_of_the_same_plan_both_count():
     flights = [recorded("uav", 1.0, seed, TWO) for seed in (11, 12)]
-    once = reading.maneuvers_of(flights[:1], Aircraft())
-    assert len(reading.maneuvers_of(flights, Aircraft())) == 2 * len(once)
+    once = reading.maneuvers_of(flights[:1], Aircraft())[0]
+    assert len(reading.maneuvers_of(flights, Aircraft())[0]) == 2 * len(once)
 
 
 def test_more_manoeuvres_to_keep_out_than_there_are_and_an_unusual_elevator_are_noted():

@@ -45,10 +45,9 @@ class _Kept:
 
     measured: FloatArray
     weights: FloatArray
-    r: FloatArray
-    """Shape (rows,): what the fit left, own numbers not refitted."""
     still: FloatArray
-    """Shape (rows, 7): sensitivities to the derivatives, and ``r``: what is known without a flight."""
+    """Shape (rows, 7): sensitivities to the derivatives, and what the fit left, own numbers not refitted:
+    what is known without a flight."""
     A: FloatArray
     """Own columns, shape (rows, m) ..."""
     J: FloatArray
@@ -102,7 +101,7 @@ class Neighbourhood:
             self.information += J.T @ J - AJ.T @ solved(chol, AJ)
             r = block.left * w
             still = np.column_stack([J[:, : len(DERIVATIVES)], r])
-            self.kept.append(_Kept(problem.measured(flight), w, r, still, A, J, chol, AJ))
+            self.kept.append(_Kept(problem.measured(flight), w, still, A, J, chol, AJ))
 
     def at_all(self, points: Sequence[Point]) -> list[Place | None]:
         """Fly to every point, the manoeuvres' own numbers refitted; None where a simulation fails."""
