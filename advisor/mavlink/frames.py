@@ -138,13 +138,14 @@ class FrameScanner:
             kind, source = divmod(int(sender[first]), _SOURCES)
             definition = self._definitions[kind]
             payloads = np.zeros((len(group), definition.layout.itemsize), dtype=np.uint8)
-            kernel.copy_payloads(stream, group[:, kernel.START], payloads)
+            starts = np.ascontiguousarray(group[:, kernel.START])
+            kernel.copy_payloads(stream, starts, payloads)
             columns.append(
                 Columns(
                     name=definition.name,
                     system=source >> 8,
                     component=source & 0xFF,
-                    order=group[:, kernel.START] + self._offset,
+                    order=starts + self._offset,
                     arrival_s=group[:, kernel.STAMP].astype(np.float64) * 1e-6,
                     fields=_fields(definition, payloads),
                 )

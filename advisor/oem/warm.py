@@ -6,21 +6,39 @@ loads it in a fraction of a second.
 
 import numpy as np
 
-from advisor.oem.problem import Problem, Record, Signal
-from advisor.oem.solution import solve
+from advisor.aircraft import Aircraft
+from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.record import Channel
+from advisor.oem.estimator import estimate_jointly
+from advisor.oem.filter_error import filter_error_estimate
 
 
 def warm() -> None:
-    """Run every compiled function on a small problem of the kind that flights bring."""
+    """Estimate a small flight in all the ways there are: alone, with others, with moving air allowed for."""
+    maneuver = _flown()
+    filter_error_estimate([maneuver], Aircraft())
+    estimate_jointly([maneuver, maneuver], Aircraft())
+
+
+def _flown() -> Maneuver:
+    """Four channels of a doublet: no particular aircraft, but one with an estimate."""
+    rng = np.random.default_rng(1)
     t = np.arange(0.0, 6.0, 0.05)
     u = np.where((t > 1.0) & (t < 2.0), 0.03, 0.0) - np.where((t > 2.0) & (t < 3.0), 0.03, 0.0)
-    rng = np.random.default_rng(1)
-    outputs = {
-        name: Signal(t, np.sin(2.0 * t + phase) * 0.05 + 0.01 * rng.standard_normal(len(t)))
-        for name, phase in (("alpha", 0.0), ("q", 1.5), ("a_z", 0.3), ("theta", 0.6))
+    alpha, q, theta = np.zeros((3, len(t)))
+    normal = -2.0 * alpha
+    for i, h in enumerate(np.diff(t)):
+        normal[i] = -2.0 * alpha[i] - 0.2 * u[i]
+        alpha[i + 1] = alpha[i] + h * (normal[i] + q[i])
+        q[i + 1] = q[i] + h * (-10.0 * alpha[i + 1] - 3.0 * q[i] - 12.0 * u[i])
+        theta[i + 1] = theta[i] + h * q[i + 1]
+    flown = {"alpha": alpha, "q": q, "theta": theta, "a_z": 20.0 * normal, "airspeed": np.full(len(t), 20.0)}
+    channels = {
+        name: Channel(name, t, y + 0.01 * np.max(np.abs(y)) * rng.standard_normal(len(t)))
+        for name, y in flown.items()
     }
-    speed = Signal(t, np.full(len(t), 20.0))
-    solve(Problem((Record(Signal(t, u), outputs, airspeed=speed),)))
+    span = Span(0.0, 1.0, 3.0, 6.0, "doublet", ((1.0, 0.03), (2.0, -0.03), (3.0, 0.0)), "end of log")
+    return Maneuver(1, 0, span, {"elevator": Channel("elevator", t, u), **channels})
 
 
 if __name__ == "__main__":
