@@ -15,11 +15,16 @@ from advisor.gap.result import Diagnosis
 from advisor.mavlink.logs import open_log
 from advisor.problems import Problem, UnusableInputError
 
+_PAUSE_S = 60.0
+"""Between the last manoeuvre of one log and the first of the next, which no clock has measured."""
+
 
 def maneuvers_of(
     logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None
 ) -> tuple[list[Maneuver], int]:
-    """Every manoeuvre of all logs once, numbered through, and how many came again.
+    """Every manoeuvre of all logs once, numbered through and on one clock, and how many came again.
+
+    The clock begins as the first log's, and runs on where another log or the vehicle begins anew.
 
     Raises
     ------
@@ -27,7 +32,7 @@ def maneuvers_of(
         A log cannot be read or cannot serve.
     """
     recorded = _recorded(logs, aircraft, target_system)
-    maneuvers = _each_once(recorded)
+    maneuvers = _on_one_clock(_each_once(recorded))
     return maneuvers, len(recorded) - len(maneuvers)
 
 
@@ -60,6 +65,20 @@ def _is_the_same(a: Maneuver, b: Maneuver) -> bool:
         np.array_equal(channel.t, b.channels[name].t) and np.array_equal(channel.y, b.channels[name].y)
         for name, channel in a.channels.items()
     )
+
+
+def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
+    """The same with times that go on where those of the vehicle go back.
+
+    What drifts or steps from one manoeuvre to the next does so in the order of flying.
+    """
+    found: list[Maneuver] = []
+    ahead = 0.0
+    for maneuver in maneuvers:
+        if found and maneuver.span.record_from_s + ahead < found[-1].span.end_s:
+            ahead = found[-1].span.end_s + _PAUSE_S - maneuver.span.record_from_s
+        found.append(maneuver.later(ahead) if ahead else maneuver)
+    return found
 
 
 def diagnose_logs(

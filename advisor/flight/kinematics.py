@@ -71,7 +71,7 @@ def check_alpha(
     Parameters
     ----------
     maneuver
-        With channels ``alpha``, ``q``, ``theta``, ``a_z``, and ``airspeed`` unless given; ``a_x``
+        With channels ``alpha``, ``q``, ``theta``, ``a_z``, and ``airspeed`` unless one is given; ``a_x``
         and ``climb_rate`` are used when present.
     airspeed_m_s
         Speed to use when the log has none.
@@ -81,7 +81,7 @@ def check_alpha(
     """
     found = maneuver.channels
     missing = [name for name in NEEDED if name not in found or len(found[name]) < 20]
-    if airspeed_m_s is None and ("airspeed" not in found or len(found["airspeed"]) < 2):
+    if _speed_at(np.zeros(1), maneuver, airspeed_m_s) is None:
         missing.append("airspeed")
     if missing:
         listed = ", ".join(missing)
@@ -97,7 +97,8 @@ def check_alpha(
     def at(name: str) -> FloatArray:
         return np.interp(t, found[name].t, found[name].y)
 
-    speed = at("airspeed") if airspeed_m_s is None else np.full(len(t), airspeed_m_s)
+    speed = _speed_at(t, maneuver, airspeed_m_s)
+    assert speed is not None
     if np.min(speed) < 1.0 or len(t_alpha) < 12:
         return KinematicCheck("not possible", "alpha cannot be checked against the motion: no usable speed.")
     q, theta, a_z = found["q"].y, at("theta"), at("a_z")
@@ -115,6 +116,14 @@ def check_alpha(
     rebuilt = np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
     commanded = _followers(t, at("elevator")) if "elevator" in found else None
     return _compare(t, rebuilt, rate, commanded, t_alpha, alpha, _bias(maneuver, airspeed_m_s))
+
+
+def _speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> FloatArray | None:
+    """Shape (n,): the logged air speed, else the one given; None without either."""
+    logged = maneuver.channels.get("airspeed")
+    if logged is not None and len(logged) > 1:
+        return np.interp(t, logged.t, logged.y)
+    return None if otherwise is None else np.full(len(t), otherwise)
 
 
 def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
@@ -139,7 +148,9 @@ def _bias(maneuver: Maneuver, airspeed_m_s: float | None) -> tuple[float, float]
     def at(name: str) -> FloatArray:
         return np.interp(climb.t, found[name].t, found[name].y)
 
-    speed = np.maximum(at("airspeed"), 1.0) if airspeed_m_s is None else airspeed_m_s
+    speed = _speed_at(climb.t, maneuver, airspeed_m_s)
+    assert speed is not None
+    speed = np.maximum(speed, 1.0)
     apart = at("alpha") - (at("theta") - np.arcsin(np.clip(climb.y / speed, -0.9, 0.9)))
     # The climb rate is slow and smoothed: count one independent reading a second.
     independent = max(2.0, climb.t[-1] - climb.t[0])

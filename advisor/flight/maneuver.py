@@ -1,7 +1,7 @@
 """A manoeuvre: the stretch of flight that one estimate is made from."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from advisor.flight.record import Channel
@@ -39,3 +39,16 @@ class Maneuver:
     channels: Mapping[str, Channel]
     mode: str = ""
     """Flight mode in which it was flown, as the autopilot names or numbers it."""
+
+    def later(self, by_s: float) -> "Maneuver":
+        """The same on a clock that shows ``by_s`` more."""
+        span = replace(
+            self.span,
+            record_from_s=self.span.record_from_s + by_s,
+            start_s=self.span.start_s + by_s,
+            last_step_s=self.span.last_step_s + by_s,
+            end_s=self.span.end_s + by_s,
+            steps=tuple((onset + by_s, level) for onset, level in self.span.steps),
+        )
+        channels = {name: replace(c, t=c.t + by_s) for name, c in self.channels.items()}
+        return replace(self, span=span, channels=channels)

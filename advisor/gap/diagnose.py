@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import SMALLEST_BIAS_RAD, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
@@ -21,6 +23,9 @@ from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
 from advisor.problems import UnusableInputError
+
+_SLOWEST_M_S = 1.0
+"""Air speed at which nothing flies."""
 
 
 def diagnose(
@@ -49,6 +54,7 @@ def diagnose(
         Too few manoeuvres, or no angle of attack.
     """
     progress("checking the angle of attack against the motion", 0.0)
+    maneuvers = [_without_dead_pitot(m) for m in maneuvers]
     aircraft = _with_speed(maneuvers, aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = [_without_offset(m, offset) for m in maneuvers]
@@ -57,7 +63,8 @@ def diagnose(
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
     numbers = {flight.number for flight in flights.flights}
     flown = [m for m in maneuvers if m.number in numbers]
-    kinematics = combine([check_alpha(m, aircraft.airspeed_m_s, *arms) for m in flown])
+    speed = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
+    kinematics = combine([check_alpha(m, speed, *arms) for m in flown])
     progress("fitting the simulator's model", 0.1)
     if abs(kinematics.bias_rad) > max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * kinematics.bias_std_rad):
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
@@ -84,6 +91,14 @@ def _refuse(flights: Flights) -> None:
             "No angle of attack in the log.",
             "Log AOA_SSA, or set alpha.source in the aircraft file.",
         )
+
+
+def _without_dead_pitot(maneuver: Maneuver) -> Maneuver:
+    """The manoeuvre without an air speed that stands still in flight: no tube fitted, or a plug left in."""
+    speed = maneuver.channels.get("airspeed")
+    if speed is None or (len(speed) > 1 and float(np.min(speed.y)) > _SLOWEST_M_S):
+        return maneuver
+    return replace(maneuver, channels={k: c for k, c in maneuver.channels.items() if k != "airspeed"})
 
 
 def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:

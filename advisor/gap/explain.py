@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known
@@ -17,15 +17,14 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
-from advisor.gap.records.floor import prefiltered, stated_floor
+from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.search.air import Air, moving_air
 from advisor.gap.search.command import is_likelier_held, may_be_held, read_as_held
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.waterfall import Progress, Stage, as_measured, build_up, reduced_to
-from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.unnamed.laws import unnamed_law
 from advisor.gap.unnamed.leftover import Leftover, is_the_gust, left_over, other_than_air, swinging
-from advisor.gap.unnamed.remainder import is_of_no_use, remainder
+from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, remainder
 from advisor.gap.unnamed.wander import wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
 
@@ -50,11 +49,11 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     progress("looking at the air", 0.7)
     stages, air = _beside_the_air(problem, stages)
     progress("looking for what has no name", 0.8)
-    stated = _stated(problem)
-    leftover = law or _without_a_name(problem, stages, air, stated)
+    tolerance = tolerance_of(problem.flights)
     stages = as_measured(problem, stages)
-    file_model = _file_model(problem, stages[0].fitted, aircraft)
-    floor = _floor(problem, stages[-1], stated)
+    floor = _floor(problem, stages[-1], tolerance)
+    leftover = law or _without_a_name(problem, stages, air, tolerance, floor)
+    file_model = _file_model(problem, stages[0].fitted)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, floor)
         if leftover is None and is_of_no_use(problem, stages, file_model, floor):
@@ -62,10 +61,10 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         elif leftover is None and len(stages) == 1:
             leftover = wandering_sensor(problem, stages[-1].fitted)
     if leftover is not None and leftover.in_quiet is not None:
-        least = np.maximum(stated_floor(problem.flights), stated)
+        least = np.maximum(stated_floor(problem.flights), tolerance)
         floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
     speed = at_constant_speed(problem, stages[-1].fitted)
-    return Evidence(problem, stages, leftover, air, floor, file_model, speed, stated)
+    return Evidence(problem, stages, leftover, air, floor, file_model, speed)
 
 
 def _named(
@@ -100,41 +99,34 @@ def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage],
 
 
 def _without_a_name(
-    problem: Problem, stages: list[Stage], air: Air | None, stated: FloatArray
+    problem: Problem, stages: list[Stage], air: Air | None, tolerance: FloatArray, floor: FloatArray
 ) -> Leftover | None:
     """What the last model leaves that is neither noise nor the air."""
     first, last = stages[0].fitted, stages[-1].fitted
     # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
-    swing = swinging(problem, first, last, stated)
+    swing = swinging(problem, first, last, tolerance)
     if swing is not None:
         return swing
-    leftover = left_over(problem, first, last, stated, moving_air=air is not None)
+    leftover = left_over(problem, first, last, tolerance, moving_air=air is not None)
     if air is None:
-        return leftover
+        return None if leftover is not None and is_all_named(stages, floor) else leftover
     if air.gust and leftover is not None and is_the_gust(problem, last, leftover):
         return None
     return other_than_air(problem, first, last) if leftover is None or leftover.block == "air" else leftover
 
 
-def _stated(problem: Problem) -> FloatArray:
-    """Shape (channels,): tolerance of channels that were filtered before they were recorded, else 0."""
-    smooth = prefiltered(problem.flights)
-    white = stated_floor(problem.flights)
-    return np.array([white[k] if smooth[c] else 0.0 for k, c in enumerate(problem.channels)])
-
-
-def _floor(problem: Problem, last: Stage, stated: FloatArray) -> FloatArray:
+def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:
     """Shape (channels,): noise as it is where nothing was flown."""
     # Stamps that jitter are the instruments', too, but show only where something moves.
     measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
-    return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), stated)
+    return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)
 
 
-def _file_model(problem: Problem, baseline: Fitted, aircraft: Aircraft) -> HeldOut | None:
+def _file_model(problem: Problem, baseline: Fitted) -> HeldOut | None:
     """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
-    if any(name not in aircraft.model for name in PARAMETERS):
+    if problem.believed is None:
         return None
-    point = replace(baseline.point, derivatives=np.array([aircraft.model[name] for name in DERIVATIVES]))
+    point = replace(baseline.point, derivatives=problem.believed)
     lefts: list[FloatArray] = []
     for _ in range(3):
         linear = linearise(problem, point)

@@ -84,7 +84,8 @@ class Shrink:
     ci95_percent: tuple[float, float]
     beyond_air_percent: float | None = None
     """Of what each next sample surprises by beyond the noise, with a filter that knows how the air moves:
-    what causes other than the air remove, on manoeuvres kept out. None in still air, or without another."""
+    what causes other than the air remove, on manoeuvres kept out. Without such a cause: what fitted numbers
+    remove of the gap, the air's share left in it. None in still air."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import together, with_known
+from advisor.gap.candidates.known import beyond_known, together, with_known
 from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
@@ -70,3 +70,39 @@ def test_what_is_found_beyond_one_number_leaves_the_files_others_as_they_are():
         {"thrust_moment": {"M_throttle": 1.0, "lag_s": 0.5}}, {"thrust_moment": {"M_throttle": 0.2}}
     )
     assert both["thrust_moment"] == pytest.approx({"M_throttle": 1.2, "lag_s": 0.5})
+
+
+def test_of_a_late_channel_only_what_the_file_lacks_is_found():
+    flown = fly(Setup(maneuvers=6, skew={"alpha": 0.08}, seed=23))
+    found = diagnose(flown, Aircraft(effects={"alpha_skew": {"skew_s": 0.05}}))
+    assert found.causes[0].effect == "alpha_skew"
+    assert found.causes[0].parameters["skew_s"].value == pytest.approx(0.03, abs=0.004)
+
+
+def test_the_damping_of_a_servo_is_said_anew_and_its_lag_added():
+    known = {"actuator_lag": {"lag_s": 0.05, "damping": 0.7}}
+    both = together(known, {"actuator_lag": {"lag_s": 0.03, "damping": 0.7}})
+    assert both["actuator_lag"] == pytest.approx({"lag_s": 0.08, "damping": 0.7})
+
+
+def test_the_propellers_share_counts_from_nothing_and_leaves_what_the_throttle_does():
+    known = {"thrust_moment": {"M_throttle": 2.0, "M_thrust": 1.0}}
+    both = together(known, {"thrust_moment": {"M_thrust": 1.5, "washed_share": 0.1, "blown_share": 0.0}})
+    assert both["thrust_moment"] == {
+        "M_throttle": 2.0, "M_thrust": 1.5, "washed_share": 0.1, "blown_share": 0.0,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("known", [{"lag_s": 0.1}, {"lag_s": 0.1, "damping": 0.7}])
+def test_a_servo_is_searched_for_as_the_file_describes_it(late, known):
+    left = beyond_known({"actuator_lag": known}, variants_for(prepare(late, Aircraft())))
+    servos = [v for v in left if v.effect == "actuator_lag"]
+    assert [dict(v.fixed) for v in servos] == [{k: x for k, x in known.items() if k == "damping"}]
+    assert servos[0].bounds[0][0] == -0.1
+
+
+def test_too_much_of_an_effect_in_the_file_is_said_so():
+    slow = fly(Setup(maneuvers=6, switches={"lag": 0.05}, seed=21))
+    found = diagnose(slow, Aircraft(effects={"actuator_lag": {"lag_s": 0.1}}))
+    assert found.causes[0].parameters["lag_s"].value == pytest.approx(-0.05, abs=0.01)
+    assert "too slow: its servo lags by 5" in found.sentence

@@ -11,7 +11,7 @@ from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.waterfall import Stage
-from advisor.gap.unnamed.remainder import is_of_no_use, remainder
+from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, remainder
 from tests.gap.generator import Setup, fly
 
 
@@ -45,6 +45,13 @@ def test_an_effect_that_leaves_most_of_the_gap_is_not_the_cause_but_something_un
 
 def test_the_right_effect_leaves_nothing_to_ask_about(gyro):
     assert left_beside(gyro, "pitch_rate_scale") is None
+
+
+def test_names_have_explained_all_there_is_where_they_leave_nothing_above_the_noise(gyro):
+    stages, floor = named_beside(gyro, "pitch_rate_scale")
+    assert is_all_named(stages, floor)
+    assert not is_all_named(stages[:1], np.sqrt(stages[0].held_out.mean_square))
+    assert not is_all_named(*named_beside(gyro, "actuator_lag"))
 
 
 def test_where_nothing_was_named_there_is_nothing_to_doubt(gyro):

@@ -16,6 +16,7 @@ from advisor.gap.search.air import Air
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.ranking import evened
 from advisor.gap.search.score import addition, predict_alike
+from advisor.gap.search.ties import tied_with
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 
@@ -38,6 +39,23 @@ def test_stamps_that_jitter_hide_a_time_unless_it_is_plain(late):
     assert not replace(hidden, gain=50.0, removed=20.0 * judged.least).large_enough
     assert not replace(hidden, gain=200.0, removed=2.0 * judged.least).large_enough
     assert not replace(hidden, gain=200.0, removed=20.0 * judged.least, value=np.array([0.006])).large_enough
+
+
+def test_ice_takes_lift_and_what_leaves_the_lift_alone_is_none(late):
+    problem, _, judged = late
+    ice = next(v for v in variants_for(problem.flights) if v.effect == "icing")
+    iced = replace(
+        judged, variant=ice, smallest=2.0 * ice.smallest, value=np.array([-0.06, 0.0, -0.05, -0.05])
+    )
+    assert iced.large_enough
+    assert not replace(iced, value=np.array([0.02, 0.1, 0.3, -0.1])).large_enough
+
+
+def test_a_late_channel_may_be_a_filtered_one_and_how_to_tell_is_said(late):
+    _, _, judged = late
+    names, ways = tied_with(judged, [judged], ("alpha", "q", "a_z", "theta"))
+    assert names == ("a filter of that channel that delays as much",)
+    assert "before any filter" in ways
 
 
 def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain_and_alone(late):

@@ -16,7 +16,7 @@ from advisor.gap.search.merit import LEAST_GAIN
 from advisor.gap.search.ranking import judge
 from advisor.gap.search.screen import Screen
 from advisor.gap.search.speed import swings, work
-from advisor.gap.simulator.simulate import HEIGHT, SPEED, THRUST
+from advisor.gap.simulator.layout import HEIGHT, SPEED, THRUST
 from advisor.gravity import GRAVITY_M_S2
 from tests.gap.generator import UAV, Setup, fly
 
@@ -132,3 +132,29 @@ def test_without_an_air_speed_in_the_log_the_motion_shows_it():
     assert wrong.gap.after > 5.0 * shown.gap.after
     assert any("No air speed in the log" in note for note in shown.notes)
     assert [c.effect for c in shown.causes if c.present] == ["transport_delay"]
+
+
+def test_a_pitot_tube_that_reads_nothing_is_no_air_speed():
+    flown = fly(Setup(maneuvers=6, seed=8))
+    dead = [
+        replace(
+            m,
+            channels={
+                **m.channels,
+                "airspeed": replace(m.channels["airspeed"], y=0.0 * m.channels["airspeed"].y),
+            },
+        )
+        for m in flown
+    ]
+    none = [replace(m, channels={n: c for n, c in m.channels.items() if n != "airspeed"}) for m in flown]
+    found, without = diagnose(dead, Aircraft()), diagnose(none, Aircraft())
+    assert found.verdict == without.verdict == "none"
+    assert found.reference_airspeed_m_s == without.reference_airspeed_m_s
+    assert found.reference_airspeed_m_s == pytest.approx(22.0, rel=0.05)
+
+
+def test_the_files_air_speed_counts_only_where_the_log_has_none():
+    found = diagnose(fly(Setup(maneuvers=6, seed=8)), Aircraft(airspeed_m_s=27.0))
+    assert found.verdict == "none"
+    assert found.kinematics.finding == "consistent"
+    assert found.reference_airspeed_m_s == pytest.approx(22.0, rel=0.05)

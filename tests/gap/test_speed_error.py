@@ -11,8 +11,7 @@ from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.airspeed import speed_doubts
 from advisor.gap.records.prepare import prepare
-from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
-from advisor.gap.simulator.simulate import SPEED
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, SPEED
 from tests.gap.generator import UAV, Setup, fly
 
 

@@ -110,7 +110,12 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
 def test_two_flights_of_the_same_plan_both_count():
     flights = [recorded("uav", 1.0, seed, TWO) for seed in (11, 12)]
     once = reading.maneuvers_of(flights[:1], Aircraft())[0]
-    assert len(reading.maneuvers_of(flights, Aircraft())[0]) == 2 * len(once)
+    both = reading.maneuvers_of(flights, Aircraft())[0]
+    assert len(both) == 2 * len(once)
+    # A second log begins its clock anew; here it runs on, so that what drifts does so in order of flying.
+    starts = [m.span.start_s for m in both]
+    assert starts == sorted(starts)
+    assert both[-1].span.record_from_s <= both[-1].channels["q"].t[0] < both[-1].span.end_s
 
 
 def test_more_manoeuvres_to_keep_out_than_there_are_and_an_unusual_elevator_are_noted():

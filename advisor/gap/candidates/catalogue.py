@@ -1,8 +1,11 @@
 """All variants that these data allow, and what each effect is called and belongs to."""
 
+import numpy as np
+
 from advisor.gap.candidates import force, input, moment, sensors, timing
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.records.flights import SPEED_CHANGE, Flights
+from advisor.gap.simulator.layout import HEIGHT, THROTTLE
 
 BLOCK_OF = {
     "actuator_lag": "input", "actuator_rate_limit": "input", "actuator_backlash": "input",
@@ -22,6 +25,8 @@ BLOCK_OF = {
 _LEAST_S = 0.004
 _FILTERED_S = 0.02
 """Least delay of a sensor worth a name: of a sensor itself, and of a channel an autopilot has filtered."""
+_THROTTLE_MOVES, _HEIGHT_MOVES_M = 0.02, 0.2
+"""Change within a manoeuvre, of the throttle's range and in m, without which neither tells anything."""
 _CHANNEL_OF = {
     "alpha_lag": "alpha", "alpha_scale": "alpha", "alpha_vane_offset": "alpha", "alpha_skew": "alpha",
     "accelerometer_offset": "a_z", "accelerometer_skew": "a_z", "attitude_skew": "theta",
@@ -41,9 +46,9 @@ def _possible(v: Variant, flights: Flights) -> bool:
     if not v.needs <= flights.has or _CHANNEL_OF.get(v.effect, flights.channels[0]) not in flights.channels:
         return False
     if v.effect == "thrust_moment":
-        return any(float(f.slow[3].max() - f.slow[3].min()) > 0.02 for f in flights.flights)
+        return any(float(np.ptp(f.slow[THROTTLE])) > _THROTTLE_MOVES for f in flights.flights)
     if v.effect == "airspeed_variation":
         return flights.speed_moves >= SPEED_CHANGE
     if v.effect == "ground_effect":
-        return any(float(f.slow[4].max() - f.slow[4].min()) > 0.2 for f in flights.flights)
+        return any(float(np.ptp(f.slow[HEIGHT])) > _HEIGHT_MOVES_M for f in flights.flights)
     return True

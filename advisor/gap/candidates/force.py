@@ -6,8 +6,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import breaks, divide, ramps_and_steps
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
-from advisor.gap.simulator.layout import DERIVATIVES, INDEX
-from advisor.gap.simulator.simulate import HEIGHT
+from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, INDEX
 
 BLOCK = "force_equation"
 _DECAYS_M = (0.1, 50.0)
@@ -83,7 +82,7 @@ def _stall(flights: Flights) -> list[Variant]:
     """Flow that separates about some angle of attack (Kirchhoff's flow): a kink, which no parabola is."""
     if "alpha" not in flights.channels:
         return []
-    trim = float(np.median([f.trim[0] for f in flights.flights]))
+    trim = float(np.median([f.alpha_trim for f in flights.flights]))
     top = max(float(np.max(f.outputs["alpha"].y)) for f in flights.flights)
     return [
         Variant(

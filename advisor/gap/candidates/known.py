@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.candidates.moment import PROPELLER
+from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 
 Effects = Mapping[str, Mapping[str, float]]
@@ -38,10 +39,10 @@ def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]
     left = []
     for variant in variants:
         known = effects.get(variant.effect, {}) if variant.effect not in _OF_ITS_FLIGHT else {}
-        if not known:
+        if known.keys().isdisjoint(variant.names):
             left.append(variant)
-        elif len(variant.names) == 1 and not variant.inverted:
-            left.append(_or_less(variant, known.get(variant.names[0], 0.0)))
+        elif len(variant.names) == 1 and not variant.inverted and _is_meant(variant, known, variants):
+            left.append(_beyond(variant, known[variant.names[0]]))
     return left
 
 
@@ -51,20 +52,36 @@ def left_aside(effects: Effects) -> tuple[str, ...]:
 
 
 def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
-    """The file's effects and what was found beyond them."""
+    """The file's effects and what was found beyond them.
+
+    Beyond a known effect one number was searched for, its first: that adds. What else is said of it (the
+    damping of a servo) replaces, as does the propeller's share, which counts from nothing; the rest stays.
+    """
     both = {effect: dict(values) for effect, values in known.items()}
     for effect, values in found.items():
-        before = both.get(effect, {}) if effect not in _OF_ITS_FLIGHT and len(values) == 1 else {}
-        both[effect] = before | {name: value + before.get(name, 0.0) for name, value in values.items()}
+        before = both.get(effect, {}) if effect not in _OF_ITS_FLIGHT else {}
+        both[effect] = before | dict(values)
+        size = next(iter(values))
+        if size not in PROPELLER.names:
+            both[effect][size] += before.get(size, 0.0)
     return both
 
 
-def _or_less(variant: Variant, known: float) -> Variant:
-    """The candidate that may also take away what the file has of it, where it could not be negative."""
-    lowest, highest = variant.bounds[0]
-    if lowest < 0.0 or known <= 0.0:
-        return variant
-    return replace(variant, starts=(*variant.starts, (-0.5 * known,)), bounds=((-known, highest),))
+def _beyond(variant: Variant, known: float) -> Variant:
+    """The candidate counted from what the file has of it; it may take that away, where none is below zero."""
+    (lowest, highest), starts = variant.bounds[0], variant.starts
+    if known > 0.0 and lowest >= 0.0:
+        lowest, starts = -known, (*starts, (-0.5 * known,))
+    elif known < 0.0 and highest <= 0.0:
+        highest, starts = -known, (*starts, (-0.5 * known,))
+    beyond = replace(variant, starts=starts, bounds=((lowest, highest),))
+    if not variant.sets:
+        return beyond
+
+    def apply(p: FloatArray, values: Values, flights: Flights) -> None:
+        variant.apply(p, [known + values[0]], flights)
+
+    return replace(beyond, apply_with=apply)
 
 
 def _says(variant: Variant, parameters: Mapping[str, float]) -> bool:
@@ -72,6 +89,12 @@ def _says(variant: Variant, parameters: Mapping[str, float]) -> bool:
         return "frequency_hz" in parameters
     same = all(parameters.get(name) == value for name, value in variant.fixed.items())
     return same and all(name in parameters for name in variant.names)
+
+
+def _is_meant(variant: Variant, parameters: Mapping[str, float], variants: Sequence[Variant]) -> bool:
+    """Whether it says what the file has, and none of its effect says more of what is not searched for."""
+    same = [v for v in variants if v.effect == variant.effect and _says(v, parameters)]
+    return _says(variant, parameters) and all(len(v.fixed) <= len(variant.fixed) for v in same)
 
 
 def _values(variant: Variant, parameters: Mapping[str, float]) -> list[float]:

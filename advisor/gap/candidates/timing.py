@@ -63,13 +63,16 @@ def variants(flights: Flights, least_s: float) -> list[Variant]:
             ((-0.4, 0.4),),
             least_s,
             apply_with=partial(_whole_skew, SKEWS[OUTPUTS.index(channel)]),
+            sets=True,
         )
         for effect, channel in _STREAMS
     ]
     if _in_one_message(flights):
         skew = next(v for v in found if v.effect == "attitude_skew")
         least_s = max(least_s, _MESSAGE_S)
-        whole = replace(skew, fixed={"with_pitch_rate": 1.0}, apply_with=_whole_message, smallest=least_s)
+        whole = replace(
+            skew, fixed={"with_pitch_rate": 1.0}, apply_with=_whole_message, smallest=least_s, sets=False
+        )
         found.append(whole)
     return found
 

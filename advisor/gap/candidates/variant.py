@@ -49,6 +49,8 @@ class Variant:
     It is fitted with the aircraft file's derivatives trusted."""
     likewise: "Variant | None" = None
     """Another description by the same numbers, so near to this one that the full fit alone decides."""
+    sets: bool = False
+    """Its number is all there is of it, whatever the simulation had: not what is added."""
     inverted: bool = False
     """The aircraft file has the reciprocal of the first parameter (a rate limit, searched as slowness)."""
 

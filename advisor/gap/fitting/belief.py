@@ -81,13 +81,13 @@ def _distance(off: FloatArray, spread: FloatArray) -> float:
     return float(off @ np.linalg.solve(spread, off))
 
 
-def odds_of_arm(effect: str, arm_m: float, stated: frozenset[str], alpha_is_derived: bool) -> float:
+def odds_of_arm(effect: str, arm_m: float, in_file: frozenset[str], alpha_is_derived: bool) -> float:
     """Log odds beforehand between the two arms that are one and the same in the data; 0 for other effects.
 
-    ``stated`` are the effects whose arm the file states.
+    ``in_file`` are the effects whose arm the file states.
     """
     if effect not in _BACKWARD:
         return 0.0
-    only_one_stated = len(stated) == 1 and effect in stated
+    only_one_stated = len(in_file) == 1 and effect in in_file
     no_vane = effect == "alpha_vane_offset" and alpha_is_derived
     return (_BACKWARD[effect] if arm_m < 0.0 else 0.0) + (_STATED if only_one_stated or no_vane else 0.0)

@@ -16,7 +16,7 @@ from advisor.gap.fitting.linear import (
     Linear,
     linearise,
 )
-from advisor.gap.fitting.normal import factored, solved
+from advisor.gap.fitting.normal import factored, solved, solved_within
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
 from advisor.gap.simulator.layout import NUISANCES
 
@@ -60,7 +60,7 @@ class Step:
     """A Gauss-Newton step from where the model was made linear."""
 
     shared: FloatArray
-    """Shape (k,)."""
+    """Shape (k,), within the numbers' bounds."""
     free: list[FloatArray]
     """Per manoeuvre, shape (m,): own numbers' solution at the old shared numbers ..."""
     follow: list[FloatArray]
@@ -112,9 +112,8 @@ def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray
         g += inner[:k, k]
         free.append(eliminated[:, k])
         follow.append(eliminated[:, :k])
-    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-    step = np.linalg.lstsq(H / np.outer(scale, scale), g / scale, rcond=1e-12)[0] / scale
-    return Step(step, free, follow, H, g)
+    lower, upper = bounds_of(point)
+    return Step(solved_within(H, g, lower - point.shared, upper - point.shared), free, follow, H, g)
 
 
 def noise_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
@@ -163,16 +162,16 @@ def fit(
     point = start
     linear = linearise(problem, point)
     weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
-    lower, upper = bounds_of(point)
     kept = _settled(problem, point, linear, weights)
     length, done = 1.0, 1
     while done < iterations and length > _SHORTEST:
-        shared = np.clip(kept.point.shared + length * kept.step.shared, lower, upper)
-        change = shared - kept.point.shared
+        change = length * kept.step.shared
         if kept.step.promised(change) < tolerance:
             break
         owns = kept.step.owns(change)
-        point = kept.point.moved(shared, kept.point.own + np.array([o[: len(NUISANCES)] for o in owns]))
+        point = kept.point.moved(
+            kept.point.shared + change, kept.point.own + np.array([o[: len(NUISANCES)] for o in owns])
+        )
         here = _settled(problem, point, linearise(problem, point), kept.weights)
         done += 1
         if here.cost < kept.cost:

@@ -13,7 +13,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, bounds_of, factor, own_eliminated, rms_of
 from advisor.gap.fitting.linear import Linear
-from advisor.gap.fitting.normal import solved
+from advisor.gap.fitting.normal import solved, solved_within
 from advisor.gap.fitting.problem import Problem, row_weights
 from advisor.gap.simulator.layout import DERIVATIVES
 
@@ -64,16 +64,16 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     lefts: list[FloatArray] = [np.empty(0)] * n
     innovations: list[FloatArray] = [np.empty(0)] * n
     # Where a response has kinks, the search refuses what the linear model proposes: it is no part of the fit.
-    refused = solve_scaled(total_H, total_g)
+    least, most = lower - fitted.point.shared, upper - fitted.point.shared
+    refused = solved_within(total_H, total_g, least, most, _INDIFFERENT)
     for fold in chosen:
         step = np.zeros(len(total_g))
         if len(fold) < n:
             # What only the manoeuvres kept out could tell of an effect stays at "no effect".
             H = total_H - np.sum([blocks[i][0] for i in fold], axis=0) + np.diag(anchor)
             g = total_g - np.sum([blocks[i][1] for i in fold], axis=0) - anchor * fitted.point.shared
-            step = solve_scaled(H, g) - refused
-            shared = fitted.point.shared
-            step = np.clip(shared + step, lower, upper) - shared
+            step = solved_within(H, g, least, most, _INDIFFERENT) - refused
+            step = np.clip(step, least, most)
         for i in fold:
             own = own_after(problem, i, fitted.linear[i], weights, step)
             innovations[i] = fitted.linear[i].after(step, own)
@@ -115,12 +115,6 @@ def mean_squares(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
             for f, left in zip(problem.flights.flights, lefts, strict=True)
         ]
     )
-
-
-def solve_scaled(H: FloatArray, g: FloatArray) -> FloatArray:
-    """H⁻¹ g with H scaled to a unit diagonal; directions the data say nothing about stay put."""
-    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-    return np.asarray(np.linalg.lstsq(H / np.outer(scale, scale), g / scale, rcond=_INDIFFERENT)[0] / scale)
 
 
 def told_beside_others(H: FloatArray) -> FloatArray:

@@ -7,9 +7,8 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.flights import Flight
-from advisor.gap.simulator.layout import INDEX, NUISANCES, OUTPUTS
+from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUTS, SPEED
 from advisor.gap.simulator.reading import lane
-from advisor.gap.simulator.simulate import DISTURB_INPUT, SPEED
 
 _DERIVATIVE_STEP = 1e-3
 """Finite-difference step of a derivative, relative to its size: far above rounding, far below curvature."""

@@ -10,12 +10,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, above_floor, factor
+from advisor.gap.fitting.fit import Fitted, above_floor, bounds_of, factor
 from advisor.gap.fitting.linear import shared_steps, shifted_points
-from advisor.gap.fitting.normal import solved
+from advisor.gap.fitting.normal import solved, solved_within
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.reading import differences
+
+_INDIFFERENT = 1e-9
+"""Directions that the data say relatively less about stay put in a quick fit."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +35,11 @@ class Place:
     """... and shape (k,), half the decrease of the cost per unit of each."""
 
     def step(self) -> tuple[FloatArray, float]:
-        """Step of all shared numbers, and the decrease of the cost that it promises."""
-        scale = np.sqrt(np.maximum(np.diag(self.information), 1e-300))
-        normal = self.information / np.outer(scale, scale) + 1e-9 * np.eye(len(scale))
-        step = np.linalg.lstsq(normal, self.gradient / scale, rcond=1e-12)[0] / scale
-        return step, float(self.gradient @ step)
+        """Step of all shared numbers within their bounds, and the decrease of the cost that it promises."""
+        lower, upper = bounds_of(self.point)
+        shared, H, g = self.point.shared, self.information, self.gradient
+        step = solved_within(H, g, lower - shared, upper - shared, _INDIFFERENT)
+        return step, float(2.0 * g @ step - step @ H @ step)
 
 
 @dataclass(frozen=True)

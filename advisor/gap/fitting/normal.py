@@ -1,4 +1,4 @@
-"""Normal equations of one manoeuvre's own numbers: factored once, solved often, with little ado."""
+"""Normal equations: of a manoeuvre's own numbers, factored once; of the shared ones, within their bounds."""
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
@@ -23,3 +23,26 @@ def factored(normal: FloatArray) -> FloatArray:
 def solved(factor: FloatArray, right: FloatArray) -> FloatArray:
     """Solution for a right-hand side, shape (m,) or (m, k)."""
     return np.asarray(dpotrs(factor, right, lower=1)[0])
+
+
+def solved_within(
+    H: FloatArray, g: FloatArray, least: FloatArray, most: FloatArray, indifferent: float = 1e-12
+) -> FloatArray:
+    """The x of least ½ xᵀHx − gᵀx with ``least`` ≤ x ≤ ``most``, all of shape (k,).
+
+    What would leave its range stays at the end of it, and the others are solved for with that: to clip a
+    solution instead leads away from the optimum, where numbers trade against one another. H is scaled to a
+    unit diagonal; directions in which it is relatively below ``indifferent`` stay put.
+    """
+    x, free = np.zeros(len(g)), np.ones(len(g), dtype=bool)
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    normal = H / np.outer(scale, scale)
+    while np.any(free):
+        right = g[free] / scale[free] - normal[np.ix_(free, ~free)] @ (x * scale)[~free]
+        x[free] = np.linalg.lstsq(normal[np.ix_(free, free)], right, rcond=indifferent)[0] / scale[free]
+        outside = free & ((x < least) | (x > most))
+        if not np.any(outside):
+            break
+        x[outside] = np.clip(x, least, most)[outside]
+        free &= ~outside
+    return x

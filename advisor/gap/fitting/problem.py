@@ -81,7 +81,7 @@ class Problem:
     """Shape (channels,): noise of the innovations is never taken to be below this."""
     believed: FloatArray | None = None
     """Shape (6,): derivatives of the aircraft file, when it has all."""
-    stated: frozenset[str] = frozenset()
+    arms_in_file: frozenset[str] = frozenset()
     """Effects whose size the aircraft file states: arms of the vane and the accelerometer."""
     jitter_s: float = 0.0
     """Standard deviation of the stamps, the command's like all others."""

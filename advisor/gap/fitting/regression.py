@@ -68,7 +68,7 @@ def _system(f: Flight, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, 
     d = np.interp(t - late.surface_s, f.t_u, f.u) - f.u_trim
     a = np.zeros(len(t))
     if "alpha" in f.outputs:
-        a = np.interp(t + late.alpha_s, f.outputs["alpha"].t, f.outputs["alpha"].y) - f.trim[0]
+        a = np.interp(t + late.alpha_s, f.outputs["alpha"].t, f.outputs["alpha"].y) - f.alpha_trim
 
     def windowed(y: FloatArray) -> FloatArray:
         total = np.concatenate(([0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * _STEP_S)))

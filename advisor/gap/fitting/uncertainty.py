@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.belief import NARROW, is_off, log_belief, scale_of
+from advisor.gap.fitting.belief import is_off, log_belief, pull_of
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.records.floor import independent_samples
@@ -50,14 +50,16 @@ def covariance(
 ) -> FloatArray:
     """Shape (k, k): covariance of the shared numbers, widened for coloured residuals.
 
-    Where the file's derivatives are trusted, they count as measured within their tolerance: that is how
-    well an effect is known that trades against them.
+    What is expected beforehand is not. Where the file's derivatives are trusted, they count as measured
+    within their tolerance: that is how well an effect is known that trades against them.
     """
     widened = float(np.mean(counts(problem) / np.maximum(independent, 1.0)))
-    information = fitted.information / widened
+    expected = problem.pull(fitted.point)[0]
+    information = (fitted.information - np.diag(expected)) / widened + np.diag(expected)
     if trusted and problem.believed is not None:
         n = len(problem.believed)
-        information[:n, :n] += np.diag(1.0 / (NARROW * scale_of(problem.believed)) ** 2)
+        tolerance = pull_of(problem.believed, trusted=True)
+        information[:n, :n] += np.diag(np.maximum(tolerance - expected[:n], 0.0))
     scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
     normal = information / np.outer(scale, scale)
     return np.asarray(np.linalg.pinv(normal, rcond=1e-12, hermitian=True) / np.outer(scale, scale))

@@ -13,7 +13,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.records.flights import Flights
-from advisor.gap.simulator.layout import INDEX, short_period
+from advisor.gap.simulator.layout import INDEX, SPEED, short_period
 from advisor.oem.innovations import CHANNELS, AirModel, Gains, gains_of
 
 
@@ -76,7 +76,7 @@ def filters_for(
     gains, orders = [], []
     for i, flight in enumerate(flights.flights):
         t, channel, order = rows_in_time(flights, i)
-        system = np.array([*short_period(p[i]), float(np.mean(flight.slow[0]))])
+        system = np.array([*short_period(p[i]), float(np.mean(flight.slow[SPEED]))])
         arms = (float(p[i, INDEX["vane_arm_m"]]), float(p[i, INDEX["imu_arm_m"]]))
         # Every manoeuvre has initial states of its own in the fit: none are left to the filter.
         gains.append(gains_of(t, channel, system, airs[i], 0.0, extra[i][order], arms))

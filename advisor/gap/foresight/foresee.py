@@ -214,7 +214,7 @@ def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:
     reached = {
         "elevator": max(float(np.max(np.abs(f.u - f.u_trim))) for f in flights),
         "alpha": max(
-            float(np.max(np.abs(problem.fly(f, p[i])[0] - f.trim[0]))) for i, f in enumerate(flights)
+            float(np.max(np.abs(problem.fly(f, p[i])[0] - f.alpha_trim))) for i, f in enumerate(flights)
         ),
     }
     terms = {term: (abs(float(p[0, INDEX[linear]])), over) for term, (linear, over) in _CURVES.items()}

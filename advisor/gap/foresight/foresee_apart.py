@@ -26,7 +26,7 @@ from advisor.gap.records.flights import SPEED_CHANGE, Flight, Flights
 from advisor.gap.search.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
 from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.search.ties import breaking
-from advisor.gap.simulator.simulate import DISTURB_AIR
+from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
 
 CLIMB_RATE_STD_M_S = 0.1
 """Noise taken for a climb rate that nobody has measured yet; one independent reading a second."""
@@ -76,7 +76,7 @@ def speed_mark(problem: Problem, fitted: Fitted, marks: Marks) -> Mark:
     columns = []
     for i, flight in enumerate(problem.flights.flights):
         moved = _at_speed(flight, 1.0 + (_SPEED_STEP if i % 2 else -_SPEED_STEP))
-        constant = replace(moved, trim=np.array([*flight.trim[:3], 0.0]))
+        constant = moved.at_constant_speed()
         real, believed = (problem.read(f, problem.fly(f, p[i]), p[i]) for f in (moved, constant))
         columns.append((real - believed) / _SPEED_STEP)
     return Mark("airspeed_variation", "change", marks.of(columns), SPEED_CHANGE)
@@ -127,7 +127,7 @@ def _gust(problem: Problem, flight: Flight, p: FloatArray, length_s: float) -> F
 
 def _at_speed(flight: Flight, factor: float) -> Flight:
     slow = flight.slow.copy()
-    slow[0] = flight.trim[2] * factor
+    slow[SPEED] = flight.trim[REFERENCE] * factor
     return replace(flight, slow=slow)
 
 

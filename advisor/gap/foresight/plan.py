@@ -18,8 +18,7 @@ from advisor.gap.foresight.marks import Marks
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import LEAST_SAMPLES, prepare
 from advisor.gap.search.baseline import base_entries, believed_derivatives, everywhere
-from advisor.gap.simulator.layout import OUTPUTS
-from advisor.gravity import GRAVITY_M_S2
+from advisor.gap.simulator.layout import NUISANCES, OUTPUTS
 from advisor.problems import ConfigurationError
 
 STEPS = {
@@ -95,12 +94,8 @@ def foresee_flights(
         Time unit of the input; a gust is taken to last two of them.
     """
     problem = Problem(flights, base_entries(aircraft), believed=derivatives)
-    own = np.zeros((len(flights), 4))
-    # Lift carries the weight at each manoeuvre's own speed: g/V + (V/V_r) Z_trim = 0.
-    own[:, 2] = [
-        -GRAVITY_M_S2 * (f.trim[2] if f.trim[3] else f.slow[0, 0]) / f.slow[0, 0] ** 2
-        for f in flights.flights
-    ]
+    own = np.zeros((len(flights), len(NUISANCES)))
+    own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
     point = everywhere(Point(derivatives, own), flights)
     linear = linearise(problem, point)
     step = solve_blocks(problem, linear, 1.0 / noise, point)

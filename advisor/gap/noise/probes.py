@@ -17,8 +17,14 @@ from advisor.gap.fitting.linear import pulse_response
 from advisor.gap.fitting.normal import solved
 from advisor.gap.fitting.problem import Problem, row_weights
 from advisor.gap.records.flights import Flight
-from advisor.gap.simulator.layout import INDEX, OUTPUTS
-from advisor.gap.simulator.simulate import DISTURB_AIR, DISTURB_FORCE, DISTURB_INPUT, DISTURB_MOMENT
+from advisor.gap.simulator.layout import (
+    DISTURB_AIR,
+    DISTURB_FORCE,
+    DISTURB_INPUT,
+    DISTURB_MOMENT,
+    INDEX,
+    OUTPUTS,
+)
 
 KNOTS_S = 0.1
 MEMORY_S = 0.6

@@ -19,7 +19,7 @@ from advisor.gap.fitting.whitening import Weighting, Whitening, filters_for, row
 from advisor.gap.noise.probes import probe_blocks
 from advisor.gap.noise.stamps import stamp_variance
 from advisor.gap.records.floor import stated_floor
-from advisor.gap.simulator.layout import DERIVATIVES, short_period
+from advisor.gap.simulator.layout import DERIVATIVES, SPEED, short_period
 from advisor.oem.innovations import CHANNELS, AirModel
 from advisor.oem.turbulence import Rows, cost_of, find_turbulence
 
@@ -180,7 +180,7 @@ def system_of(problem: Problem, fitted: Fitted) -> FloatArray:
 def rows_of(problem: Problem, i: int, left: FloatArray) -> Rows:
     """A residual of manoeuvre ``i``, stacked by channels, in order of time."""
     t, channel, order = rows_in_time(problem.flights, i)
-    return Rows(t, channel, left[order], float(np.mean(problem.flights.flights[i].slow[0])))
+    return Rows(t, channel, left[order], float(np.mean(problem.flights.flights[i].slow[SPEED])))
 
 
 def _quiet_parts(problem: Problem, i: int, left: FloatArray) -> list[Rows]:

@@ -1,11 +1,13 @@
 """Manoeuvres as the diagnosis compares them: the command, slow inputs on a grid, outputs untouched."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.simulator.layout import ALPHA_TRIM, REFERENCE, SCALED, SPEED
+from advisor.gravity import GRAVITY_M_S2
 
 SPEED_CHANGE = 0.03
 """Relative change of air speed from which on it is looked at."""
@@ -55,6 +57,24 @@ class Flight:
     """Shape (rows,), int64: index into ``OUTPUTS`` of each row."""
     speed_doubt: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     """Shape (3, 3), m/s, as ``airspeed.speed_doubts`` gives it; (0, 0) where nothing is known of it."""
+
+    @property
+    def alpha_trim(self) -> float:
+        """Angle of attack at the start, rad."""
+        return float(self.trim[ALPHA_TRIM])
+
+    @property
+    def level_lift(self) -> float:
+        """Trim term of Eq. (1) that carries the weight at the mean speed, given at the reference speed."""
+        speed = float(np.mean(self.slow[SPEED]))
+        given_at = float(self.trim[REFERENCE]) if self.trim[SCALED] else speed
+        return -GRAVITY_M_S2 * given_at / speed**2
+
+    def at_constant_speed(self) -> "Flight":
+        """The same with derivatives that do not move with the air speed."""
+        trim = self.trim.copy()
+        trim[SCALED] = 0.0
+        return replace(self, trim=trim)
 
     @property
     def duration_s(self) -> float:

@@ -38,6 +38,11 @@ def stated_floor(flights: Flights) -> FloatArray:
     return np.maximum(flights.white, np.where(smooth, TOLERANCE * flights.peaks, 0.0))
 
 
+def tolerance_of(flights: Flights) -> FloatArray:
+    """Shape (channels,): what is called noise where a channel was filtered before it was recorded, else 0."""
+    return np.where(list(prefiltered(flights).values()), stated_floor(flights), 0.0)
+
+
 def independent_samples(left: FloatArray) -> float:
     """How many independent samples a residual is worth: N/(1 + 2 Σ ρ_k), summed to its first zero."""
     v = left - np.mean(left)

@@ -15,8 +15,7 @@ from advisor.gap.records.edges import edges_of, held_from, step_unseen
 from advisor.gap.records.flights import Flight, Flights, Measured
 from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
-from advisor.gap.simulator.layout import OUTPUTS
-from advisor.gap.simulator.simulate import SPEED, THRUST
+from advisor.gap.simulator.layout import OUTPUTS, SPEED, THETA_FROM, THRUST
 from advisor.gravity import GRAVITY_M_S2
 
 STEP_S = 0.005
@@ -27,6 +26,8 @@ _LEAST_RENEWED = 30
 """Renewals below which a channel that repeats itself is taken as it is: a vane may stick."""
 DEPARTED_RAD = 1.0
 """Swing of the angle of attack that no equation about a trim describes any more."""
+ASSUMED_M_S = 20.0
+"""Air speed where neither log nor file nor motion has one: then only the weight's part of α̇ knows of it."""
 _ENOUGH = 4
 """Manoeuvres with all that is needed that are enough to leave the others out."""
 
@@ -41,17 +42,13 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
     seen = [m for m in usable if not step_unseen(m)]
     if len(seen) >= _ENOUGH:
         usable = seen
-    speeds = [
-        m.channels["airspeed"].y
-        for m in usable
-        if "airspeed" in m.channels and len(m.channels["airspeed"]) > 1
-    ]
-    measured = bool(usable) and len(speeds) == len(usable) and float(np.min(np.concatenate(speeds))) > 1.0
+    speeds = [m.channels["airspeed"].y for m in usable if "airspeed" in m.channels]
+    measured = bool(usable) and len(speeds) == len(usable)
     if measured:
         reference = aircraft.reference_airspeed_m_s or float(np.mean([np.mean(s) for s in speeds]))
         moves = float(max(np.max(np.abs(s / np.mean(np.concatenate(speeds)) - 1.0)) for s in speeds))
     else:
-        reference, moves = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 20.0, 0.0
+        reference, moves = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or ASSUMED_M_S, 0.0
     flights = _about_their_mean(_ready(m, aircraft, reference, measured, scale_with_speed) for m in usable)
     with_alpha = tuple("alpha" in f.outputs for f in flights)
     if sum(with_alpha) >= _ENOUGH:
@@ -153,7 +150,7 @@ def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, sc
         [at_start("alpha", 0.0), at_start("theta", at_start("alpha", 0.0)), reference, float(scaled)]
     )
     if "theta" in outputs:
-        trim[1] = float(np.mean(outputs["theta"].y[:3]))
+        trim[THETA_FROM] = float(np.mean(outputs["theta"].y[:3]))
     return Flight(
         m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, held_from(t_u), u, u_trim,
         slow, trim, outputs, edges_of(t_u, u),

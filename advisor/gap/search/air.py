@@ -86,7 +86,9 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     if "alpha" not in problem.channels or "q" not in problem.channels:
         return None
     rows = [rows_of(problem, i, fitted.left[i]) for i in range(len(problem.flights))]
-    loudest = sorted(range(len(rows)), key=lambda i: -float(np.mean(fitted.left[i] ** 2)))[:AIR_MANEUVERS]
+    floor = 1.0 if problem.instruments is None else problem.instruments
+    before = mean_squares(problem, fitted.left)
+    loudest = np.argsort(-np.mean(before / floor**2, axis=1), kind="stable")[:AIR_MANEUVERS]
     derived = problem.flights.alpha_is_derived
     found = find_turbulence(
         [rows[i] for i in loudest], system_of(problem, fitted), instrument_noise(problem), not derived
@@ -102,8 +104,6 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     gust = float(np.max(np.abs(joined))) > 6.0 * typical
     if gust:
         course = _of_a_gust(problem, fitted, instruments, found.gust_angle)
-    floor = 1.0 if problem.instruments is None else problem.instruments
-    before = mean_squares(problem, fitted.left)
     # The loudest manoeuvre shows the gust: where none was, a course may wander far and change little.
     number = int(np.argmax(np.mean((before - mean_squares(problem, course.lefts)) / floor**2, axis=1)))
     at = int(np.argmax(np.abs(course.knots[number])))

@@ -17,10 +17,9 @@ from advisor.gap.noise.quiet import loudness, whitening_of
 from advisor.gap.noise.stamps import rates_of, stamp_jitter
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.floor import stated_floor
-from advisor.gap.search.command import read_command, with_latency
+from advisor.gap.search.command import read_command
 from advisor.gap.search.screen import Screen
-from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
-from advisor.gravity import GRAVITY_M_S2
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES
 
 _LOUD = 1.5
 """Power of what is left where nothing is flown, beside white noise, from which on it is asked what it is."""
@@ -60,7 +59,7 @@ def believed_derivatives(aircraft: Aircraft) -> FloatArray | None:
     return np.array([aircraft.model[name] for name in DERIVATIVES])
 
 
-def stated_arms(aircraft: Aircraft) -> frozenset[str]:
+def arms_in(aircraft: Aircraft) -> frozenset[str]:
     """Effects whose arm the aircraft file states."""
     arms = {
         "alpha_vane_offset": aircraft.alpha.vane_arm_m,
@@ -75,8 +74,8 @@ def first_guesses(flights: Flights, aircraft: Aircraft) -> list[Point]:
     The file's are nearer as a rule. But where a sign or a unit in it is wrong, no step leads away from them:
     where the regression sees something else altogether, both are worth a try.
     """
-    own = np.zeros((len(flights), 4))
-    own[:, 2] = [-GRAVITY_M_S2 / np.mean(f.slow[0]) for f in flights.flights]
+    own = np.zeros((len(flights), len(NUISANCES)))
+    own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
     guesses = regressions(flights)
     believed = believed_derivatives(aircraft)
     if believed is not None:
@@ -93,13 +92,12 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
         flights,
         with_known(base_entries(aircraft), aircraft.effects, flights, variants_for(flights)),
         believed=believed_derivatives(aircraft),
-        stated=stated_arms(aircraft),
+        arms_in_file=arms_in(aircraft),
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )
     starts = [everywhere(guess, flights, latency_s=0.001) for guess in first_guesses(flights, aircraft)]
     fitted = min((fit(problem, start) for start in starts), key=lambda found: found.cost)
-    fitted = with_latency(problem, fitted)
     plain, seen = fitted, quietest(problem, fitted)
     problem, fitted = read_command(*_filtered(problem, fitted, seen, first_look=True))
     if not problem.knows_the_noise:

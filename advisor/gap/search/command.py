@@ -83,7 +83,7 @@ def may_be_held(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool
 def read_as_held(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     """The plain model with the command held between its stamps."""
     held = replace(problem, held=True)
-    return held, with_latency(held, fit(held, fitted.point, fitted.noise))
+    return held, _with_latency(held, fit(held, fitted.point, fitted.noise))
 
 
 def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: Fitted) -> bool:
@@ -117,7 +117,7 @@ def _delay_of(fitted: Fitted) -> float:
     return sum(float(values[0]) for effect, values in delays if effect.effect == "transport_delay")
 
 
-def with_latency(problem: Problem, fitted: Fitted) -> Fitted:
+def _with_latency(problem: Problem, fitted: Fitted) -> Fitted:
     """The fit, begun again where another latency is better: steps make the cost rough in it.
 
     Within the few milliseconds of its bounds the latency passes stamps, and each may hold a minimum.

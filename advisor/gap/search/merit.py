@@ -126,6 +126,6 @@ class Judged:
 def size_of(variant: Variant, value: FloatArray) -> float:
     """The number of an effect that its physical minimum is about."""
     if variant.effect == "icing":
-        # The lift slope and the stability; the elevator's share of the lift is hardly ever known.
-        return float(np.max(np.abs(value[[0, 2]])))
+        # Ice takes lift: what leaves the lift slope alone is something else.
+        return float(-value[0])
     return float(abs(value[0]))

@@ -59,11 +59,13 @@ def judge(
     if not fits:
         return []
     independent = worth(problem, min(fits, key=lambda f: f.cost).innovations)
-    likeliest: dict[str, Fitted] = {}
-    for fitted in sorted(fits, key=lambda f: f.cost):
-        likeliest.setdefault(fitted.point.effects[-1].effect, fitted)
-    judged = [addition(problem, before, held_before, f, e, independent) for e, f in likeliest.items()]
-    first, *rest = evened(problem, judged)
+    judged = [
+        addition(problem, before, held_before, f, f.point.effects[-1].effect, independent) for f in fits
+    ]
+    best: dict[str, Judged] = {}
+    for one in evened(problem, judged):
+        best.setdefault(one.effect, one)
+    first, *rest = best.values()
     if first.fitted.iterations == _ITERATIONS:
         # Far from the plain model the search is long; only what comes out first is followed to its end.
         ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)

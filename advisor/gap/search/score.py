@@ -68,7 +68,9 @@ def addition(
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
-    odds = odds_of_arm(variant.effect, float(value[0]), problem.stated, problem.flights.alpha_is_derived)
+    odds = odds_of_arm(
+        variant.effect, float(value[0]), problem.arms_in_file, problem.flights.alpha_is_derived
+    )
     least, beforehand = least_change(problem), belief + odds - price
     return Judged(
         variant=variant, fitted=fitted, held_out=held,

@@ -8,7 +8,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.belief import scale_of
-from advisor.gap.fitting.fit import Fitted, bounds_of
+from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.neighbourhood import Neighbourhood, Place
 from advisor.gap.fitting.problem import Point, Problem
 
@@ -89,27 +89,23 @@ class Screen:
         here = yield point
         if here is None:
             return None
-        lower, upper = bounds_of(point)
         for n in range(self.steps):
             step, promised = here.step()
             if self.fitted.cost - here.cost + promised < _HARDLY:
                 # Not worth a flight: what the model says of the step is answer enough.
-                shared = np.clip(here.point.shared + step, lower, upper)
-                return Screened(
-                    variant, here.point.moved(shared, here.point.own), here.cost - promised, here.noise
-                )
+                there = here.point.moved(here.point.shared + step, here.point.own)
+                return Screened(variant, there, here.cost - promised, here.noise)
             # A first step along numbers that nearly mimic each other may be too long for a linear model.
             for length in (1.0, 0.5, 0.25) if n == 0 else (1.0,):
-                shared = np.clip(here.point.shared + length * step, lower, upper)
-                point = here.point.moved(shared, here.point.own)
+                point = here.point.moved(here.point.shared + length * step, here.point.own)
                 if sides is not None:
                     point = self.around.choose_sides(point, sides)
-                there = yield point
-                if there is not None and there.cost < here.cost:
+                found = yield point
+                if found is not None and found.cost < here.cost:
                     break
-            if there is None or there.cost >= here.cost:
+            if found is None or found.cost >= here.cost:
                 break
-            gained, here = here.cost - there.cost, there
+            gained, here = here.cost - found.cost, found
             if gained < max(0.5, 1e-3 * (self.fitted.cost - here.cost)):
                 break
         return Screened(here.point.effects[-1], here.point, here.cost, here.noise)

@@ -7,6 +7,7 @@ measured they must show that work, too, beyond what drag takes. Where it moved b
 measured, and the air must be still.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +20,7 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import SPEED_CHANGE, Flights
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.air import Air
-from advisor.gap.simulator.simulate import HEIGHT, SPEED, THRUST
+from advisor.gap.simulator.layout import HEIGHT, SPEED, THRUST
 from advisor.gravity import GRAVITY_M_S2
 
 _COSTS = 0.05
@@ -39,19 +40,19 @@ _GUSTS = 4.0
 air speed indicator reads that, too."""
 
 
-def at_constant_speed(problem: Problem, fitted: Fitted) -> HeldOut | None:
+def at_constant_speed(
+    problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None
+) -> HeldOut | None:
     """What the model leaves when derivatives do not move with the air speed, everything refitted.
 
-    None where the speed hardly moves, or is not measured.
+    None where the speed hardly moves, or is not measured. ``folds`` as ``hold_out`` has them.
     """
     flights = problem.flights
     if not flights.speed_measured or flights.speed_moves < SPEED_CHANGE:
         return None
-    constant = tuple(
-        replace(f, trim=np.array([f.trim[0], f.trim[1], f.trim[2], 0.0])) for f in flights.flights
-    )
+    constant = tuple(f.at_constant_speed() for f in flights.flights)
     frozen = replace(problem, flights=replace(flights, flights=constant))
-    return hold_out(frozen, fit(frozen, fitted.point, fitted.noise, iterations=4))
+    return hold_out(frozen, fit(frozen, fitted.point, fitted.noise, iterations=4), folds)
 
 
 def airspeed_cause(

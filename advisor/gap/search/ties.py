@@ -12,6 +12,8 @@ _AMPLITUDES = "fly two amplitudes: a rate limit answers larger steps later"
 _SPEEDS = "fly at two air speeds: the arm's part goes with 1/V, the other does not"
 _WEIGHT = "log fuel and weight; ice moves lift and control by different shares"
 _REPEAT = "repeat the same manoeuvre at the same air speed, early and late"
+_FILTERED = frozenset({"pitch_rate_skew", "accelerometer_skew", "attitude_skew"})
+"""Late channels that may as well be filtered ones; of the angle of attack that has a name of its own."""
 _BREAKS = {
     frozenset({"alpha_vane_offset", "accelerometer_offset"}): _ARMS,
     frozenset({"transport_delay", "actuator_lag"}): _SURFACE,
@@ -59,6 +61,9 @@ def tied_with(best: Judged, others: Sequence[Judged], channels: Sequence[str]) -
     if best.effect == "transport_delay":
         names.append("an equal delay of every logged stream")
         ways.append(_SURFACE)
+    if best.effect in _FILTERED:
+        names.append("a filter of that channel that delays as much")
+        ways.append("log the channel as its sensor reads it, before any filter")
     if best.effect == "alpha_scale" and "a_z" not in channels:
         names.append("Z_q of the model")
         ways.append("log the accelerometer (RAW_IMU) at 50 Hz")

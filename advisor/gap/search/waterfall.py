@@ -185,7 +185,7 @@ def _stands_alone(problem: Problem, first: Stage, full: Fitted, name: str) -> bo
 
 def _may_be_known(problem: Problem, effect: str) -> bool:
     """An accelerometer's place that the file leaves open: something to measure rather, so it comes last."""
-    return effect == "accelerometer_offset" and effect not in problem.stated
+    return effect == "accelerometer_offset" and effect not in problem.arms_in_file
 
 
 def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:

@@ -25,10 +25,8 @@ EFFECT_ENTRIES = (
     # force equation
     "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s",
     "Z_h", "lift_h", "scale_m", "speed_power",
-    # step inside a manoeuvre
-    "step_at_s", "step_Z_alpha", "step_Z_delta_e", "step_M_alpha", "step_M_delta_e",
     # sensors
-    "alpha_lag_s", "alpha_scale", "alpha_bias_rad", "vane_arm_m", "q_bias", "q_scale",
+    "alpha_lag_s", "alpha_scale", "vane_arm_m", "q_bias", "q_scale",
     "mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping", "imu_arm_m",
     # stamps
     "alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s",
@@ -46,6 +44,14 @@ OUTPUTS = ("alpha", "q", "a_z", "theta")
 """What is simulated and compared, in this order."""
 SKEWS = ("alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s")
 """Entry that shifts the stamps of each output."""
+
+SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST = range(6)
+"""Rows of the slow inputs, one value a step."""
+DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = range(4)
+"""Rows of the disturbances, one value a step: added to δ, α̇, q̇ and to the angle of the air."""
+ALPHA_TRIM, THETA_FROM, REFERENCE, SCALED = range(4)
+"""Places in a manoeuvre's trim: α and θ at its start, rad, the speed that derivatives are given at, m/s, and
+1 where they scale with the speed flown."""
 
 
 def short_period(p: FloatArray) -> FloatArray:

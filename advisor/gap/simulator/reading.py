@@ -17,7 +17,7 @@ def read_rows(
     Parameters
     ----------
     packs
-        As ``advisor.gap.simulate.simulate`` returns them, with any number of lanes in a pack.
+        As ``advisor.gap.simulator.simulate.simulate`` returns them, with any number of lanes in a pack.
     h
         Step in s.
     stamps

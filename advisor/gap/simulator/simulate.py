@@ -23,7 +23,23 @@ from numba import njit
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.circle import cos_sin
-from advisor.gap.simulator.layout import ENTRIES
+from advisor.gap.simulator.layout import (
+    A_X,
+    ALPHA_TRIM,
+    BANK,
+    DISTURB_AIR,
+    DISTURB_FORCE,
+    DISTURB_INPUT,
+    DISTURB_MOMENT,
+    ENTRIES,
+    HEIGHT,
+    REFERENCE,
+    SCALED,
+    SPEED,
+    THETA_FROM,
+    THROTTLE,
+    THRUST,
+)  # fmt: skip
 from advisor.gravity import GRAVITY_M_S2
 
 LANES = 8
@@ -34,24 +50,19 @@ LANES = 8
     M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, ENGINE_LAG, M_THRUST, WASHED, BLOWN,
     M_Q_ABS, M_Q_Q, M_ALPHA_Q, M_ALPHA_DELTA,
     Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, Z_H, LIFT_H, SCALE_H, SPEED_POWER,
-    STEP_AT, STEP_Z_ALPHA, STEP_Z_DELTA, STEP_M_ALPHA, STEP_M_DELTA,
-    ALPHA_LAG, ALPHA_SCALE, ALPHA_BIAS, VANE_ARM, Q_BIAS, Q_SCALE,
+    ALPHA_LAG, ALPHA_SCALE, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY, A_Z_SCALE, THETA_SCALE,
     A_Z_READ2, A_Z_READ3, ALPHA_READ2, ALPHA_READ3,
     SPEED_LEVEL, SPEED_SLOPE, SPEED_BOW,
 ) = range(len(ENTRIES))  # fmt: skip
-# Rows of the slow inputs, one value a step.
-SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST = range(6)
-# Rows of the disturbances, one value a step: added to δ, α̇, q̇ and to the angle of the air.
-DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = range(4)
 # Rows of a pack behind the driving numbers: what follows from them once, the state, what a step hands on.
 (
     DOSE, ENGINE_DECAY, LIFT_DECAY, VANE_DECAY, VANE_RAMP, FADE, SWING_COS, SWING_SIN, SOFTNESS,
     ALPHA, Q, THETA, ENGINE, LIFT, VANE_BEFORE, VANE_OUT, BEND, BEND_RATE,
-    AIRSPEED, RATIO, NEAR, POWER, ATTACHED, COS_ALPHA, SIN_ALPHA, GRAVITY, LIFTING, WING_SLOPE, MOMENT_SLOPE,
+    AIRSPEED, RATIO, NEAR, POWER, ATTACHED, COS_ALPHA, SIN_ALPHA, GRAVITY, LIFTING, MOMENT_SLOPE,
     DEFLECTION, Z_REST, M_REST, KA, KQ, NORMAL_0, QDOT_0, ROWS,
-) = range(len(ENTRIES), len(ENTRIES) + 37)  # fmt: skip
+) = range(len(ENTRIES), len(ENTRIES) + 36)  # fmt: skip
 
 
 @njit(cache=True)
@@ -68,8 +79,6 @@ def _begin(
     """Fill a lane of a pack with its driving numbers, what follows from them, and the state at the start."""
     x[: len(p), lane] = p
     x[DOSE, lane] = dose
-    if p[STEP_AT] == 0.0:
-        x[STEP_AT, lane] = np.inf
     x[ENGINE_DECAY, lane] = np.exp(-h / max(p[ENGINE_LAG], 1e-3 * h))
     x[LIFT_DECAY, lane] = np.exp(-h / max(p[LIFT_LAG], 0.2 * h))
     # First order in the lag, so that the sensitivity to a lag exists at no lag at all.
@@ -83,8 +92,12 @@ def _begin(
     x[SWING_COS, lane] = np.cos(omega * damped * h)
     x[SWING_SIN, lane] = np.sin(omega * damped * h) / damped
     x[SOFTNESS, lane] = 1.0 / omega if omega > 0.0 else 0.0
-    x[ALPHA, lane], x[Q, lane], x[THETA, lane] = trim[0] + p[ALPHA_START], p[Q_START], trim[1]
-    x[ENGINE, lane], x[LIFT, lane] = 0.0, trim[0]
+    x[ALPHA, lane], x[Q, lane], x[THETA, lane] = (
+        trim[ALPHA_TRIM] + p[ALPHA_START],
+        p[Q_START],
+        trim[THETA_FROM],
+    )
+    x[ENGINE, lane], x[LIFT, lane] = 0.0, trim[ALPHA_TRIM]
     x[VANE_OUT, lane] = x[ALPHA, lane] - p[VANE_ARM] * x[Q, lane] / speed
     x[VANE_BEFORE, lane] = x[VANE_OUT, lane]
     x[BEND, lane], x[BEND_RATE, lane] = 0.0, 0.0
@@ -130,8 +143,8 @@ def simulate(
     packs, n, lanes = delta.shape
     out = np.empty((packs, n + 1, 4, LANES))
     x = np.empty((ROWS, LANES))
-    alpha_trim, reference = trim[0], trim[2]
-    scaled = trim[3] > 0.5
+    alpha_trim, theta_from, reference = trim[ALPHA_TRIM], trim[THETA_FROM], trim[REFERENCE]
+    scaled = trim[SCALED] > 0.5
     disturbed = disturbance.shape[1] == n
     level = np.cos(slow[BANK])
     d_delta, d_force, d_moment, d_air = 0.0, 0.0, 0.0, 0.0
@@ -169,10 +182,9 @@ def simulate(
                 d = delta[k, j, m] + x[DOSE, m] * d_delta
                 v = x[RATIO, m]
                 vv = v * v
-                changed = 1.0 if i * h >= x[STEP_AT, m] else 0.0
-                z_d = x[Z_DELTA, m] * (1.0 + changed * x[STEP_Z_DELTA, m])
-                m_d = x[M_DELTA, m] * (1.0 + changed * x[STEP_M_DELTA, m])
-                m_d *= x[POWER, m] * (vv + x[WASHED, m] * (1.0 - vv) + x[BLOWN, m] * slow[THRUST, j])
+                z_d = x[Z_DELTA, m]
+                met = vv + x[WASHED, m] * (1.0 - vv) + x[BLOWN, m] * slow[THRUST, j]
+                m_d = x[M_DELTA, m] * x[POWER, m] * met
                 pressure = x[POWER, m] * vv
                 lifting = x[POWER, m] * v * (1.0 + x[LIFT_H, m] * x[NEAR, m])
                 ca, sa = cos_sin(x[ALPHA, m])
@@ -181,8 +193,7 @@ def simulate(
                 x[GRAVITY, m] = GRAVITY_M_S2 / x[AIRSPEED, m] * (ca * ct * cb + sa * st)
                 x[LIFTING, m] = lifting
                 x[ENGINE, m] = slow[THROTTLE, j] + x[ENGINE_DECAY, m] * (x[ENGINE, m] - slow[THROTTLE, j])
-                x[WING_SLOPE, m] = x[Z_ALPHA, m] * (1.0 + changed * x[STEP_Z_ALPHA, m])
-                x[MOMENT_SLOPE, m] = pressure * x[M_ALPHA, m] * (1.0 + changed * x[STEP_M_ALPHA, m])
+                x[MOMENT_SLOPE, m] = pressure * x[M_ALPHA, m]
                 x[DEFLECTION, m] = d
                 x[Z_REST, m] = v * x[Z_H, m] * x[NEAR, m] + x[DOSE, m] * d_force + lifting * z_d * d
                 x[M_REST, m] = (
@@ -209,7 +220,7 @@ def simulate(
                     lagged = da - x[LIFT_SHARE, m] * (a - x[LIFT, m])
                     wing = (
                         x[Z_TRIM, m]
-                        + (x[WING_SLOPE, m] + (x[Z_ALPHA2, m] + x[Z_ALPHA3, m] * lagged) * lagged) * lagged
+                        + (x[Z_ALPHA, m] + (x[Z_ALPHA2, m] + x[Z_ALPHA3, m] * lagged) * lagged) * lagged
                     )
                     normal = x[Z_REST, m] + x[LIFTING, m] * x[ATTACHED, m] * wing + x[Z_Q, m] * q
                     ka = q + x[GRAVITY, m] + normal
@@ -234,7 +245,7 @@ def simulate(
                 x[VANE_BEFORE, m] = vane
                 turned = x[VANE_OUT, m] - alpha_trim
                 bent = (x[ALPHA_READ2, m] + x[ALPHA_READ3, m] * turned) * turned
-                out[k, i, 0, m] = alpha_trim + (1.0 + x[ALPHA_SCALE, m] + bent) * turned + x[ALPHA_BIAS, m]
+                out[k, i, 0, m] = alpha_trim + (1.0 + x[ALPHA_SCALE, m] + bent) * turned
                 out[k, i, 1, m] = ((1.0 + x[Q_SCALE, m]) * q + x[Q_BIAS, m] + x[MODE_GAIN, m] * x[BEND, m]
                                    + x[MODE_RATE_GAIN, m] * x[BEND_RATE, m] * x[SOFTNESS, m])  # fmt: skip
                 a_z = (x[AIRSPEED, m] * x[NORMAL_0, m] + a_x * x[SIN_ALPHA, m]) / x[COS_ALPHA, m]
@@ -242,7 +253,7 @@ def simulate(
                 pulled = a_z + GRAVITY_M_S2
                 bent = (x[A_Z_READ2, m] + x[A_Z_READ3, m] * pulled) * pulled
                 out[k, i, 2, m] = (1.0 + x[A_Z_SCALE, m]) * a_z + bent * pulled
-                out[k, i, 3, m] = trim[1] + (1.0 + x[THETA_SCALE, m]) * (theta - trim[1])
+                out[k, i, 3, m] = theta_from + (1.0 + x[THETA_SCALE, m]) * (theta - theta_from)
                 # A search may try an unstable aircraft: its motion stays finite, and is rejected by its cost.
                 x[ALPHA, m] = min(max(alpha + h * x[KA, m], -1.5), 1.5)
                 x[Q, m] = min(max(q + h * x[KQ, m], -15.0), 15.0)

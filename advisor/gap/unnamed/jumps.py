@@ -17,12 +17,12 @@ _SELDOM = 0.1
 """... and what another sensor may have of that share."""
 
 
-def jumping_sensor(problem: Problem, last: Fitted, stated: FloatArray) -> str | None:
+def jumping_sensor(problem: Problem, last: Fitted, tolerance: FloatArray) -> str | None:
     """The block of the one sensor that jumps now and then where nothing is flown; None where none does.
 
     What a model leaves is smooth, and what a gust leaves is no surprise to a filter that knows of it; no
-    step of the command falls into these stretches. An autopilot's estimate of α is not judged. ``stated`` is
-    the tolerance of each channel, shape (channels,).
+    step of the command falls into these stretches. An autopilot's estimate of α is not judged.
+    ``tolerance``, shape (channels,), is what is called noise of channels that were filtered.
     """
     jumps = {}
     for c, name in enumerate(problem.channels):
@@ -34,7 +34,7 @@ def jumping_sensor(problem: Problem, last: Fitted, stated: FloatArray) -> str | 
             parts.append(np.abs(pair[quiet[1:] & quiet[:-1]]))
         changes, surprises = np.concatenate(parts).T
         usual = [robust_std(y) if len(y) else 0.0 for y in (changes, surprises)]
-        far = max(_FAR * usual[0], DOUBT * float(stated[c]))
+        far = max(_FAR * usual[0], DOUBT * float(tolerance[c]))
         # Values that mostly repeat say nothing about how rough they are.
         jumped = (changes > far) & (surprises > _SURPRISE * usual[1])
         jumps[name] = float(np.mean(jumped)) if min(usual) > 0.0 else 0.0

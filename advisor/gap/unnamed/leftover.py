@@ -71,7 +71,7 @@ def of_the_wind(found: Leftover | None) -> Leftover:
 
 
 def left_over(
-    problem: Problem, first: Fitted, last: Fitted, stated: FloatArray, moving_air: bool = False
+    problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArray, moving_air: bool = False
 ) -> Leftover | None:
     """What the last model leaves, if it is more than noise.
 
@@ -79,14 +79,14 @@ def left_over(
     ----------
     first, last
         The plain model and the one with every named effect.
-    stated
+    tolerance
         Shape (channels,): tolerance of channels that were filtered before they were recorded, else 0.
     moving_air
         Whether the air was found to move: then the filter that knows of it is known to low order only.
     """
     noise = _noise(problem)
     probes = probe_blocks(problem, last, noise)
-    best, jumping = probes[0], jumping_sensor(problem, last, stated)
+    best, jumping = probes[0], jumping_sensor(problem, last, tolerance)
     # What a disturbance with a memory describes did not jump.
     if jumping is not None and best.explained < _LEAST_SHARE:
         return Leftover(jumping, 1.0, _ranking(probes, jumping))
@@ -98,7 +98,7 @@ def left_over(
     telling &= beyond > max(_OF_PEAK, _of_the_command(problem, last)) * peaks
     if not np.any(telling):
         return None
-    loud = telling & (rms_of(problem, last.left) > DOUBT * stated)
+    loud = telling & (rms_of(problem, last.left) > DOUBT * tolerance)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     faint = best.explained < _LEAST_SHARE
     least_share = _MOVING_SHARE if moving_air else _FAINT_SHARE
@@ -117,7 +117,7 @@ def left_over(
     return Leftover(block, best.explained, _ranking(probes, block))
 
 
-def swinging(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) -> Leftover | None:
+def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArray) -> Leftover | None:
     """What swings of itself, where it is more than an instrument's noise. Arguments as in ``left_over``."""
     noise, instruments = _noise(problem), np.maximum(_instruments(problem), 1e-12)
     tone = tone_in(problem, last, noise)
@@ -125,7 +125,7 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, stated: FloatArray) 
         return None
     best = tone.probes[0]
     least = _OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
-    if not np.any(tone.power > np.maximum(least * problem.flights.peaks, stated) ** 2):
+    if not np.any(tone.power > np.maximum(least * problem.flights.peaks, tolerance) ** 2):
         return None
     if float(np.mean(tone.power / instruments**2)) < _VISIBLE:
         return None

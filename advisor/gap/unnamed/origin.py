@@ -118,5 +118,5 @@ def _stuck(stick: FloatArray, breakaway: float) -> FloatArray:
 def _of_the_motion(flight: Flight, t: FloatArray) -> FloatArray:
     """Angle of attack and pitch rate, bent and multiplied; shape (n, 9)."""
     alpha, q = (np.interp(t, flight.outputs[c].t, flight.outputs[c].y) for c in ("alpha", "q"))
-    a = alpha - flight.trim[0]
+    a = alpha - flight.alpha_trim
     return np.column_stack([a, q, a**2, a * np.abs(a), a**3, q * np.abs(q), q**2, a * q, np.abs(q)])

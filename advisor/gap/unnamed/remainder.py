@@ -8,12 +8,13 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import gap_of
 from advisor.gap.fitting.problem import Problem
+from advisor.gap.result import VISIBLE
 from advisor.gap.search.waterfall import Stage
 from advisor.gap.unnamed.leftover import Leftover, placed
 
 _MOST = 0.5
 """Share of the gap that right names may leave, in still air, or else ..."""
-_SEEN = 0.3
+_SEEN = 0.2
 """... this gap: an effect that is not in the catalogue leaves more beside its likeness."""
 
 _USE = 0.1
@@ -31,6 +32,11 @@ def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> L
     if len(stages) < 2 or after < max(_SEEN, _MOST * before):
         return None
     return placed(problem, stages[0].fitted)
+
+
+def is_all_named(stages: Sequence[Stage], floor: FloatArray) -> bool:
+    """Whether named effects leave nothing above the noise: then what stays is their own shape."""
+    return len(stages) > 1 and float(np.mean(gap_of(stages[-1].held_out.mean_square, floor))) < VISIBLE
 
 
 def is_of_no_use(

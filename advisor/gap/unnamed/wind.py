@@ -87,7 +87,9 @@ def _gradient(pairs: Sequence[tuple[FloatArray, FloatArray]]) -> Shear:
 
 def _agreed(found: Shear, n: int, chance: float) -> bool:
     """Whether ``n`` manoeuvres agree on it, and it is felt."""
-    return abs(found.gradient_per_s) >= max(_LEAST_PER_S, float(stdtrit(n - 1, 1.0 - chance)) * found.std)
+    return abs(found.gradient_per_s) >= max(
+        _LEAST_PER_S, float(stdtrit(n - 1, 1.0 - 0.5 * chance)) * found.std
+    )
 
 
 def _height_of(maneuver: Maneuver) -> float:

@@ -10,7 +10,6 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.moment import PROPELLER
 from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.measure import gap_of
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import covariance, worth
@@ -20,17 +19,15 @@ from advisor.gap.search.merit import LEAST_SIGMA
 from advisor.gap.verdict.causes import block_ranking
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.judgement import judgement
+from advisor.gap.verdict.kept_out import as_read, keep_out, over_maneuvers, with_offset, without_air
 from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
     fidelity_of,
     gap_numbers,
-    kept_out,
     model_of,
-    over_maneuvers,
     shrink_of,
     traces_of,
     waterfall_of,
-    without_air,
 )
 from advisor.gap.verdict.text import sentence_of
 
@@ -42,31 +39,32 @@ def answer(
     holdout: int | None,
 ) -> Diagnosis:
     """Turn the evidence into the diagnosis."""
-    problem, stages, floor = e.problem, e.stages, e.floor
+    e, kept = keep_out(e, holdout)
+    problem, stages = e.problem, e.stages
     judged = judgement(e, kinematics)
     verdict, causes = judged.verdict, judged.causes
     before, last = judged.before, stages[-1].held_out
-    kept, folds = kept_out(problem, holdout)
-    if holdout is not None:
-        last = hold_out(problem, stages[-1].fitted, folds)
-        before = e.file_model if e.file_model is not None else hold_out(problem, stages[0].fitted, folds)
+    if judged.bias is not None:
+        offset_rad = judged.bias.parameters["bias_rad"].value
+        before = over_maneuvers(problem, with_offset(problem, before, offset_rad), kept)
+        problem = as_read(problem, offset_rad)
     if e.air is not None:
         # From here on the air is one of the causes: the floor is what stays without its motion.
-        floor = np.minimum(floor, np.sqrt(e.air.left))
-        last, e = without_air(last, e.air), replace(e, floor=floor)
-    before, last = (over_maneuvers(problem, held, kept) for held in (before, last))
-    gap = gap_numbers(e, before, last, judged.bias)
+        last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, np.sqrt(e.air.left)))
+    gap = gap_numbers(problem, e.floor, before, last)
     where = _where(e, verdict, causes)
-    shrink = shrink_of(e, kept, gap, before, last) if verdict in ("effect", "parameters") else None
+    shrink = None
+    if verdict in ("effect", "parameters"):
+        shrink = shrink_of(e, kept, gap, before, last, wrong_numbers=verdict == "parameters")
     fitted = stages[-1].fitted
     known = covariance(problem, fitted, worth(problem, fitted.innovations))
-    waterfall = waterfall_of(stages, floor, judged.apart, judged.speed, gap.before)
+    waterfall = waterfall_of(stages, e.floor, judged.apart, judged.speed, gap.before)
     present = {c.effect for c in causes if c.present}
     effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
     return Diagnosis(
         verdict=verdict, sentence=sentence_of(verdict, gap, where, causes, shrink), gap=gap, where=where,
         causes=causes, shrink=shrink, waterfall=waterfall,
-        cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), floor, present),
+        cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), e.floor, present),
         kinematics=kinematics, model=model_of(problem, fitted, known),
         reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
         effects=effects,

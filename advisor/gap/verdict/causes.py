@@ -157,7 +157,7 @@ def alpha_bias_cause(
     if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
         return None
     least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * check.bias_std_rad)
-    trim = float(np.mean([flight.trim[0] for flight in problem.flights.flights]))
+    trim = float(np.mean([flight.alpha_trim for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
     # The trim was read with the offset taken out already: what a scale makes of it is no offset.
     scaled = scale * trim

@@ -22,12 +22,11 @@ class Evidence:
     """Something without a name that is still there."""
     air: Air | None
     floor: FloatArray
+    """Shape (channels,): noise as it is where nothing was flown."""
     file_model: HeldOut | None
     """The aircraft file's own parameters, unfitted."""
     constant_speed: HeldOut | None
     """The final model without the change of air speed."""
-    stated: FloatArray
-    """Shape (channels,): tolerance of channels filtered before they were recorded, else 0."""
     shear: Shear | None = None
     """Wind that changes with height: it has no name in the catalogue."""
     weight: Weight | None = None

@@ -13,6 +13,7 @@ from advisor.gap.result import VISIBLE, Cause, Value, Verdict
 from advisor.gap.search.speed import airspeed_cause, speed_is_a_cause
 from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
+from advisor.gap.verdict.kept_out import without_air
 
 _ALONE = 0.95
 """Probability of what no fit judges (the air, an offset, the speed) where nothing else was found ..."""
@@ -27,7 +28,7 @@ companion of what was named."""
 _BEHIND = 0.08
 """The same of everything behind an offset that makes the larger part of the gap."""
 _HALF = 0.5
-"""The same of what was named where something without a name is there besides."""
+"""The same of all that was named where something without a name is there besides."""
 _AIR_DOUBT = 0.25
 """Relative error of the air's strength: its course is known to low order only."""
 _AIR_DOUBT_S = 0.1
@@ -68,16 +69,14 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
     explained = bool(named or bias or late or wrong_values)
     if speed is not None and not explained:
-        worked = speed_is_a_cause(problem, e.constant_speed, last, floor, e.air)
+        # Noise that the air makes hides nothing from a simulator that knows the air's motion.
+        still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
+        worked = speed_is_a_cause(problem, e.constant_speed, last, still, e.air)
         apart = (speed, *apart) if worked else apart
     unexplained = e.leftover.share if e.leftover is not None else 0.0
     causes = tuple(
         with_doubt(cause, problem) for cause in causes_of(stages, floor, unexplained, problem.channels)
     )
-    if unknown:
-        causes = tuple(
-            replace(c, probability=_HALF * c.probability) for c in causes if not c.present or not named
-        )
     causes = _merge(causes, apart)
     if bias is not None and not unknown and not problem.flights.alpha_is_derived:
         removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
@@ -91,6 +90,8 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
         verdict = "parameters"
     elif any(c.present for c in causes):
         verdict = "effect"
+    if unknown:
+        causes = tuple(replace(c, probability=_HALF * c.probability) for c in causes)
     if verdict in ("none", "parameters"):
         causes = tuple(replace(c, probability=_REFUTED * c.probability) for c in causes)
     before = e.file_model if e.file_model is not None else first
@@ -137,7 +138,8 @@ def _air_cause(e: Evidence) -> Cause | None:
     if e.air is None:
         return None
     reference = e.problem.flights.reference_m_s
-    gust = e.air.gust
+    gust, stays = e.air.gust, without_air(e.stages[-1].held_out, e.air).mean_square
+    left = float(np.mean(gap_of(stays, np.minimum(e.floor, np.sqrt(e.air.left)))))
     peak, spread = e.air.gust_angle * reference, e.air.angle_std * reference
     parameters = {"sigma_w_m_s": Value(spread, _AIR_DOUBT * spread)}
     if gust:
@@ -147,5 +149,5 @@ def _air_cause(e: Evidence) -> Cause | None:
         }
     return Cause(
         "gust" if gust else "turbulence", "air", 0.9, parameters, ("turbulence" if gust else "gust",),
-        "fly more manoeuvres: a gust does not come back, turbulence does", 0.0, True,
+        "fly more manoeuvres: a gust does not come back, turbulence does", left, True,
     )  # fmt: skip

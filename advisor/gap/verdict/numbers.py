@@ -1,7 +1,6 @@
 """The numbers of a diagnosis: gap, shrink, waterfall, model, yardsticks, traces."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,12 +8,11 @@ import numpy as np
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.holdout import HeldOut, folds_of
+from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
-from advisor.gap.search.air import Air
 from advisor.gap.search.waterfall import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.evidence import Evidence
@@ -22,13 +20,9 @@ from advisor.gap.verdict.yardsticks import yardsticks
 from advisor.gravity import GRAVITY_M_S2
 
 
-def gap_numbers(e: Evidence, before: HeldOut, last: HeldOut, bias: Cause | None) -> Gap:
+def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
     """The gap of the plain and of the final model, as numbers."""
-    problem, floor = e.problem, e.floor
-    offset = np.zeros(len(problem.channels))
-    if bias is not None:
-        offset[problem.channels.index("alpha")] = bias.parameters["bias_rad"].value ** 2
-    here, there = gap_of(before.mean_square + offset, floor), gap_of(last.mean_square, floor)
+    here, there = gap_of(before.mean_square, floor), gap_of(last.mean_square, floor)
     smooth = [c for c, yes in prefiltered(problem.flights).items() if yes]
     note = "measured where nothing was flown, before the first step and late in the free response"
     if smooth:
@@ -46,48 +40,35 @@ def gap_numbers(e: Evidence, before: HeldOut, last: HeldOut, bias: Cause | None)
     )  # fmt: skip
 
 
-def kept_out(problem: Problem, holdout: int | None) -> tuple[list[int], list[list[int]]]:
-    """Manoeuvres the gap is measured on, and folds that keep them out: the last ones, or each in turn."""
-    n = len(problem.flights)
-    if holdout is None or not 0 < holdout < n:
-        return list(range(n)), folds_of(n)
-    kept = list(range(n - holdout, n))
-    return kept, [kept, *[[i for i in fold if i not in kept] for fold in folds_of(n)]]
+def shrink_of(
+    e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_numbers: bool
+) -> Shrink:
+    """How far the gap shrinks on the manoeuvres kept out, with an interval from resampling them.
 
-
-def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> HeldOut:
-    """The mean squares over some manoeuvres only; as in a fit, every sample counts alike."""
-    flights = [problem.flights.flights[i] for i in kept]
-    samples = np.array([[len(f.outputs[c].t) for c in problem.channels] for f in flights], float)
-    sums = np.sum(samples * held.by_maneuver[list(kept)], axis=0)
-    return replace(held, mean_square=sums / np.sum(samples, axis=0))
-
-
-def without_air(held: HeldOut, air: Air) -> HeldOut:
-    """Held-out errors with the share of the moving air taken out, alike in every manoeuvre.
-
-    The courses of the errors are those that the air's likeliest course leaves.
+    ``wrong_numbers``: nothing but the file's derivatives was found wrong.
     """
-    share = np.minimum(air.left / held.mean_square, 1.0)
-    powers = held.by_maneuver * share
-    return replace(held, left=air.lefts, mean_square=held.mean_square * share, by_maneuver=powers)
-
-
-def shrink_of(e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut) -> Shrink:
-    """How far the gap shrinks on the manoeuvres kept out, with an interval from resampling them."""
+    beyond_air = None
+    if e.air is not None and (len(e.stages) > 1 or wrong_numbers):
+        beyond_air = _by_numbers(e) if wrong_numbers else _by_effects(e)
     was = np.mean(before.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
     now = np.mean(last.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
     percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
     low, high = shrink_interval(was, now)
     numbers = tuple(e.problem.flights.flights[i].number for i in kept)
     interval = (min(low, percent), max(high, percent))
-    return Shrink(numbers, gap.before, gap.after, percent, interval, _beyond_air(e))
+    return Shrink(numbers, gap.before, gap.after, percent, interval, beyond_air)
 
 
-def _beyond_air(e: Evidence) -> float | None:
-    """Shrink of the innovations, per cent; see ``Shrink``."""
-    if e.air is None or len(e.stages) < 2:
+def _by_numbers(e: Evidence) -> float | None:
+    """What fitted derivatives remove of the gap, per cent, the air in it; None without a file's."""
+    if e.file_model is None:
         return None
+    was, now = (gap_of(held.mean_square, e.floor).mean() for held in (e.file_model, e.stages[-1].held_out))
+    return float(np.clip(100.0 * (1.0 - now / was), 0.0, 100.0)) if was > 1e-9 else None
+
+
+def _by_effects(e: Evidence) -> float | None:
+    """Shrink of the innovations, per cent; see ``Shrink``."""
     noise = e.stages[-1].fitted.noise ** 2
     was, now = (float(np.mean(s.held_out.innovations / noise)) - 1.0 for s in (e.stages[0], e.stages[-1]))
     return float(np.clip(100.0 * (1.0 - now / was), 0.0, 100.0)) if was > 1e-9 else None
@@ -122,8 +103,9 @@ def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, V
     the terms at zero angles of all manoeuvres together, through the angles at which they are trimmed.
     """
     d, own = fitted.point.derivatives, fitted.point.own
-    trims = np.array([[f.trim[0], f.u_trim] for f in problem.flights.flights])
-    gravity = np.array([GRAVITY_M_S2 / float(np.mean(f.slow[0])) for f in problem.flights.flights])
+    trims = np.array([[f.alpha_trim, f.u_trim] for f in problem.flights.flights])
+    # Trim terms are given at the reference speed, and so is the weight they carry there.
+    gravity = GRAVITY_M_S2 / problem.flights.reference_m_s
     slopes = {"Z_0": (0, 2), "M_0": (3, 5)}
     terms = {"Z_0": own[:, 2] + gravity, "M_0": own[:, 3]}
     values = {}

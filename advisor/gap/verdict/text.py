@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from advisor.gap.result import VISIBLE, Cause, Gap, Shrink, Verdict, Where, spelled
+from advisor.gap.search.merit import LEAST_SIGMA
 
 _WHAT = {
     "transport_delay": "The simulator answers {delay_s_ms:.0f} ms too early: "
@@ -26,8 +27,8 @@ _WHAT = {
     "airspeed_variation exponent": "The real forces do not grow with air speed squared, "
     "but with its power {exponent_power:.1f}",
     "ground_effect": "The ground was near enough to be felt",
-    "turbulence": "The air was not still: gusts of {sigma_w_m_s:.1f} m/s",
-    "gust": "A gust of {amplitude_m_s:.1f} m/s passed",
+    "turbulence": "The air was not still: gusts of {sigma_w_m_s:.2g} m/s",
+    "gust": "A gust of {amplitude_m_s:.2g} m/s passed",
     "alpha_lag": "The angle of attack channel lags by {lag_s_ms:.0f} ms",
     "alpha_scale": "The angle of attack channel reads {scale_percent:+.0f} % off",
     "alpha_bias": "The angle of attack channel is {bias_rad_deg:+.2f} deg off",
@@ -42,6 +43,23 @@ _WHAT = {
     "attitude_skew": "The attitude's time stamps are {skew_s_ms:+.0f} ms off",
     "attitude_skew with_pitch_rate": "The time stamps of attitude and pitch rate are {skew_s_ms:+.0f} ms off",
 }
+_TOO_MUCH = {
+    "transport_delay": (-1.0, "The simulator answers {delay_s_ms:.0f} ms too late: its delay is too long"),
+    "actuator_lag": (
+        -1.0,
+        "The simulator's elevator is too slow: its servo lags by {lag_s_ms:.0f} ms too much",
+    ),
+    "actuator_backlash": (
+        -1.0,
+        "The simulator's elevator has {half_width_rad_deg:.2f} deg too much play to either side",
+    ),
+    "actuator_deadband": (
+        -1.0,
+        "The simulator's elevator ignores {half_width_rad_deg:.2f} deg too much around neutral",
+    ),
+    "alpha_dot": (1.0, "The simulator has too much of the moment that the rate of angle of attack makes"),
+}
+"""What is said where the aircraft file has too much of an effect; the sign of its first number then."""
 _BLOCK = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
@@ -64,13 +82,14 @@ def what(cause: Cause) -> str:
         sizes[f"{name}_deg"] = math.degrees(value.value)
         sizes[f"{name}_percent"] = 100.0 * value.value
         sizes[f"{name}_power"] = 2.0 + value.value
-    if cause.effect == "transport_delay" and cause.parameters["delay_s"].value < 0.0:
-        return f"The simulator answers {-sizes['delay_s_ms']:.0f} ms too late: its delay is too long"
+    sign, less = _TOO_MUCH.get(cause.effect, (0.0, ""))
+    if sign * next(iter(sizes.values()), 0.0) > 0.0:
+        return less.format(**{name: abs(size) for name, size in sizes.items()})
     particular = cause.effect
     if cause.parameters:
         name, value = list(cause.parameters.items())[-1]
         # A lag that may as well be none is not worth telling.
-        particular += f" {name}" if abs(value.value) > value.std else ""
+        particular += f" {name}" if abs(value.value) > LEAST_SIGMA * value.std else ""
     return _WHAT.get(particular, _WHAT[cause.effect]).format(**sizes)
 
 
@@ -83,6 +102,7 @@ def sentence_of(
     verdict: Verdict, gap: Gap, where: Where, causes: Sequence[Cause], shrink: Shrink | None
 ) -> str:
     """One sentence for the crew."""
+    present = [c for c in causes if c.present]
     if verdict == "none":
         if gap.before < VISIBLE:
             left = "nothing is left above the noise"
@@ -94,12 +114,15 @@ def sentence_of(
         return f"The simulator flies like the aircraft: {left}."
     removed = f"{max(shrink.percent, 0.0):.0f} % of the gap" if shrink is not None else "the gap"
     if verdict == "parameters":
+        if shrink is not None and shrink.beyond_air_percent is not None:
+            removed = f"{shrink.beyond_air_percent:.0f} % of the gap, and the air makes the rest"
         return f"The simulator has the right structure and wrong numbers: the fitted eight remove {removed}."
     if verdict == "unknown":
         tried = next((c for c in causes if c.probability > 0.02), None)
         near = f"; nearest, but not enough: {spelled(tried.effect)}" if tried is not None else ""
+        if present:
+            near = f", beside what looks like {', '.join(spelled(c.effect) for c in present)}"
         return f"Something {place(where.block)} that no known effect explains{near}."
-    present = [c for c in causes if c.present]
     also = ""
     if len(present) > 1:
         also = "; also " + ", ".join(spelled(c.effect) for c in present[1:])

@@ -1,0 +1,79 @@
+"""The numbers of an answer belong together, whatever was found and whatever was kept out."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.diagnose import diagnose
+from advisor.gap.fitting.normal import solved_within
+from tests.gap.generator import Setup, fly
+
+HEIGHTS = (120.0, 121.0, 119.0)
+CAUSES = {
+    "transport_delay": Setup(maneuvers=6, switches={"delay": 0.06}, seed=21),
+    "alpha_bias": Setup(maneuvers=6, alpha_bias=0.03, seed=22),
+    "airspeed_variation": Setup(maneuvers=6, thrust_amplitude=4.0, heights_m=HEIGHTS, seed=8),
+}
+
+
+@pytest.mark.parametrize("holdout", [None, 2])
+@pytest.mark.parametrize("effect", CAUSES)
+def test_waterfall_manoeuvres_and_interval_tell_of_the_same_gap_as_the_total(effect, holdout):
+    found = diagnose(fly(CAUSES[effect]), Aircraft(), holdout=holdout)
+    assert found.causes[0].effect == effect
+    assert found.waterfall[-1][1] == pytest.approx(found.gap.after, rel=1e-9, abs=1e-12)
+    kept = [before for number, before, _ in found.gap.by_maneuver if number in found.shrink.holdout]
+    assert found.gap.before == pytest.approx(np.mean(kept), rel=0.1)
+    assert found.shrink.percent > 90.0
+    assert found.shrink.ci95_percent[0] > 50.0
+    assert sum(found.gap.by_phase.values()) > found.gap.before
+
+
+def test_what_is_plotted_as_after_is_what_the_channel_read_where_its_offset_is_the_cause():
+    found = diagnose(fly(CAUSES["alpha_bias"]), Aircraft())
+    trace = next(t for t in found.traces if t.channel == "alpha")
+    assert np.mean(trace.measured - trace.before) == pytest.approx(0.03, abs=0.004)
+    assert np.mean(trace.measured - trace.after) == pytest.approx(0.0, abs=0.001)
+
+
+@pytest.mark.parametrize("reference_m_s", [18.0, 27.0])
+def test_terms_at_zero_angles_are_those_of_the_reference_speed(reference_m_s):
+    flown = fly(Setup(maneuvers=6, seed=5))
+    at_flown = diagnose(flown, Aircraft())
+    model = diagnose(flown, Aircraft(reference_airspeed_m_s=reference_m_s)).model
+    ratio = reference_m_s / at_flown.reference_airspeed_m_s
+    # Lift at zero angles, N_0 = Z_0 - g/V, goes with V as all other aerodynamic terms of Eq. (1) do.
+    weight, there = 9.80665 / at_flown.reference_airspeed_m_s, 9.80665 / reference_m_s
+    assert model["Z_alpha"].value == pytest.approx(ratio * at_flown.model["Z_alpha"].value, rel=0.02)
+    assert model["Z_0"].value - there == pytest.approx(
+        ratio * (at_flown.model["Z_0"].value - weight), abs=0.03
+    )
+    assert model["M_0"].value == pytest.approx(ratio**2 * at_flown.model["M_0"].value, abs=0.4)
+
+
+def test_a_number_at_its_bound_leaves_the_others_at_their_best_beside_it():
+    H, g = np.array([[2.0, 1.9], [1.9, 2.0]]), np.array([1.0, -1.0])
+    free = np.linalg.solve(H, g)
+    assert solved_within(H, g, np.full(2, -100.0), np.full(2, 100.0)) == pytest.approx(free)
+    bounded = solved_within(H, g, np.array([-100.0, -100.0]), np.array([3.0, 100.0]))
+    assert bounded == pytest.approx([3.0, (g[1] - H[1, 0] * 3.0) / H[1, 1]])
+
+
+def test_a_file_without_the_terms_at_zero_angles_has_wrong_numbers_all_the_same():
+    flown = fly(Setup(maneuvers=6, seed=5))
+    right = {name: value.value for name, value in diagnose(flown, Aircraft()).model.items()}
+    wrong = {**right, "M_alpha": 0.6 * right["M_alpha"]}
+    six = {name: value for name, value in wrong.items() if not name.endswith("_0")}
+    assert diagnose(flown, Aircraft(model=wrong)).verdict == "parameters"
+    assert diagnose(flown, Aircraft(model=six)).verdict == "parameters"
+
+
+def test_beside_something_unknown_what_was_named_stays_with_half_its_probability():
+    setup = Setup(maneuvers=6, switches={"delay": 0.06, "beat": 0.004}, seed=21)
+    found = diagnose(fly(setup), Aircraft())
+    assert found.verdict == "unknown"
+    assert found.causes[0].effect == "transport_delay"
+    assert found.causes[0].present
+    assert found.causes[0].probability <= 0.5
+    assert "beside what looks like transport delay" in found.sentence
+    assert found.effects["transport_delay"]["delay_s"] == pytest.approx(0.06, abs=0.005)
