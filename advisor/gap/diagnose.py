@@ -3,13 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import SMALLEST_BIAS_RAD, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
+from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.explain import explain
-from advisor.gap.records.airspeed import speed_of_the_motion
+from advisor.gap.records.airspeed import measures_speed, speed_of_the_motion
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis
@@ -23,9 +22,6 @@ from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
 from advisor.problems import UnusableInputError
-
-_SLOWEST_M_S = 1.0
-"""Air speed at which nothing flies."""
 
 
 def diagnose(
@@ -54,7 +50,6 @@ def diagnose(
         Too few manoeuvres, or no angle of attack.
     """
     progress("checking the angle of attack against the motion", 0.0)
-    maneuvers = [_without_dead_pitot(m) for m in maneuvers]
     aircraft = _with_speed(maneuvers, aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = [_without_offset(m, offset) for m in maneuvers]
@@ -62,7 +57,7 @@ def diagnose(
     _refuse(flights)
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
     numbers = {flight.number for flight in flights.flights}
-    flown = [m for m in maneuvers if m.number in numbers]
+    flown = [_without_dead_pitot(m) for m in maneuvers if m.number in numbers]
     speed = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
     kinematics = combine([check_alpha(m, speed, *arms) for m in flown])
     progress("fitting the simulator's model", 0.1)
@@ -94,9 +89,8 @@ def _refuse(flights: Flights) -> None:
 
 
 def _without_dead_pitot(maneuver: Maneuver) -> Maneuver:
-    """The manoeuvre without an air speed that stands still in flight: no tube fitted, or a plug left in."""
-    speed = maneuver.channels.get("airspeed")
-    if speed is None or (len(speed) > 1 and float(np.min(speed.y)) > _SLOWEST_M_S):
+    """The manoeuvre without an air speed that stands still in flight."""
+    if measures_speed(maneuver):
         return maneuver
     return replace(maneuver, channels={k: c for k, c in maneuver.channels.items() if k != "airspeed"})
 
@@ -104,7 +98,7 @@ def _without_dead_pitot(maneuver: Maneuver) -> Maneuver:
 def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
     """The aircraft with the speed that its motion shows, where neither file nor every manoeuvre has one."""
     known = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
-    if known or all("airspeed" in m.channels for m in maneuvers):
+    if known or all(measures_speed(m) for m in maneuvers):
         return aircraft
     return replace(aircraft, airspeed_m_s=speed_of_the_motion(maneuvers))
 
@@ -125,7 +119,9 @@ def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver]) -> Evidence:
         is_there = e.air is None or shear.is_plain
         e = replace(e, shear=shear, leftover=of_the_wind(e.leftover) if is_there else e.leftover)
     weight = weight_carried(flown, e.problem.flights.reference_m_s)
-    if weight is not None and e.leftover is None and len(e.stages) == 1:
+    # What an accelerometer reads wrong looks like a force, too: a name for one is no other explanation.
+    elsewhere = any(s.added is not None and BLOCK_OF[s.added.effect] != "force_equation" for s in e.stages)
+    if weight is not None and e.leftover is None and not elsewhere:
         e = replace(e, leftover=Leftover("accelerometer", 1.0, (("accelerometer", 1.0),)))
     return replace(e, weight=weight)
 

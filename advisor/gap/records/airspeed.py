@@ -12,6 +12,8 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.gravity import GRAVITY_M_S2
 
+_SLOWEST_M_S = 1.0
+"""Air speed at which nothing flies."""
 _LEAST_SAMPLES = 6
 """Of the instrument in a manoeuvre, from which on a parabola may be fitted to them ..."""
 _LEAST_SPARE = 10
@@ -20,6 +22,12 @@ _LONGEST_MEMORY = 0.95
 """Correlation from one sample to the next that is taken for the instrument's: beyond it is the aircraft's."""
 _SLOW_S = 1.0
 """Over which the thrust's excess is averaged: quicker than the speed it changes, slower than the noise."""
+
+
+def measures_speed(maneuver: Maneuver) -> bool:
+    """Whether it has an air speed that is one of flight: a tube may be missing, or still plugged."""
+    speed = maneuver.channels.get("airspeed")
+    return speed is not None and len(speed) > 1 and float(np.min(speed.y)) > _SLOWEST_M_S
 
 
 def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:

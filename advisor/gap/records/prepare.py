@@ -10,7 +10,13 @@ from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.renewal import renewed
-from advisor.gap.records.airspeed import airspeed_on, along_the_path, speed_doubts, speed_without_instrument
+from advisor.gap.records.airspeed import (
+    airspeed_on,
+    along_the_path,
+    measures_speed,
+    speed_doubts,
+    speed_without_instrument,
+)
 from advisor.gap.records.edges import edges_of, held_from, step_unseen
 from advisor.gap.records.flights import Flight, Flights, Measured
 from advisor.gap.records.provenance import is_estimate
@@ -42,7 +48,7 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
     seen = [m for m in usable if not step_unseen(m)]
     if len(seen) >= _ENOUGH:
         usable = seen
-    speeds = [m.channels["airspeed"].y for m in usable if "airspeed" in m.channels]
+    speeds = [m.channels["airspeed"].y for m in usable if measures_speed(m)]
     measured = bool(usable) and len(speeds) == len(usable)
     if measured:
         reference = aircraft.reference_airspeed_m_s or float(np.mean([np.mean(s) for s in speeds]))

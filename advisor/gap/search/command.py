@@ -76,8 +76,11 @@ def may_be_held(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool
         return False
     interval = float(np.median(np.diff(problem.flights.flights[0].t_u)))
     least, most = 0.5 * interval - _HALF_S, interval + _HALF_S
-    late = least < _delay_of(fitted) < most and not _BEND.isdisjoint(seen)
-    return late or any(least < abs(time) < most for time in _other_times_of(fitted))
+    # The few milliseconds of latency that any model has may hold a part of it, and run out.
+    late = least < _delay_of(fitted) < most or _latency_of(fitted) >= input.LATENCY.bounds[0][1]
+    return (late and not _BEND.isdisjoint(seen)) or any(
+        least < abs(time) < most for time in _other_times_of(fitted)
+    )
 
 
 def read_as_held(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
@@ -110,6 +113,10 @@ def _other_times_of(fitted: Fitted) -> list[float]:
         for effect, values in effects
         if effect.names[0] == "skew_s" or effect.effect == "actuator_lag"
     ]
+
+
+def _latency_of(fitted: Fitted) -> float:
+    return float(fitted.point.values[fitted.point.effects.index(input.LATENCY)][0])
 
 
 def _delay_of(fitted: Fitted) -> float:
