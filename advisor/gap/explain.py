@@ -25,8 +25,12 @@ from advisor.gap.search.waterfall import Progress, Stage, as_measured, build_up,
 from advisor.gap.unnamed.laws import unnamed_law
 from advisor.gap.unnamed.leftover import Leftover, is_the_gust, left_over, other_than_air, swinging
 from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, remainder
+from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.wander import wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
+
+_HARDLY_DAMPED = 0.02
+"""Damping ratio of a structure that rings: of bare metal, or a boom."""
 
 
 def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Progress) -> Evidence:
@@ -42,6 +46,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         Called with a sentence and the share done.
     """
     variants = beyond_known(aircraft.effects, variants_for(problem.flights))
+    variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
     problem, stages = _named(problem, baseline, variants, progress)
     law = unnamed_law(problem, stages)
     if law is not None:
@@ -65,6 +70,20 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
     speed = at_constant_speed(problem, stages[-1].fitted)
     return Evidence(problem, stages, leftover, air, floor, file_model, speed)
+
+
+def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> Variant:
+    """A structural mode also sought where the pitch rate rings: hardly damped, it shows nowhere else."""
+    if variant.effect != "structural_mode":
+        return variant
+    omega = variant.names.index("omega_rad_s")
+    lowest, highest = (w / (2.0 * np.pi) for w in variant.bounds[omega])
+    hz = ringing_hz(problem, plain, lowest, highest)
+    if hz is None:
+        return variant
+    start = list(variant.starts[0])
+    start[omega], start[variant.names.index("damping")] = 2.0 * np.pi * hz, _HARDLY_DAMPED
+    return replace(variant, starts=(*variant.starts, tuple(start)))
 
 
 def _named(

@@ -11,7 +11,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.unnamed.tone import line_of, tone_in
+from advisor.gap.unnamed.tone import line_of, ringing_hz, tone_in
 from tests.gap.generator import Setup, fly
 
 STANDS_OUT = 5.0
@@ -53,6 +53,19 @@ def test_moving_air_is_no_tone():
     problem, fitted = fit_baseline(flights, Aircraft())
     assert problem.knows_the_noise
     assert tone_in(problem, fitted, np.ones(len(problem.channels))) is None
+
+
+def test_where_the_pitch_rate_rings_a_structure_is_sought_though_slower_motion_is_larger():
+    problem, fitted = fit_baseline(prepare(fly(Setup(maneuvers=3, seed=36)), Aircraft()), Aircraft())
+    c, left = problem.channels.index("q"), []
+    for flight, e in zip(problem.flights.flights, fitted.innovations, strict=True):
+        left.append(e.copy())
+        since = flight.outputs["q"].t - flight.first_step_s
+        ringing = np.exp(-0.5 * since) * np.sin(2.0 * np.pi * 7.2 * since) * (since > 0.0)
+        left[-1][problem.rows(flight)[c]] += 0.05 * ringing + 0.1 * np.sin(2.0 * np.pi * 0.8 * since)
+    shown = replace(fitted, innovations=tuple(left))
+    assert ringing_hz(problem, shown, 2.0, 12.0) == pytest.approx(7.2, abs=0.1)
+    assert ringing_hz(problem, shown, 0.2, 2.0) == pytest.approx(0.8, abs=0.1)
 
 
 @pytest.mark.parametrize("gust_std", [0.0, 0.2])

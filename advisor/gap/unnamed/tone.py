@@ -81,6 +81,18 @@ def line_of(records: Sequence[FloatArray], interval_s: float) -> tuple[float, fl
     return float(hz[peak]), float(power[peak] / max(1.0, float(np.max(power[off], initial=0.0))))
 
 
+def ringing_hz(problem: Problem, fitted: Fitted, lowest: float, highest: float) -> float | None:
+    """Where between two frequencies a model leaves most power of the pitch rate; None without samples."""
+    if "q" not in problem.channels:
+        return None
+    records, interval_s = _records(problem, fitted, problem.channels.index("q"))
+    points = max(_POINTS, *map(len, records))
+    hz = np.fft.rfftfreq(points, interval_s)
+    power = np.mean([_spectrum(r, points) for r in records], axis=0)
+    inside = (hz > lowest) & (hz < highest)
+    return float(hz[int(np.argmax(np.where(inside, power, 0.0)))]) if np.any(inside) else None
+
+
 def _spectrum(record: FloatArray, points: int) -> FloatArray:
     """Power at each frequency, 1 in the mean for white noise."""
     window = np.hanning(len(record))
