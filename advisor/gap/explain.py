@@ -29,6 +29,8 @@ from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.wander import wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
 
+_FAR_ABOVE = 2.0
+"""A floor over white noise from which on it is no longer an instrument's, with whatever memory."""
 _HARDLY_DAMPED = 0.02
 """Damping ratio of a structure that rings: of bare metal, or a boom."""
 
@@ -126,12 +128,20 @@ def _without_a_name(
     swing = swinging(problem, first, last, tolerance)
     if swing is not None:
         return swing
-    leftover = left_over(problem, first, last, tolerance, moving_air=air is not None)
+    all_named = air is None and is_all_named(stages, _of_instruments(problem, floor))
+    leftover = left_over(problem, first, last, tolerance, air is not None, all_named)
     if air is None:
-        return None if leftover is not None and is_all_named(stages, floor) else leftover
+        return leftover
     if air.gust and leftover is not None and is_the_gust(problem, last, leftover):
         return None
     return other_than_air(problem, first, last) if leftover is None or leftover.block == "air" else leftover
+
+
+def _of_instruments(problem: Problem, floor: FloatArray) -> FloatArray:
+    """The floor, but the white noise where it is far above that: something goes on in quiet, too."""
+    if problem.instruments is None:
+        return floor
+    return np.where(floor > _FAR_ABOVE * problem.instruments, problem.instruments, floor)
 
 
 def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:

@@ -64,10 +64,11 @@ def test_that_the_motion_swings_with_a_tone_does_not_tell_where_the_tone_is():
     assert followed(flights, rates) is None
 
 
-def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane():
+@pytest.mark.parametrize("named", [{}, {"delay": 0.06}])
+def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane_whatever_is_named_besides(named):
     maneuvers = []
     rng = np.random.default_rng(22)
-    for maneuver in fly(Setup(maneuvers=6, seed=22)):
+    for maneuver in fly(Setup(maneuvers=6, switches=named, seed=22)):
         alpha = maneuver.channels["alpha"]
         hit = np.convolve(rng.random(len(alpha)) < 0.006, np.ones(4), mode="same") > 0.0
         jumpy = replace(alpha, y=alpha.y + 0.03 * hit)
@@ -75,6 +76,7 @@ def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane():
     found = diagnose(maneuvers, Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == "alpha_sensor"
+    assert [c.effect for c in found.causes if c.present] == ["transport_delay"] * len(named)
 
 
 def test_a_vane_that_sticks_for_long_is_unknown_in_the_vane_and_not_a_channel_that_repeats_itself():

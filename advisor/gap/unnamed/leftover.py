@@ -71,7 +71,12 @@ def of_the_wind(found: Leftover | None) -> Leftover:
 
 
 def left_over(
-    problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArray, moving_air: bool = False
+    problem: Problem,
+    first: Fitted,
+    last: Fitted,
+    tolerance: FloatArray,
+    moving_air: bool = False,
+    all_named: bool = False,
 ) -> Leftover | None:
     """What the last model leaves, if it is more than noise.
 
@@ -83,13 +88,17 @@ def left_over(
         Shape (channels,): tolerance of channels that were filtered before they were recorded, else 0.
     moving_air
         Whether the air was found to move: then the filter that knows of it is known to low order only.
+    all_named
+        Whether named effects leave no gap: then only a sensor that jumps is asked for: the floor hides it.
     """
     noise = _noise(problem)
     probes = probe_blocks(problem, last, noise)
     best, jumping = probes[0], jumping_sensor(problem, last, tolerance)
     # What a disturbance with a memory describes did not jump.
     if jumping is not None and best.explained < _LEAST_SHARE:
-        return Leftover(jumping, 1.0, _ranking(probes, jumping))
+        return Leftover(jumping, 1.0, _ranking(probes, jumping), note="It jumps now and then.")
+    if all_named:
+        return None
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     active, quiet = unrest(problem, last.innovations)
     telling = np.isin(np.arange(len(problem.channels)), problem.flights.telling)
