@@ -61,8 +61,7 @@ def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
     for effect, values in found.items():
         before = both.get(effect, {}) if effect not in _OF_ITS_FLIGHT else {}
         both[effect] = before | dict(values)
-        size = next(iter(values))
-        if size not in PROPELLER.names:
+        for size in [name for name in values if name not in PROPELLER.names][:1]:
             both[effect][size] += before.get(size, 0.0)
     return both
 
