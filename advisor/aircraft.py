@@ -99,3 +99,8 @@ class Aircraft:
     """Effects added to the simulator's model: effect name of the gap analysis to its parameters."""
     campaign: CampaignPlan = field(default_factory=CampaignPlan)
     limits: Limits = field(default_factory=Limits)
+
+    @property
+    def stated_airspeed_m_s(self) -> float | None:
+        """The air speed that the file gives for a log without one; None where it gives none."""
+        return self.airspeed_m_s or self.reference_airspeed_m_s

@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 
+from advisor.flight.coloured import coloured_covariance
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.renewal import renewed
@@ -243,33 +244,6 @@ def _judge(
             f"alpha reads {100 * scale:+.0f} ± {100 * scale_std:.0f} % off in scale against the motion.",
         )
     return "consistent", f"alpha follows the motion (lag {lag * 1e3:+.0f} ± {lag_std * 1e3:.0f} ms)."
-
-
-def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-    """Covariance of a least-squares fit whose residuals are coloured.
-
-    (JᵀJ)⁻¹ (Σ_ij R(i−j) J_iᵀ J_j) (JᵀJ)⁻¹ with the residuals' own autocovariance R, tapered to zero
-    at a fifth of the record (Klein & Morelli, Eq. 6.38 f.).
-
-    Parameters
-    ----------
-    jacobian
-        Shape (n, p).
-    residual
-        Shape (n,), evenly sampled enough for lags to mean time.
-    """
-    n = len(residual)
-    inverse = np.linalg.pinv(jacobian.T @ jacobian)
-    lags = max(1, n // 5)
-    inner = float(residual @ residual) / n * (jacobian.T @ jacobian)
-    for k in range(1, lags):
-        weight = (1.0 - k / lags) * float(residual[k:] @ residual[:-k]) / n
-        cross = jacobian[k:].T @ jacobian[:-k]
-        inner = inner + weight * (cross + cross.T)
-    plain = float(residual @ residual) / max(n - jacobian.shape[1], 1) * inverse
-    # The tapered sum may come out below the white-noise value by chance: never trust it that far.
-    wider = np.sqrt(np.maximum(np.diag(inverse @ inner @ inverse) / np.maximum(np.diag(plain), 1e-300), 1.0))
-    return np.asarray(plain * np.outer(wider, wider))
 
 
 def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:

@@ -58,8 +58,7 @@ def diagnose(
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
     numbers = {flight.number for flight in flights.flights}
     flown = [_without_dead_pitot(m) for m in maneuvers if m.number in numbers]
-    speed = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
-    kinematics = combine([check_alpha(m, speed, *arms) for m in flown])
+    kinematics = combine([check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown])
     progress("fitting the simulator's model", 0.1)
     if abs(kinematics.bias_rad) > max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * kinematics.bias_std_rad):
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
@@ -97,8 +96,7 @@ def _without_dead_pitot(maneuver: Maneuver) -> Maneuver:
 
 def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
     """The aircraft with the speed that its motion shows, where neither file nor every manoeuvre has one."""
-    known = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
-    if known or all(measures_speed(m) for m in maneuvers):
+    if aircraft.stated_airspeed_m_s or all(measures_speed(m) for m in maneuvers):
         return aircraft
     return replace(aircraft, airspeed_m_s=speed_of_the_motion(maneuvers))
 

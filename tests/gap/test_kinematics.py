@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.flight.kinematics import KinematicCheck, check_alpha, coloured_covariance, combine
+from advisor.flight.coloured import coloured_covariance
+from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.prepare import prepare

@@ -63,7 +63,7 @@ def foresee_plan(
     _refuse(plan, rate_hz, amplitude_deg, without)
     frequency = float(np.sqrt(max(-derivatives[3] + derivatives[0] * derivatives[4], 1.0)))
     unit = min(max(2.0 / frequency, 0.2), 1.5)
-    speed = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or 25.0
+    speed = aircraft.stated_airspeed_m_s or 25.0
     maneuvers = [
         _maneuver(n, name, unit, np.radians(amplitude_deg) * (1.0, 0.6)[n % 2], rate_hz, speed, without)
         for n, name in enumerate(plan)

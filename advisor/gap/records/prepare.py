@@ -54,7 +54,7 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
         reference = aircraft.reference_airspeed_m_s or float(np.mean([np.mean(s) for s in speeds]))
         moves = float(max(np.max(np.abs(s / np.mean(np.concatenate(speeds)) - 1.0)) for s in speeds))
     else:
-        reference, moves = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s or ASSUMED_M_S, 0.0
+        reference, moves = aircraft.stated_airspeed_m_s or ASSUMED_M_S, 0.0
     flights = _about_their_mean(_ready(m, aircraft, reference, measured, scale_with_speed) for m in usable)
     with_alpha = tuple("alpha" in f.outputs for f in flights)
     if sum(with_alpha) >= _ENOUGH:

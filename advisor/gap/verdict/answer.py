@@ -76,8 +76,7 @@ def answer(
 
 def _speed_is_known(problem: Problem, aircraft: Aircraft) -> bool:
     """Whether the derivatives' speed was measured, is the file's, or what the motion shows."""
-    stated = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
-    return problem.flights.speed_measured or stated is not None
+    return problem.flights.speed_measured or aircraft.stated_airspeed_m_s is not None
 
 
 def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) -> dict[str, dict[str, float]]:

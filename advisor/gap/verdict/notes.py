@@ -29,8 +29,11 @@ def notes_of(
     if not flights.speed_measured:
         shown = "a_x" in flights.has and {"alpha", "a_z", "theta"} <= set(flights.channels)
         from_there = "from there it is what the accelerometers make of it" if shown else "it stays there"
-        stated = aircraft.airspeed_m_s or aircraft.reference_airspeed_m_s
-        whence = "as the aircraft file says or else the motion shows" if stated else "assumed"
+        whence = (
+            "as the aircraft file says or else the motion shows"
+            if aircraft.stated_airspeed_m_s
+            else "assumed"
+        )
         notes.append(
             f"No air speed in the log: {flights.reference_m_s:.1f} m/s before each manoeuvre, {whence}; "
             f"{from_there}."
