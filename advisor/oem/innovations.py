@@ -16,7 +16,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.oem import kalman
-from advisor.oem.kalman import DIFFUSE, STATES
+from advisor.oem.kalman import DIFFUSE
 
 CHANNELS = ("alpha", "q", "a_z", "theta")
 ALPHA, Q, A_Z, THETA = range(4)
@@ -88,7 +88,7 @@ def gains_of(
         Of the vane and of the accelerometer, ahead of the centre of gravity.
     """
     white = np.asarray(air.white[channel] ** 2 + extra)
-    observed = _observed(system, air, arms_m)
+    observed = kalman.observed_by(system, air.seen_by_alpha, *arms_m)
     step, keep, gain, root = kalman.gains_along(
         t, channel, system, white, _memory(air), observed, start_variance
     )
@@ -100,23 +100,10 @@ def cost_of(t: FloatArray, channel: np.ndarray, left: FloatArray, system: FloatA
 
     Arguments as in ``gains_of``. A search for the noise asks for it a few hundred times, so nothing is kept.
     """
-    observed = _observed(system, air)
+    observed = kalman.observed_by(system, air.seen_by_alpha, 0.0, 0.0)
     return float(kalman.cost_along(t, channel, left, system, air.white**2, _memory(air), observed, DIFFUSE))
 
 
 def _memory(air: AirModel) -> FloatArray:
     """Shape (7,): coloured noise by channel and its memory, the gust and its memory."""
     return np.array([*air.coloured, air.memory_s, air.gust, air.gust_memory_s])
-
-
-def _observed(system: FloatArray, air: AirModel, arms_m: tuple[float, float] = (0.0, 0.0)) -> FloatArray:
-    """Shape (4, 8): how each channel sees the states."""
-    observed = np.zeros((4, STATES))
-    z_a, z_q, m_a, m_q, speed = system
-    vane, imu = arms_m
-    lift, turn = speed * z_a - imu * m_a, speed * z_q - imu * m_q
-    observed[ALPHA, [0, 1, 3, 4]] = 1.0, -vane / speed, air.seen_by_alpha, 1.0
-    observed[Q, [1, 5]] = 1.0
-    observed[A_Z, [0, 1, 3, 6]] = lift, turn, lift, 1.0
-    observed[THETA, [2, 7]] = 1.0
-    return observed

@@ -14,9 +14,25 @@ DIFFUSE = 1e3
 """Variance of a motion of which nothing is known at the start of the record."""
 
 
+@njit(cache=True, error_model="numpy")
+def observed_by(system: FloatArray, seen_by_alpha: float, vane_m: float, imu_m: float) -> FloatArray:
+    """Shape (4, 8): how α, q, a_z and θ see the states; ``system``, shape (5,), is Z_α, Z_q, M_α, M_q, V."""
+    z_a, z_q, m_a, m_q, speed = system[0], system[1], system[2], system[3], system[4]
+    lift = speed * z_a - imu_m * m_a
+    observed = np.zeros((4, STATES))
+    observed[0, 0], observed[0, 1], observed[0, 3] = 1.0, -vane_m / speed, seen_by_alpha
+    observed[1, 1], observed[3, 2] = 1.0, 1.0
+    observed[2, 0], observed[2, 1], observed[2, 3] = lift, speed * z_q - imu_m * m_q, lift
+    for c in range(4):
+        observed[c, 4 + c] = 1.0
+    return observed
+
+
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _begun(system: FloatArray, memory: FloatArray, start_variance: float) -> tuple[FloatArray, FloatArray]:
-    """Rates of α, q, θ and the gust, shape (4, 4), and the covariance at the start, shape (8, 8)."""
+def _begun(
+    system: FloatArray, memory: FloatArray, start_variance: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Rates of α, q, θ and the gust, half their square, and the covariance at the start, shape (8, 8)."""
     z_a, z_q, m_a, m_q = system[0], system[1], system[2], system[3]
     A, P = np.zeros((4, 4)), np.zeros((STATES, STATES))
     A[0, 0], A[0, 1], A[0, 3] = z_a, 1.0 + z_q, z_a
@@ -25,18 +41,23 @@ def _begun(system: FloatArray, memory: FloatArray, start_variance: float) -> tup
     P[0, 0], P[1, 1], P[2, 2], P[3, 3] = start_variance, start_variance, start_variance, memory[5] ** 2
     for c in range(4):
         P[4 + c, 4 + c] = memory[c] ** 2
-    return A, P
+    half_square = np.zeros((4, 4))
+    for a in range(4):
+        for b in range(4):
+            for s in range(4):
+                half_square[a, b] += 0.5 * A[a, s] * A[s, b]
+    return A, half_square, P
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _transition(step: FloatArray, A: FloatArray, dt: float, keep_gust: float) -> None:
+def _transition(
+    step: FloatArray, A: FloatArray, half_square: FloatArray, dt: float, keep_gust: float
+) -> None:
     """Fill in what α, q, θ and the gust become after ``dt``: second order, the gust exactly."""
     for a in range(4):
         for b in range(4):
-            square = 0.0
-            for s in range(4):
-                square += A[a, s] * A[s, b]
-            step[a, b] = (1.0 if a == b else 0.0) + A[a, b] * dt + square * 0.5 * dt * dt
+            step[a, b] = (A[a, b] + half_square[a, b] * dt) * dt
+        step[a, a] += 1.0
     step[3, 3] = keep_gust
 
 
@@ -45,14 +66,19 @@ def _propagate(
     P: FloatArray, moved: FloatArray, step: FloatArray, keep: float, keep_gust: float, memory: FloatArray
 ) -> None:
     """The covariance after a step; ``moved``, shape (4, 8), is room to work in."""
+    # Nothing depends on θ, and the gust on nothing else.
+    for b in range(STATES):
+        a, q, air = P[0, b], P[1, b], P[3, b]
+        moved[0, b] = step[0, 0] * a + step[0, 1] * q + step[0, 3] * air
+        moved[1, b] = step[1, 0] * a + step[1, 1] * q + step[1, 3] * air
+        moved[2, b] = P[2, b] + step[2, 0] * a + step[2, 1] * q + step[2, 3] * air
+        moved[3, b] = keep_gust * air
     for a in range(4):
-        for b in range(STATES):
-            moved[a, b] = (step[a, 0] * P[0, b] + step[a, 1] * P[1, b]
-                           + step[a, 2] * P[2, b] + step[a, 3] * P[3, b])  # fmt: skip
-    for a in range(4):
-        for b in range(4):
-            P[a, b] = (moved[a, 0] * step[b, 0] + moved[a, 1] * step[b, 1]
-                       + moved[a, 2] * step[b, 2] + moved[a, 3] * step[b, 3])  # fmt: skip
+        turned, air = moved[a, 2], moved[a, 3]
+        for b in range(3):
+            P[a, b] = step[b, 0] * moved[a, 0] + step[b, 1] * moved[a, 1] + step[b, 3] * air
+        P[a, 2] += turned
+        P[a, 3] = keep_gust * air
         for b in range(4, STATES):
             P[a, b] = moved[a, b] * keep
             P[b, a] = P[a, b]
@@ -124,7 +150,7 @@ def gains_along(
     n = len(t)
     steps, keeps = np.empty((n, 4, 4)), np.empty(n)
     gains, roots = np.empty((n, STATES)), np.empty(n)
-    A, P = _begun(system, memory, start_variance)
+    A, half_square, P = _begun(system, memory, start_variance)
     step, moved = np.eye(4), np.empty((4, STATES))
     last, keep_gust, keep = -1.0, 1.0, 1.0
     for i in range(n):
@@ -132,7 +158,7 @@ def gains_along(
         if dt > 1e-9:
             if abs(dt - last) > 1e-9:
                 last, keep_gust, keep = dt, np.exp(-dt / memory[6]), np.exp(-dt / memory[4])
-                _transition(step, A, dt, keep_gust)
+                _transition(step, A, half_square, dt, keep_gust)
             steps[i], keeps[i] = step, keep
             _propagate(P, moved, step, keep, keep_gust, memory)
         else:
@@ -157,7 +183,7 @@ def cost_along(
     What ``gains_along`` and ``pass_through`` say of it, in one pass in which nothing is kept. Arguments as
     there, but ``white``, shape (4,), is by channel.
     """
-    A, P = _begun(system, memory, start_variance)
+    A, half_square, P = _begun(system, memory, start_variance)
     step, moved = np.eye(4), np.empty((4, STATES))
     x, gain = np.zeros(STATES), np.empty(STATES)
     last, keep_gust, keep, cost = -1.0, 1.0, 1.0, 0.0
@@ -166,7 +192,7 @@ def cost_along(
         if dt > 1e-9:
             if abs(dt - last) > 1e-9:
                 last, keep_gust, keep = dt, np.exp(-dt / memory[6]), np.exp(-dt / memory[4])
-                _transition(step, A, dt, keep_gust)
+                _transition(step, A, half_square, dt, keep_gust)
             _propagate(P, moved, step, keep, keep_gust, memory)
             a, q, air = x[0], x[1], x[3]
             x[0] = step[0, 0] * a + step[0, 1] * q + step[0, 3] * air

@@ -17,7 +17,9 @@ _STEPS = 4
 _AT_ONCE = 16
 """Points that are flown together: enough to fill the packs, few enough for the cache."""
 _HARDLY = 6.0
-"""Decrease of the cost (twice the log likelihood) below which a description is not followed any further."""
+"""Decrease of the cost (twice the log likelihood) below which a description is not followed any further ..."""
+_HOPELESS = 0.05
+"""... nor below this share of what the best has brought by then: it would be no rival (``ranking``)."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +35,8 @@ class Screened:
     """Log probability gained because the derivatives agree better with the aircraft file's."""
 
 
-_Descent = Generator[Point, Place | None, Screened | None]
-"""A search that asks for one point after another and is told of each."""
+_Descent = Generator[Point, tuple[Place | None, float], Screened | None]
+"""A search that asks for one point after another and is told of each, and of the best decrease by then."""
 
 
 class Screen:
@@ -66,12 +68,15 @@ class Screen:
     def _together(self, descents: Sequence[_Descent]) -> list[Screened | None]:
         """All descents side by side: the next points of many are flown at once."""
         ended: list[Screened | None] = [None] * len(descents)
+        most = 0.0
         asked = {n: next(descent) for n, descent in enumerate(descents)}
         while asked:
             some = list(asked)[:_AT_ONCE]
-            for n, place in zip(some, self.around.at_all([asked.pop(n) for n in some]), strict=True):
+            places = self.around.at_all([asked.pop(n) for n in some])
+            most = max(most, *(self.fitted.cost - place.cost for place in places if place is not None), 0.0)
+            for n, place in zip(some, places, strict=True):
                 try:
-                    asked[n] = descents[n].send(place)
+                    asked[n] = descents[n].send((place, most))
                 except StopIteration as end:
                     ended[n] = end.value
         return ended
@@ -86,12 +91,12 @@ class Screen:
             point = self.fitted.point.with_effect(variant, start, resting)
         if sides is not None:
             point = self.around.choose_sides(point, sides)
-        here = yield point
+        here, most = yield point
         if here is None:
             return None
         for n in range(self.steps):
             step, promised = here.step()
-            if self.fitted.cost - here.cost + promised < _HARDLY:
+            if self.fitted.cost - here.cost + promised < max(_HARDLY, _HOPELESS * most):
                 # Not worth a flight: what the model says of the step is answer enough.
                 there = here.point.moved(here.point.shared + step, here.point.own)
                 return Screened(variant, there, here.cost - promised, here.noise)
@@ -100,7 +105,7 @@ class Screen:
                 point = here.point.moved(here.point.shared + length * step, here.point.own)
                 if sides is not None:
                     point = self.around.choose_sides(point, sides)
-                found = yield point
+                found, most = yield point
                 if found is not None and found.cost < here.cost:
                     break
             if found is None or found.cost >= here.cost:
