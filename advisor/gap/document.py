@@ -43,6 +43,7 @@ def gap_document(
             "holdout": list(d.shrink.holdout), "before": d.shrink.before, "after": d.shrink.after,
             "percent": d.shrink.percent, "ci95_percent": list(d.shrink.ci95_percent),
             "beyond_air_percent": d.shrink.beyond_air_percent,
+            "by_numbers_percent": d.shrink.by_numbers_percent,
         },
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "cannot_see": [

@@ -24,7 +24,7 @@ from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.waterfall import Progress, Stage, as_measured, build_up, reduced_to
 from advisor.gap.unnamed.laws import unnamed_law
 from advisor.gap.unnamed.leftover import Leftover, is_the_gust, left_over, other_than_air, swinging
-from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, remainder
+from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, only_numbers, remainder
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.wander import wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
@@ -63,7 +63,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     file_model = _file_model(problem, stages[0].fitted)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, floor)
-        if leftover is None and is_of_no_use(problem, stages, file_model, floor):
+        needless = is_of_no_use(problem, stages, file_model, floor)
+        if leftover is None and (needless or only_numbers(problem, stages, file_model, floor)):
             stages = reduced_to(problem, stages, [])
         elif leftover is None and len(stages) == 1:
             leftover = wandering_sensor(problem, stages[-1].fitted)

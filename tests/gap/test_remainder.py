@@ -1,5 +1,7 @@
 """A name that leaves most of the gap only resembles what is there; the right one leaves next to nothing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,8 @@ from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.waterfall import Stage
-from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, remainder
+from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, only_numbers, remainder
 from tests.gap.generator import Setup, fly
 
 
@@ -69,3 +72,19 @@ def test_a_name_must_take_some_of_the_gap_away_that_the_aircraft_file_leaves(gyr
     assert is_of_no_use(problem, stages, beside, floor)
     assert is_of_no_use(problem, [stages[0], stages[0]], None, floor)
     assert not is_of_no_use(problem, stages[:1], beside, floor)
+
+
+def test_names_that_only_polish_wrong_numbers_are_none(gyro):
+    flown = fly(Setup(maneuvers=6, seed=41))
+    right = fit_baseline(prepare(flown, Aircraft()), Aircraft())[1].point.derivatives
+    off = dict(zip(DERIVATIVES, right * [1.0, 1.0, 1.0, 0.7, 1.5, 1.2], strict=True))
+    fitted = fit_baseline(prepare(flown, Aircraft()), Aircraft(model=off))
+    stages, floor = named_beside(fitted, "actuator_lag")
+    file_model = replace(stages[0].held_out, mean_square=30.0 * floor**2)
+    assert only_numbers(fitted[0], stages, file_model, floor)
+    assert not only_numbers(fitted[0], stages, None, floor)
+    assert not only_numbers(fitted[0], stages[:1], file_model, floor)
+    # A gyro that reads too much leaves more than that, whatever the file's numbers are worth.
+    stages, floor = named_beside(gyro, "pitch_rate_scale")
+    problem = replace(gyro[0], believed=fitted[0].believed)
+    assert not only_numbers(problem, stages, file_model, floor)

@@ -10,6 +10,9 @@ from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.records.floor import independent_samples
 
+PLAIN = 0.5
+"""Gap of the file's own derivatives beside fitted ones from which on it takes less to call them wrong."""
+
 
 def worth(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
     """Shape (channels,): independent samples of each channel over all manoeuvres."""

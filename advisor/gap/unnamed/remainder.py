@@ -8,6 +8,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import gap_of
 from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.waterfall import Stage
 from advisor.gap.unnamed.leftover import Leftover, placed
@@ -19,6 +20,8 @@ _SEEN = 0.2
 
 _USE = 0.1
 """Share of the gap that names must take away."""
+_OF_THE_NUMBERS = 0.01
+"""Share of what fitted numbers take away without them below which names only polish wrong numbers."""
 
 
 def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> Leftover | None:
@@ -53,3 +56,22 @@ def is_of_no_use(
         float(np.mean(gap_of(held.mean_square, floor)[telling])) for held in (before, stages[-1].held_out)
     )
     return len(stages) > 1 and now > (1.0 - _USE) * was
+
+
+def only_numbers(
+    problem: Problem, stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray
+) -> bool:
+    """Whether the file's derivatives are wrong with the names, too, and right ones need no name to speak of.
+
+    Arguments as ``is_of_no_use``.
+    """
+    if len(stages) < 2 or file_model is None:
+        return False
+    was, plain, named = (
+        float(np.mean(gap_of(held.mean_square, floor)))
+        for held in (file_model, stages[0].held_out, stages[-1].held_out)
+    )
+    more, beside = was - plain, plain - named
+    if beside > min(VISIBLE, _OF_THE_NUMBERS * more):
+        return False
+    return file_is_off(problem, stages[-1].fitted, plainly=more > PLAIN)

@@ -55,12 +55,14 @@ def answer(
     where = _where(e, verdict, causes)
     shrink = None
     if verdict in ("effect", "parameters"):
-        shrink = shrink_of(e, kept, gap, before, last, wrong_numbers=verdict == "parameters")
+        shrink = shrink_of(e, kept, gap, before, last, judged.wrong_numbers)
     fitted = stages[-1].fitted
     known = covariance(problem, fitted, worth(problem, fitted.innovations))
     waterfall = waterfall_of(stages, e.floor, judged.apart, judged.speed, gap.before)
     present = {c.effect for c in causes if c.present}
-    effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
+    effects = {}
+    if shrink is not None:
+        effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
     return Diagnosis(
         verdict=verdict, sentence=sentence_of(verdict, gap, where, causes, shrink), gap=gap, where=where,
         causes=causes, shrink=shrink, waterfall=waterfall,

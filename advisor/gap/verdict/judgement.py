@@ -8,7 +8,7 @@ import numpy as np
 from advisor.flight.kinematics import KinematicCheck
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import gap_of
-from advisor.gap.fitting.uncertainty import file_is_off
+from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE, Cause, Value, Verdict
 from advisor.gap.search.speed import airspeed_cause, speed_is_a_cause
 from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
@@ -33,8 +33,6 @@ _AIR_DOUBT = 0.25
 """Relative error of the air's strength: its course is known to low order only."""
 _AIR_DOUBT_S = 0.1
 """Of a gust's time: the distance between two knots of its course."""
-_PLAIN = 0.5
-"""Gap of the file's own derivatives beside fitted ones from which on it takes less to call them wrong."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +49,8 @@ class Judgement:
     bias: Cause | None
     before: HeldOut
     """What the simulator left before anything was added to it."""
+    wrong_numbers: bool
+    """Whether the file's derivatives are off, by themselves or beside the causes."""
 
 
 def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
@@ -97,7 +97,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     before = e.file_model if e.file_model is not None else first
     if e.constant_speed is not None and speed in apart:
         before = e.constant_speed
-    return Judgement(verdict, causes, apart, speed, bias, before)
+    return Judgement(verdict, causes, apart, speed, bias, before, wrong_values)
 
 
 def _wrong_values(e: Evidence) -> bool:
@@ -105,7 +105,7 @@ def _wrong_values(e: Evidence) -> bool:
     if e.file_model is None:
         return False
     more = float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2))
-    return more > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted, plainly=more > _PLAIN)
+    return more > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted, plainly=more > PLAIN)
 
 
 def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ...]:

@@ -45,25 +45,27 @@ def shrink_of(
 ) -> Shrink:
     """How far the gap shrinks on the manoeuvres kept out, with an interval from resampling them.
 
-    ``wrong_numbers``: nothing but the file's derivatives was found wrong.
+    ``wrong_numbers``: the file's derivatives were found wrong.
     """
-    beyond_air = None
-    if e.air is not None and (len(e.stages) > 1 or wrong_numbers):
-        beyond_air = _by_numbers(e) if wrong_numbers else _by_effects(e)
+    beyond_air = by_numbers = None
+    if wrong_numbers and e.air is None and len(e.stages) > 1:
+        by_numbers = _by_numbers(e)
+    elif e.air is not None and (len(e.stages) > 1 or wrong_numbers):
+        beyond_air = _by_effects(e) if len(e.stages) > 1 else _by_numbers(e)
     was = np.mean(before.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
     now = np.mean(last.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
     percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
     low, high = shrink_interval(was, now)
     numbers = tuple(e.problem.flights.flights[i].number for i in kept)
     interval = (min(low, percent), max(high, percent))
-    return Shrink(numbers, gap.before, gap.after, percent, interval, beyond_air)
+    return Shrink(numbers, gap.before, gap.after, percent, interval, beyond_air, by_numbers)
 
 
 def _by_numbers(e: Evidence) -> float | None:
     """What fitted derivatives remove of the gap, per cent, the air in it; None without a file's."""
     if e.file_model is None:
         return None
-    was, now = (gap_of(held.mean_square, e.floor).mean() for held in (e.file_model, e.stages[-1].held_out))
+    was, now = (gap_of(held.mean_square, e.floor).mean() for held in (e.file_model, e.stages[0].held_out))
     return float(np.clip(100.0 * (1.0 - now / was), 0.0, 100.0)) if was > 1e-9 else None
 
 

@@ -132,4 +132,9 @@ def sentence_of(
         removed = f"{shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
     if present[0].effect == "alpha_lag" and shrink is not None and round(shrink.percent) <= 0:
         return f"{what(present[0])}: the motion itself shows it{also}."
-    return f"{what(present[0])}; adding it removes {removed}{also}."
+    added = "adding it"
+    if shrink is not None and shrink.by_numbers_percent is not None:
+        # What the numbers do must not pass for the effect's work.
+        added = "adding it and fitting the eight numbers anew"
+        removed += f" (the numbers alone {shrink.by_numbers_percent:.0f} %)"
+    return f"{what(present[0])}; {added} removes {removed}{also}."
