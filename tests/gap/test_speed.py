@@ -125,11 +125,8 @@ def test_without_an_air_speed_in_the_log_the_accelerometers_show_how_it_changes(
 def test_without_an_air_speed_in_the_log_the_motion_shows_it():
     flown = without_instrument(fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=51)))
     assert speed_of_the_motion(flown) == pytest.approx(UAV.speed, rel=0.02)
-    shown, stated, wrong = (
-        diagnose(flown, Aircraft(airspeed_m_s=v)) for v in (None, UAV.speed, 1.5 * UAV.speed)
-    )
+    shown, stated = (diagnose(flown, Aircraft(airspeed_m_s=v)) for v in (None, UAV.speed))
     assert shown.gap.after == pytest.approx(stated.gap.after, rel=0.1)
-    assert wrong.gap.after > 5.0 * shown.gap.after
     assert any("No air speed in the log" in note for note in shown.notes)
     assert [c.effect for c in shown.causes if c.present] == ["transport_delay"]
 

@@ -26,6 +26,8 @@ _SHORTER = 0.3
 """A step that led uphill is shortened by this ..."""
 _SHORTEST = 0.05
 """... but not below this: the cost is rough at the grid of the simulation."""
+_FURTHER = 5.0
+"""How many times what a step promises the rest of a search may still bring."""
 
 
 @dataclass(frozen=True)
@@ -157,8 +159,12 @@ def fit(
     noise: FloatArray | None = None,
     iterations: int = 12,
     tolerance: float = 0.1,
+    beaten_by: float = np.inf,
 ) -> Fitted:
-    """Minimise det R from a start. The first noise decides the weights of the first step."""
+    """Minimise det R from a start. The first noise decides the weights of the first step.
+
+    ``beaten_by``: a cost that this search is given up for as soon as it is out of reach.
+    """
     point = start
     linear = linearise(problem, point)
     weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
@@ -166,7 +172,8 @@ def fit(
     length, done = 1.0, 1
     while done < iterations and length > _SHORTEST:
         change = length * kept.step.shared
-        if kept.step.promised(change) < tolerance:
+        promised = kept.step.promised(change)
+        if promised < tolerance or kept.cost - _FURTHER * promised > beaten_by:
             break
         owns = kept.step.owns(change)
         point = kept.point.moved(

@@ -25,6 +25,8 @@ _RIVAL = 0.3
 """Share of the best promise below which a candidate is no rival."""
 _GROSS = 300.0
 """Log likelihood promised by the best from which on the right model is far from where the screening looks."""
+_LACKING = 0.5
+"""Share of what the best explains that a candidate may lack and still be followed to its end."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
 """Full fits then, and the share of the best promise that earns one."""
@@ -51,11 +53,10 @@ def judge(
     problem: Problem, before: Fitted, held_before: HeldOut, candidates: Sequence[Screened]
 ) -> list[Judged]:
     """Full fits of the best variants of the best effects; the best judgement first."""
-    fits = [
-        fit(problem, point, s.noise, iterations=_ITERATIONS, tolerance=0.5)
-        for s in shortlist(problem, before, candidates)
-        for point in _described(s.point)
-    ]
+    fits: list[Fitted] = []
+    for s in shortlist(problem, before, candidates):
+        for point in _described(s.point):
+            fits.append(fit(problem, point, s.noise, _ITERATIONS, 0.5, beaten_by=_no_rival(before, fits)))
     if not fits:
         return []
     independent = worth(problem, min(fits, key=lambda f: f.cost).innovations)
@@ -71,6 +72,12 @@ def judge(
         ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)
         first = addition(problem, before, held_before, ended, first.effect, independent)
     return [first, *rest]
+
+
+def _no_rival(before: Fitted, fits: Sequence[Fitted]) -> float:
+    """Cost of one that explains a fraction of what another does: no rival, wherever its search would end."""
+    best = min((before.cost, *(f.cost for f in fits)))
+    return best + _LACKING * (before.cost - best)
 
 
 def _described(point: Point) -> list[Point]:
