@@ -87,7 +87,7 @@ class Shrink:
     what causes other than the air remove, on manoeuvres kept out. Without such a cause: what fitted numbers
     remove of the gap, the air's share left in it. None in still air."""
     by_numbers_percent: float | None = None
-    """Where the file's derivatives are wrong besides: what fitted ones remove without any effect. Else None."""
+    """Where the file's derivatives are wrong besides: what fitted ones remove without any effect. Or None."""
 
 
 @dataclass(frozen=True, slots=True)

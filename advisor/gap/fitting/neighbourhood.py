@@ -1,7 +1,8 @@
 """Around a fitted model: places flown fast, with the fit's own sensitivities, and the way on from each.
 
 Only the sensitivities to the effect that was added last are computed anew. Many places are flown together,
-so that their simulations share packs (``advisor.gap.simulator.simulate``) and their columns the filter.
+so that their simulations share packs (``advisor.gap.simulator.simulate``) and their columns the filter. What
+counts is how they differ from the fitted model: for that a coarser grid will do.
 """
 
 from collections.abc import Sequence
@@ -14,6 +15,7 @@ from advisor.gap.fitting.fit import Fitted, above_floor, bounds_of, factor
 from advisor.gap.fitting.linear import shared_steps, shifted_points
 from advisor.gap.fitting.normal import solved, solved_within
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
+from advisor.gap.records.flights import Flight
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.reading import differences
 
@@ -46,7 +48,10 @@ class Place:
 class _Kept:
     """Of one manoeuvre, weighted: what never changes between places."""
 
+    flight: Flight
+    """On the coarser grid ..."""
     measured: FloatArray
+    """... and what would have been measured, were the fitted model right but for what it leaves."""
     weights: FloatArray
     still: FloatArray
     """Shape (rows, 7): sensitivities to the derivatives, and what the fit left, own numbers not refitted:
@@ -104,7 +109,9 @@ class Neighbourhood:
             self.information += J.T @ J - AJ.T @ solved(chol, AJ)
             r = block.left * w
             still = np.column_stack([J[:, : len(DERIVATIVES)], r])
-            self.kept.append(_Kept(problem.measured(flight), w, still, A, J, chol, AJ))
+            coarser = flight.coarser()
+            measured = problem.fly_and_read(coarser, self.p[i : i + 1])[:, 0] + block.measured.left
+            self.kept.append(_Kept(coarser, measured, w, still, A, J, chol, AJ))
 
     def at_all(self, points: Sequence[Point]) -> list[Place | None]:
         """Fly to every point, the manoeuvres' own numbers refitted; None where a simulation fails."""
@@ -118,14 +125,14 @@ class Neighbourhood:
         JX = np.zeros((len(self.information), width))
         XX = np.zeros((width, width))
         owns = np.empty((len(asked), *self.fitted.point.own.shape))
-        for i, (flight, kept) in enumerate(zip(problem.flights.flights, self.kept, strict=True)):
+        for i, kept in enumerate(self.kept):
             X = self._seen(i, asked, width, failed)
             AX = kept.A.T @ X
             GX = solved(kept.chol, AX)
             JX += kept.J.T @ X - kept.AJ.T @ GX
             own = GX[:, firsts]
             after = (X[:, firsts] - kept.A @ own) / kept.weights[:, None]
-            squares += [np.sum(after[rows] ** 2, axis=0) for rows in problem.rows(flight)]
+            squares += [np.sum(after[rows] ** 2, axis=0) for rows in problem.rows(kept.flight)]
             prior += self.fitted.linear[i].prior @ own**2
             owns[:, i] = own[: owns.shape[2]].T
             XX += X.T @ X - AX.T @ GX
@@ -169,7 +176,7 @@ class Neighbourhood:
         A change of derivatives from one manoeuvre to the next is a sum of sensitivities known already,
         and none at all in manoeuvres it does not touch: nothing is flown for it.
         """
-        problem, kept, flight = self.problem, self.kept[i], self.problem.flights.flights[i]
+        problem, kept = self.problem, self.kept[i]
         k = len(DERIVATIVES)
         still = np.zeros((k + 1, width))
         rows: list[FloatArray] = []
@@ -188,7 +195,7 @@ class Neighbourhood:
         X = np.asarray(kept.still @ still)
         if not rows:
             return X
-        read = problem.fly_and_read(flight, np.array(rows))
+        read = problem.fly_and_read(kept.flight, np.array(rows))
         finite = np.isfinite(np.sum(read, axis=0))
         read[:, ~finite] = 0.0
         for j, at in begun:
@@ -202,9 +209,9 @@ class Neighbourhood:
         problem = self.problem
         p = [problem.driving(replace(point, sides=np.full(len(self.kept), side))) for side in entries]
         best = []
-        for i, (flight, kept) in enumerate(zip(problem.flights.flights, self.kept, strict=True)):
+        for i, kept in enumerate(self.kept):
             rows = np.stack([q[i] for q in p])
-            left = kept.measured[:, None] - problem.fly_and_read(flight, rows)
+            left = kept.measured[:, None] - problem.fly_and_read(kept.flight, rows)
             r = problem.innovations(i, left) * kept.weights[:, None]
             Ar = kept.A.T @ r
             costs = np.sum(r * r, axis=0) - np.sum(Ar * solved(kept.chol, Ar), axis=0)

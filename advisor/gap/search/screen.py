@@ -17,7 +17,7 @@ _STEPS = 4
 _AT_ONCE = 16
 """Points that are flown together: enough to fill the packs, few enough for the cache."""
 _HARDLY = 6.0
-"""Decrease of the cost (twice the log likelihood) below which a description is not followed any further ..."""
+"""Decrease of the cost (twice the log likelihood) below which a description is not followed further ..."""
 _HOPELESS = 0.05
 """... nor below this share of what the best has brought by then: it would be no rival (``ranking``)."""
 
