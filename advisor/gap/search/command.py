@@ -38,19 +38,21 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
         return linear, fitted
     other = lag if best.variant is delay else delay
     held, plainly_held = read_as_held(linear, fitted)
+    plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
+    price = 2.0 * float(np.log(np.sum(counts(linear))))
+    if plain[False] <= plain[True] and fitted.cost - best.cost < price:
+        return linear, fitted
     both_linear = fit(linear, best.point.with_effect(other, (0.005,)), best.noise, 8)
     # A held command answers half an interval later than a linear one by itself.
     half = 0.5 * float(np.median(np.diff(linear.flights.flights[0].t_u)))
     sooner = max(float(best.point.values[-1][0]) - half, 0.002)
     less = fitted.point.with_effect(best.variant, (sooner,)).with_effect(other, (0.005,))
     both_held = fit(held, less, best.noise, 8)
-    plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
     both = {False: evidence_of(linear, both_linear), True: evidence_of(held, both_held)}
     best_of_all = min(*plain.values(), *both.values())
     # Held with a delay d and linear with d plus half an interval are the same motion. The held reading is
     # believed where it needs no delay at all; else the doubt of half an interval goes into the delay's error.
     near = best_of_all + _NEARLY * (max(plain.values()) - best_of_all)
-    price = 2.0 * float(np.log(np.sum(counts(linear))))
     is_held = plain[True] < min(near, plain[False], both[False] + price)
     # Just half an interval is what a held command looks like when edges are free to take up the rest.
     late = sum(float(values[0]) for values in both_linear.point.values[-2:])
