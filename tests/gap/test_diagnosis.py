@@ -87,11 +87,12 @@ def test_wrong_numbers_in_the_file_are_told_from_missing_structure():
 
 def test_what_fitted_numbers_do_does_not_pass_for_the_work_of_the_effect_beside_them():
     wrong = Aircraft(model={**MODEL, "M_alpha": 0.7 * MODEL["M_alpha"], "M_q": 1.5 * MODEL["M_q"]})
-    found = diagnose(fly(Setup(maneuvers=6, q_scale=0.1, seed=41)), wrong)
+    flown = fly(Setup(maneuvers=6, q_scale=0.1, seed=41))
+    found = diagnose(flown, wrong)
     assert found.causes[0].effect == "pitch_rate_scale"
     assert 0.0 < found.shrink.by_numbers_percent < found.shrink.percent
     assert f"the numbers alone {found.shrink.by_numbers_percent:.0f} %" in found.sentence
-    assert diagnose(fly(Setup(maneuvers=6, q_scale=0.1, seed=41)), Aircraft()).shrink.by_numbers_percent is None
+    assert diagnose(flown, Aircraft()).shrink.by_numbers_percent is None
 
 
 @pytest.mark.parametrize(

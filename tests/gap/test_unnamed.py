@@ -11,15 +11,16 @@ from advisor.gap.candidates.between import shift_moments
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.belief import log_belief, pull_of
 from advisor.gap.noise.probes import KNOTS_S
+from advisor.gap.records.floor import tolerance_of
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.smoothness import is_filtered, is_smoothed
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
-from advisor.gap.unnamed.leftover import other_than_air
+from advisor.gap.unnamed.leftover import other_than_air, swinging
 from advisor.gap.unnamed.origin import followed
 from advisor.gap.unnamed.wind import wind_shear
-from tests.gap.generator import Setup, fly
+from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 BELIEVED = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0])
 
@@ -268,6 +269,19 @@ def test_a_clock_that_drifts_is_unknown_in_the_time_stamps():
     flown = flown_with("q", lambda k, q: replace(q, y=np.interp(q.t - 0.012 * k, q.t, q.y)), seed=31)
     found = diagnose(flown, Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "timing")
+
+
+def test_what_a_drifting_clock_makes_of_a_hardly_damped_motion_does_not_swing_by_itself():
+    flown = flown_with(
+        "alpha",
+        lambda k, alpha: replace(alpha, t=alpha.t + 0.024 * (k - 2.5)),
+        seed=71,
+        airframe=replace(LIGHT_AIRCRAFT, cm_q=0.3 * LIGHT_AIRCRAFT.cm_q),
+    )
+    problem, plain = fit_baseline(prepare(flown, Aircraft()), Aircraft())
+    found = swinging(problem, plain, plain, tolerance_of(problem.flights))
+    assert found is not None
+    assert (found.block, found.note) == ("timing", "")
 
 
 def test_what_a_command_logged_ten_times_a_second_leaves_open_is_not_unknown():

@@ -142,6 +142,9 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArra
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
     if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
         return None
+    if best.block in SENSOR_CHANNELS and is_of_the_clock(problem, last, SENSOR_CHANNELS[best.block]):
+        # What comes too early or too late swings with the motion, not by itself.
+        return Leftover("timing", best.explained, _ranking(tone.probes, "timing"))
     note = f"It swings by itself, {tone.hz:.2g} times a second."
     return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power, note)
 

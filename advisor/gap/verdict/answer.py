@@ -60,9 +60,8 @@ def answer(
     known = covariance(problem, fitted, worth(problem, fitted.innovations))
     waterfall = waterfall_of(stages, e.floor, judged.apart, judged.speed, gap.before)
     present = {c.effect for c in causes if c.present}
-    effects = {}
-    if shrink is not None:
-        effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
+    effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
+    nobodys_fault = effects.keys() - present if shrink is not None else ()
     return Diagnosis(
         verdict=verdict, sentence=sentence_of(verdict, gap, where, causes, shrink), gap=gap, where=where,
         causes=causes, shrink=shrink, waterfall=waterfall,
@@ -71,7 +70,7 @@ def answer(
         reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
         effects=effects,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
-        notes=notes_of(e, aircraft, holdout, effects.keys() - present),
+        notes=notes_of(e, aircraft, holdout, nobodys_fault),
         maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
 
