@@ -10,13 +10,14 @@ from advisor.model.response import OUTPUTS
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
+from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
 from advisor.oem.notes import notes
 from advisor.oem.offset import with_offset
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.problem import Problem
 from advisor.oem.servo_lag import Lag, by_lag, find_lag
-from advisor.oem.solution import Method, Solution, solve
+from advisor.oem.solution import Method, Solution, evaluate, reported, search, solve
 from advisor.oem.surface import Servo
 from advisor.oem.weighing import Weighing
 
@@ -65,7 +66,7 @@ def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estim
     if lag is None:
         return report(with_edges(with_offset(solution)), prepared, aircraft)
     if lag.lag_s > 0.0:
-        solution = with_edges(lag.solution, by_lag(lag.solution)[:, None])
+        solution = with_edges(lag.solution, by_lag(lag.solution.problem, lag.solution.optimum)[:, None])
         return report(solution, prepared, aircraft, lag=lag)
     solution = with_edges(with_offset(solution))
     return report(solution, prepared, aircraft, lag=lag, lagged=_supposing_a_lag(solution))
@@ -98,14 +99,16 @@ def _clearer(best: Solution | NoEstimate, other: Problem, method: Method) -> Sol
     if isinstance(best, NoEstimate):
         return best
     begin = (best.optimum.shared, best.optimum.local) if method == "gauss-newton" else None
-    rival = solve(other, method=method, begin=begin)
-    if isinstance(rival, NoEstimate):
+    assembly, optimum = search(other, method=method, begin=begin)
+    gain = best.optimum.log_likelihood_cost - optimum.log_likelihood_cost
+    if optimum.status != CONVERGED or not gain > CLEARLY:
         return best
     weighing = Weighing.by(best.noise, best.assembly)
     misfit = weighing.misfit(best.residual, best.sensitivities)
-    weighed = misfit - weighing.misfit(rival.residual, rival.sensitivities)
-    gain = best.optimum.log_likelihood_cost - rival.optimum.log_likelihood_cost
-    return rival if min(gain, weighed) > CLEARLY else best
+    if misfit - weighing.misfit(assembly.z - optimum.fitted, optimum.sensitivities) <= CLEARLY:
+        return best
+    rival = evaluate(other, assembly, optimum)
+    return best if isinstance(rival, NoEstimate) else rival
 
 
 def report(
@@ -146,8 +149,8 @@ def _supposing_a_lag(solution: Solution) -> FloatArray | None:
     """(8,) the estimate had the servo a lag of ``SUPPOSED_LAG_S``."""
     servo = Servo(SUPPOSED_LAG_S, solution.problem.servo.delay_s)
     begin = (solution.optimum.shared, solution.optimum.local)
-    moved = solve(replace(solution.problem, servo=servo), begin=begin)
-    return None if isinstance(moved, NoEstimate) else moved.theta
+    _, moved = search(replace(solution.problem, servo=servo), begin=begin)
+    return reported(moved.shared, moved.local) if moved.status == CONVERGED else None
 
 
 def channel_fits(solution: Solution) -> tuple[dict[str, ChannelFit], ...]:
