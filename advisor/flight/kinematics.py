@@ -15,6 +15,7 @@ import numpy as np
 from advisor.flight.coloured import coloured_covariance
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
+from advisor.flight.motion import integrated
 from advisor.flight.renewal import renewed
 from advisor.gravity import GRAVITY_M_S2
 
@@ -114,7 +115,7 @@ def check_alpha(
         + (a_z * np.cos(alpha_now) - a_x * np.sin(alpha_now) + GRAVITY_M_S2 * np.cos(theta - alpha_now))
         / speed
     )
-    rebuilt = np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
+    rebuilt = integrated(t, rate)
     commanded = _followers(t, at("elevator")) if "elevator" in found else None
     return _compare(t, rebuilt, rate, commanded, t_alpha, alpha, _bias(maneuver, airspeed_m_s))
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.flight.motion import integrated, speed_rate
 from advisor.flight.record import Channel
-from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.problem import Signal
 
 LONGEST_LAG_S = 0.6
@@ -72,10 +72,7 @@ def _shape(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
     def at(name: str) -> FloatArray:
         return np.interp(t, channels[name].t, channels[name].y)
 
-    alpha = at("alpha")
-    rate = at("a_x") * np.cos(alpha) + at("a_z") * np.sin(alpha) - GRAVITY_M_S2 * np.sin(at("theta") - alpha)
-    shape: FloatArray = np.concatenate([[0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)])
-    return shape
+    return integrated(t, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha")))
 
 
 def _joined(

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
+from advisor.flight.motion import integrated
 from advisor.flight.record import Channel
 from advisor.flight.renewal import renewed
 from advisor.gravity import GRAVITY_M_S2
@@ -147,13 +147,7 @@ def _level(channels: Mapping[str, Channel]) -> Signal:
     rate = (np.cos(bank) - 1.0) * _signal(channels["q"]).at(theta.t)
     if _has(channels, "r"):
         rate = rate - np.sin(bank) * _signal(channels["r"]).at(theta.t)
-    return Signal(theta.t, theta.y - _running(theta.t, rate))
-
-
-def _running(t: FloatArray, y: FloatArray) -> FloatArray:
-    """Integral of ``y`` from the first stamp on, by trapezoids."""
-    total: FloatArray = np.concatenate([[0.0], np.cumsum(np.diff(t) * (y[1:] + y[:-1]) / 2.0)])
-    return total
+    return Signal(theta.t, theta.y - integrated(theta.t, rate))
 
 
 def _constant(maneuver: Maneuver, speed: float | None) -> Signal | None:

@@ -13,6 +13,7 @@ manoeuvres, constants and initial states are each manoeuvre's own.
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.flight.motion import integrated
 from advisor.model.response import N_LOCAL, N_SHARED
 from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.surface import Servo
@@ -90,8 +91,7 @@ def _surface(record: Record, servo: Servo) -> Signal:
 
 def _integral(x: Signal, begin: float, t: FloatArray) -> FloatArray:
     """∫ x from ``begin`` to each of ``t``, the samples joined by lines."""
-    steps = np.diff(x.t)
-    total = np.concatenate([[0.0], np.cumsum(steps * (x.y[1:] + x.y[:-1]) / 2.0)])
+    total = integrated(x.t, x.y)
 
     def upto(times: FloatArray) -> FloatArray:
         i = np.clip(np.searchsorted(x.t, times, side="right") - 1, 0, len(x.t) - 1)

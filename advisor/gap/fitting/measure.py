@@ -20,6 +20,11 @@ def gap_of(mean_square: FloatArray, floor: FloatArray) -> FloatArray:
     return np.maximum(mean_square / floor**2 - 1.0, 0.0)
 
 
+def whole_gap(mean_square: FloatArray, floor: FloatArray) -> float:
+    """The gap over all channels: their mean."""
+    return float(np.mean(gap_of(mean_square, floor)))
+
+
 def by_phase(problem: Problem, lefts: Sequence[FloatArray], floor: FloatArray) -> Mapping[str, float]:
     """Gap just after the steps, between them, and after the last one."""
     sums = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
@@ -31,7 +36,7 @@ def by_phase(problem: Problem, lefts: Sequence[FloatArray], floor: FloatArray) -
                 sums[phase][c] += float(np.sum(left[rows][inside] ** 2))
                 counts[phase][c] += np.count_nonzero(inside)
     return {
-        phase: float(np.mean(gap_of(sums[phase] / np.maximum(counts[phase], 1.0), floor)))
+        phase: whole_gap(sums[phase] / np.maximum(counts[phase], 1.0), floor)
         for phase in PHASES
         if np.all(counts[phase] > 0)
     }

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.flight.motion import integrated
 from advisor.gap.records.flights import Flight, Flights
 
 _STEP_S = 0.02
@@ -71,7 +72,7 @@ def _system(f: Flight, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, 
         a = np.interp(t + late.alpha_s, f.outputs["alpha"].t, f.outputs["alpha"].y) - f.alpha_trim
 
     def windowed(y: FloatArray) -> FloatArray:
-        total = np.concatenate(([0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * _STEP_S)))
+        total = integrated(t, y)
         return total[_SPAN:] - total[:-_SPAN]
 
     X = np.column_stack([windowed(a), windowed(q), windowed(d)])

@@ -10,6 +10,7 @@ import numpy as np
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
+from advisor.flight.motion import integrated, speed_rate
 from advisor.gravity import GRAVITY_M_S2
 
 _SLOWEST_M_S = 1.0
@@ -49,11 +50,6 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
     apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
     # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
     return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else _smoothed(grid, t, y)
-
-
-def speed_rate(a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray) -> FloatArray:
-    """Rate of the speed, m/s², that the accelerometers know of: in air that moves steadily."""
-    return a_x * np.cos(alpha) + a_z * np.sin(alpha) - GRAVITY_M_S2 * np.sin(theta - alpha)
 
 
 def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
@@ -132,11 +128,6 @@ def speed_doubts(
         enough = len(t) >= _LEAST_SAMPLES
         doubts.append(sigma * np.linalg.pinv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
     return doubts
-
-
-def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:
-    """Trapezoidal running integral, 0 at the first sample."""
-    return np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
 
 
 def along_the_path(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:

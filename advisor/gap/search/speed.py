@@ -15,7 +15,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out
-from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import SPEED_CHANGE, Flights
 from advisor.gap.result import Cause, Value
@@ -64,7 +64,7 @@ def airspeed_cause(
     return Cause(
         "airspeed_variation", "force_equation", 0.9,
         {"change": Value(problem.flights.speed_moves, 0.01)}, (), "",
-        float(np.mean(gap_of(last.mean_square, floor))), True,
+        whole_gap(last.mean_square, floor), True,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
-from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.measure import gap_of, whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE
@@ -31,7 +31,7 @@ def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> L
 
     ``floor`` is the noise of each channel, shape (channels,).
     """
-    before, after = (float(np.mean(gap_of(s.held_out.mean_square, floor))) for s in (stages[0], stages[-1]))
+    before, after = (whole_gap(s.held_out.mean_square, floor) for s in (stages[0], stages[-1]))
     if len(stages) < 2 or after < max(_SEEN, _MOST * before):
         return None
     return placed(problem, stages[0].fitted)
@@ -39,7 +39,7 @@ def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> L
 
 def is_all_named(stages: Sequence[Stage], floor: FloatArray) -> bool:
     """Whether named effects leave nothing above the noise: then what stays is their own shape."""
-    return len(stages) > 1 and float(np.mean(gap_of(stages[-1].held_out.mean_square, floor))) < VISIBLE
+    return len(stages) > 1 and whole_gap(stages[-1].held_out.mean_square, floor) < VISIBLE
 
 
 def is_of_no_use(
@@ -68,8 +68,7 @@ def only_numbers(
     if len(stages) < 2 or file_model is None:
         return False
     was, plain, named = (
-        float(np.mean(gap_of(held.mean_square, floor)))
-        for held in (file_model, stages[0].held_out, stages[-1].held_out)
+        whole_gap(held.mean_square, floor) for held in (file_model, stages[0].held_out, stages[-1].held_out)
     )
     more, beside = was - plain, plain - named
     if beside > min(VISIBLE, _OF_THE_NUMBERS * more):

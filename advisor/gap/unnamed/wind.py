@@ -13,7 +13,7 @@ from scipy.special import stdtrit
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.gap.records.airspeed import integrated, speed_rate
+from advisor.flight.motion import integrated, speed_rate
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10

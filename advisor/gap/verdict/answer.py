@@ -10,7 +10,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.moment import PROPELLER
 from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import covariance, worth
 from advisor.gap.foresight.foresee import unseen_effects
@@ -97,7 +97,7 @@ def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
     if verdict == "unknown" and e.leftover is not None:
         return Where(e.leftover.block, e.leftover.share, e.leftover.ranking)
     ranking = block_ranking(e.stages[0], causes)
-    total = max(float(np.mean(gap_of(e.stages[0].held_out.mean_square, e.floor))), 1e-12)
-    left = float(np.mean(gap_of(e.stages[-1].held_out.mean_square, e.floor)))
+    total = max(whole_gap(e.stages[0].held_out.mean_square, e.floor), 1e-12)
+    left = whole_gap(e.stages[-1].held_out.mean_square, e.floor)
     block = next((c.block for c in causes if c.present), ranking[0][0] if ranking else "force_equation")
     return Where(block, float(np.clip(1.0 - left / total, 0.0, 1.0)) if causes else 0.0, ranking)

@@ -8,7 +8,7 @@ import numpy as np
 from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import BLOCK_OF
-from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS, Judged
@@ -126,7 +126,7 @@ def _cause(
     present: bool,
 ) -> Cause:
     ties, way = tied_with(judged, considered, channels)
-    left = float(np.mean(gap_of(judged.held_out.mean_square, floor)))
+    left = whole_gap(judged.held_out.mean_square, floor)
     return Cause(
         judged.effect, BLOCK_OF[judged.effect], probability, parameters_of(judged), ties, way, left, present
     )

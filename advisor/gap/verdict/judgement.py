@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.kinematics import KinematicCheck
 from advisor.gap.fitting.holdout import HeldOut
-from advisor.gap.fitting.measure import gap_of
+from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE, Cause, Value, Verdict
 from advisor.gap.search.speed import airspeed_cause, speed_is_a_cause
@@ -57,7 +57,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     """Weigh what was found."""
     problem, stages, floor = e.problem, e.stages, e.floor
     first, last = stages[0].held_out, stages[-1].held_out
-    left = float(np.mean(gap_of(last.mean_square, floor)))
+    left = whole_gap(last.mean_square, floor)
     named = [s.added for s in stages if s.added is not None]
     bias = alpha_bias_cause(kinematics, named, problem, left)
     late = alpha_lag_cause(kinematics, problem, named, left)
@@ -139,7 +139,7 @@ def _air_cause(e: Evidence) -> Cause | None:
         return None
     reference = e.problem.flights.reference_m_s
     gust, stays = e.air.gust, without_air(e.stages[-1].held_out, e.air).mean_square
-    left = float(np.mean(gap_of(stays, np.minimum(e.floor, np.sqrt(e.air.left)))))
+    left = whole_gap(stays, np.minimum(e.floor, np.sqrt(e.air.left)))
     peak, spread = e.air.gust_angle * reference, e.air.angle_std * reference
     parameters = {"sigma_w_m_s": Value(spread, _AIR_DOUBT * spread)}
     if gust:

@@ -9,7 +9,7 @@ from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut
-from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval
+from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
@@ -33,7 +33,7 @@ def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: Held
         by_channel=dict(zip(problem.channels, map(float, here), strict=True)),
         by_channel_after=dict(zip(problem.channels, map(float, there), strict=True)),
         by_maneuver=tuple(
-            (f.number, float(np.mean(gap_of(b, floor))), float(np.mean(gap_of(a, floor))))
+            (f.number, whole_gap(b, floor), whole_gap(a, floor))
             for f, b, a in zip(problem.flights.flights, before.by_maneuver, last.by_maneuver, strict=True)
         ),
         by_phase=by_phase(problem, before.left, floor), by_band_hz=by_band(problem, before.left),
@@ -65,7 +65,7 @@ def _by_numbers(e: Evidence) -> float | None:
     """What fitted derivatives remove of the gap, per cent, the air in it; None without a file's."""
     if e.file_model is None:
         return None
-    was, now = (gap_of(held.mean_square, e.floor).mean() for held in (e.file_model, e.stages[0].held_out))
+    was, now = (whole_gap(held.mean_square, e.floor) for held in (e.file_model, e.stages[0].held_out))
     return float(np.clip(100.0 * (1.0 - now / was), 0.0, 100.0)) if was > 1e-9 else None
 
 
@@ -92,7 +92,7 @@ def waterfall_of(
         steps.append((speed.effect, start))
     for stage, following in pairwise(stages):
         assert stage.added is not None
-        steps.append((stage.added.effect, float(np.mean(gap_of(following.held_out.mean_square, floor)))))
+        steps.append((stage.added.effect, whole_gap(following.held_out.mean_square, floor)))
     for cause in extra:
         steps.append((cause.effect, min(cause.gap_after, steps[-1][1] if steps else start)))
     return tuple(steps)
