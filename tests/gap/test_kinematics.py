@@ -170,6 +170,19 @@ def test_a_wind_that_plainly_changes_with_height_is_told_from_air_that_moves_bes
     assert (found.verdict, found.where.block) == ("unknown", "air")
 
 
+def test_a_wind_that_all_manoeuvres_agree_on_is_plain_though_the_air_speed_is_rough():
+    rng, rough = np.random.default_rng(3), []
+    for maneuver in fly(Setup(seed=51)):
+        sheared = blown(maneuver, 0.2)
+        speed = sheared.channels["airspeed"]
+        y = speed.y + 0.4 * rng.standard_normal(len(speed.y))
+        rough.append(replace(sheared, channels={**sheared.channels, "airspeed": replace(speed, y=y)}))
+    every, few = wind_shear(rough), wind_shear(rough[:5])
+    assert every.share < 0.25
+    assert every.is_plain
+    assert few is None or not few.is_plain
+
+
 @pytest.mark.parametrize("seed", [3, 4, 5])
 def test_a_vane_that_reads_gusts_is_neither_late_nor_scaled(seed):
     found = checked(gust_std=0.3, seed=seed)

@@ -30,7 +30,9 @@ _LEAST_SHARE = 0.17
 """Of what the air speed has beyond the accelerations. In air that moves, and where thrust comes late, heights
 explain up to a seventh of it by chance; a wind that changes with height, a fifth and more ..."""
 _PLAIN_SHARE = 0.25
-"""... and in air that moves of itself, from this share on it is plain all the same."""
+"""... and in air that moves of itself, from this share on it is plain all the same ..."""
+_SURE_CHANCE = 1e-4
+"""... or where manoeuvres agree as they would with this chance."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +45,18 @@ class Shear:
     """From leaving out one manoeuvre after the other."""
     share: float
     """Of what the air speed has beyond the accelerations, that heights explain."""
+    maneuvers: int
+    """That it was found in."""
 
     @property
     def is_plain(self) -> bool:
         """Beyond what moving air feigns."""
-        return self.share >= _PLAIN_SHARE
+        return self.share >= _PLAIN_SHARE or self.is_agreed(_SURE_CHANCE)
+
+    def is_agreed(self, chance: float) -> bool:
+        """Whether the manoeuvres agree on it, and it is felt."""
+        scatter = float(stdtrit(self.maneuvers - 1, 1.0 - 0.5 * chance)) * self.std
+        return abs(self.gradient_per_s) >= max(_LEAST_PER_S, scatter)
 
 
 def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
@@ -60,16 +69,16 @@ def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     if len(pairs) < _LEAST_MANEUVERS:
         return None
     everywhere = _gradient(pairs)
-    chance = _PLAIN_CHANCE if everywhere.is_plain else _CHANCE
-    if everywhere.share >= _LEAST_SHARE and _agreed(everywhere, len(pairs), chance):
+    chance = _PLAIN_CHANCE if everywhere.share >= _PLAIN_SHARE else _CHANCE
+    if everywhere.share >= _LEAST_SHARE and everywhere.is_agreed(chance):
         return everywhere
     if any(np.isnan(height) for height, _ in apart):
         return None
     sizes = range(_LEAST_MANEUVERS, len(pairs))
     layers = [pairs[i : i + size] for size in sizes for i in range(len(pairs) - size + 1)]
     # With so many layers to choose from, one must be as much less likely by chance, and plain.
-    found = [(_gradient(layer), len(layer)) for layer in layers]
-    there = [s for s, n in found if s.is_plain and _agreed(s, n, _CHANCE / len(layers))]
+    found = map(_gradient, layers)
+    there = [s for s in found if s.share >= _PLAIN_SHARE and s.is_agreed(_CHANCE / len(layers))]
     return max(there, key=lambda s: abs(s.gradient_per_s) / max(s.std, 1e-12), default=None)
 
 
@@ -82,14 +91,7 @@ def _gradient(pairs: Sequence[tuple[FloatArray, FloatArray]]) -> Shear:
     n = len(pairs)
     std = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
     power = sum(float(speed @ speed) for _, speed in pairs)
-    return Shear(gradient, std, gradient * float(np.sum(products)) / max(power, 1e-300))
-
-
-def _agreed(found: Shear, n: int, chance: float) -> bool:
-    """Whether ``n`` manoeuvres agree on it, and it is felt."""
-    return abs(found.gradient_per_s) >= max(
-        _LEAST_PER_S, float(stdtrit(n - 1, 1.0 - 0.5 * chance)) * found.std
-    )
+    return Shear(gradient, std, gradient * float(np.sum(products)) / max(power, 1e-300), n)
 
 
 def _height_of(maneuver: Maneuver) -> float:
