@@ -2,6 +2,8 @@
 
 from collections.abc import Collection, Mapping, Sequence
 
+import numpy as np
+
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.known import Effects, left_aside
 from advisor.gap.result import spelled
@@ -22,10 +24,7 @@ def notes_of(
             f"{holdout} manoeuvres cannot be kept out of {len(flights)}: each was kept out in turn instead. "
             f"Keep out {len(flights) - 1} at most."
         )
-    notes.append(
-        "The command was held between its stamps." if e.problem.held
-        else "The command was taken as linear between its stamps, its edges anywhere between two."
-    )  # fmt: skip
+    notes.append(_command(e))
     if not flights.speed_measured:
         shown = "a_x" in flights.has and {"alpha", "a_z", "theta"} <= set(flights.channels)
         from_there = "from there it is what the accelerometers make of it" if shown else "it stays there"
@@ -83,6 +82,17 @@ def notes_of(
             "The servo's lag is not in the aircraft file: a lag found here may simply be the servo's."
         )
     return tuple(notes)
+
+
+def _command(e: Evidence) -> str:
+    """How the command was taken to move between its stamps, and what looks the same."""
+    if not e.problem.held:
+        return "The command was taken as linear between its stamps, its edges anywhere between two."
+    half = 0.5 * float(np.median(np.diff(e.problem.flights.flights[0].t_u)))
+    return (
+        "The command was held between its stamps. Had it moved linearly instead, the aircraft would answer "
+        f"{1e3 * half:.0f} ms late: the two look the same."
+    )
 
 
 def left_out(numbers: Sequence[int]) -> tuple[str, ...]:
