@@ -38,7 +38,9 @@ def test_a_servo_that_moves_no_faster_is_no_later_for_a_command_that_was_held(tm
     record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
     found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft())[0], Aircraft())
     (cause,) = [c for c in found.causes if c.present]
-    assert any("answer 10 ms late: the two look the same" in note for note in found.notes) == (flown == "held")
+    assert any("answer 10 ms late: the two look the same" in note for note in found.notes) == (
+        flown == "held"
+    )
     assert cause.effect == "actuator_rate_limit"
     assert cause.parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.03)
 
