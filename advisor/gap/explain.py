@@ -23,7 +23,14 @@ from advisor.gap.search.command import is_likelier_held, may_be_held, read_as_he
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.waterfall import Progress, Stage, as_measured, build_up, reduced_to
 from advisor.gap.unnamed.laws import unnamed_law
-from advisor.gap.unnamed.leftover import Leftover, is_the_gust, left_over, other_than_air, swinging
+from advisor.gap.unnamed.leftover import (
+    Leftover,
+    is_the_gust,
+    left_over,
+    other_than_air,
+    swinging,
+    swings_the_aircraft,
+)
 from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, only_numbers, remainder
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.wander import wandering_sensor
@@ -126,7 +133,7 @@ def _without_a_name(
     """What the last model leaves that is neither noise nor the air."""
     first, last = stages[0].fitted, stages[-1].fitted
     # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
-    swing = swinging(problem, first, last, tolerance)
+    swing = swinging(problem, first, last, tolerance) or swings_the_aircraft(problem, first, last)
     if swing is not None:
         return swing
     all_named = air is None and is_all_named(stages, _of_instruments(problem, floor))

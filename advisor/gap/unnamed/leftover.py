@@ -21,7 +21,8 @@ from advisor.gap.unnamed.clock import is_of_the_clock
 from advisor.gap.unnamed.course import is_in_few, is_of_the_air
 from advisor.gap.unnamed.jumps import jumping_sensor
 from advisor.gap.unnamed.origin import stick_or_motion
-from advisor.gap.unnamed.tone import tone_in
+from advisor.gap.unnamed.tone import Tone, tone_in
+from advisor.gap.unnamed.unrest import unrest
 
 _LEAST_GAIN = 100.0
 """Log likelihood a disturbance must bring ..."""
@@ -45,6 +46,10 @@ _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
 _VISIBLE = 0.05
 """Power of a swing, beside the instruments' noise, from which on there is something to explain."""
+_SAME_LINE = 0.1
+"""How near to a named structure's frequency a swing is its own, relative ..."""
+_PLAINLY = 20.0
+"""... and log likelihood by which another place than the gyro must explain it better."""
 _BETTER_THAN_AIR = 1.1
 """What another block must take up of a residual, beside what the air does that moves."""
 
@@ -145,8 +150,28 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArra
     if best.block in SENSOR_CHANNELS and is_of_the_clock(problem, last, SENSOR_CHANNELS[best.block]):
         # What comes too early or too late swings with the motion, not by itself.
         return Leftover("timing", best.explained, _ranking(tone.probes, "timing"))
-    note = f"It swings by itself, {tone.hz:.2g} times a second."
-    return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power, note)
+    return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power, _swings(tone))
+
+
+def swings_the_aircraft(problem: Problem, first: Fitted, last: Fitted) -> Leftover | None:
+    """A named structure of which all channels tell, not the gyro alone: then it is the aircraft that swings.
+
+    Arguments as in ``left_over``. The plain model shows it: the other's numbers have adapted to the name.
+    """
+    named = zip(last.point.effects, last.point.values, strict=True)
+    omegas = (v[e.names.index("omega_rad_s")] for e, v in named if e.effect == "structural_mode")
+    omega = next(omegas, None)
+    tone = tone_in(problem, first, _noise(problem)) if omega is not None else None
+    if omega is None or tone is None or abs(2.0 * np.pi * tone.hz - omega) > _SAME_LINE * omega:
+        return None
+    best, gyro = tone.probes[0], next(p for p in tone.probes if p.block == "pitch_rate_sensor")
+    if best.block in (*SENSOR_CHANNELS, "air") or best.gain - gyro.gain < _PLAINLY:
+        return None
+    return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power, _swings(tone))
+
+
+def _swings(tone: Tone) -> str:
+    return f"It swings by itself, {tone.hz:.2g} times a second."
 
 
 def is_the_gust(problem: Problem, last: Fitted, leftover: Leftover) -> bool:
@@ -208,22 +233,6 @@ def _block(problem: Problem, last: Fitted, noise: FloatArray, probes: Sequence[P
     if best in SENSOR_CHANNELS and is_of_the_clock(problem, last, SENSOR_CHANNELS[best]):
         return "timing"
     return stick_or_motion(problem, last, noise, probes) or best
-
-
-def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Mean squares while the elevator works, and while all is quiet; both shape (channels,)."""
-    sums, counts = np.zeros((2, len(problem.channels))), np.zeros((2, len(problem.channels)))
-    for flight, left in zip(problem.flights.flights, lefts, strict=True):
-        free = flight.duration_s - flight.last_step_s
-        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
-            t = flight.outputs[name].t
-            active = (t >= flight.first_step_s) & (t <= flight.last_step_s + 0.3 * free)
-            for k, inside in enumerate((active, flight.is_quiet(t))):
-                sums[k, c] += float(np.sum(left[rows][inside] ** 2))
-                counts[k, c] += np.count_nonzero(inside)
-    active_power, quiet_power = sums / np.maximum(counts, 1.0)
-    # Without a quiet stretch there is nothing to compare with.
-    return active_power, np.where(counts[1] > 0, quiet_power, active_power)
 
 
 def _of_the_command(problem: Problem, last: Fitted) -> float:
