@@ -19,7 +19,7 @@ from advisor.oem import kalman
 from advisor.oem.kalman import DIFFUSE
 
 CHANNELS = ("alpha", "q", "a_z", "theta")
-ALPHA, Q, A_Z, THETA = range(4)
+ALPHA = CHANNELS.index("alpha")
 
 
 @dataclass(frozen=True)

@@ -23,10 +23,10 @@ _FITS = 5
 """Candidates that get a full fit after the screening."""
 _RIVAL = 0.3
 """Share of the best promise below which a candidate is no rival."""
-_GROSS = 300.0
-"""Log likelihood promised by the best from which on the right model is far from where the screening looks."""
 _LACKING = 0.5
 """Share of what the best explains that a candidate may lack and still be followed to its end."""
+_GROSS = 300.0
+"""Log likelihood promised by the best from which on the right model is far from where the screening looks."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
 """Full fits then, and the share of the best promise that earns one."""

@@ -73,7 +73,7 @@ class Screen:
         while asked:
             some = list(asked)[:_AT_ONCE]
             places = self.around.at_all([asked.pop(n) for n in some])
-            most = max(most, *(self.fitted.cost - place.cost for place in places if place is not None), 0.0)
+            most = max([most, *(self.fitted.cost - place.cost for place in places if place is not None)])
             for n, place in zip(some, places, strict=True):
                 try:
                     asked[n] = descents[n].send((place, most))
