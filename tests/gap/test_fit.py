@@ -9,6 +9,7 @@ from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.linear import linearise
+from advisor.gap.fitting.neighbourhood import Neighbourhood
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Value
@@ -41,6 +42,31 @@ def test_a_fit_begun_nearby_comes_back(settled):
     assert again.iterations <= 5
     strong = [0, 3, 4, 5]
     assert again.point.derivatives[strong] == pytest.approx(fitted.point.derivatives[strong], rel=0.01)
+
+
+def test_a_search_that_is_out_of_reach_of_another_is_given_up_and_no_other(settled):
+    problem, fitted = settled
+    shifted = replace(fitted.point, derivatives=fitted.point.derivatives * 1.1)
+    ended = fit(problem, shifted, fitted.noise)
+    assert fit(problem, shifted, fitted.noise, beaten_by=ended.cost).cost == ended.cost
+    far = fit(problem, shifted, fitted.noise, beaten_by=fitted.cost - 1e6)
+    assert far.iterations == 1
+
+
+@pytest.mark.parametrize("effect", ["transport_delay", "actuator_lag", "alpha_skew"])
+def test_the_coarser_grid_of_the_screening_tells_what_the_fits_own_grid_does(settled, effect):
+    problem, plain = settled
+    variant = next(v for v in variants_for(problem.flights) if v.effect == effect)
+    # Of flights with every step halved the coarser grid is that of the fit.
+    halved = tuple(
+        replace(f, h=0.5 * f.h, n=2 * f.n, slow=np.repeat(f.slow, 2, axis=1)) for f in problem.flights.flights
+    )
+    fine = replace(problem, flights=replace(problem.flights, flights=halved))
+    points = [plain.point.with_effect(variant, (value,)) for value in (0.0, 0.03)]
+    told, due = ([place.cost for place in Neighbourhood(p, plain).at_all(points)] for p in (problem, fine))
+    assert told[0] == pytest.approx(due[0], abs=0.5)
+    assert due[1] > plain.cost + 1000.0
+    assert told[1] - plain.cost == pytest.approx(due[1] - plain.cost, rel=0.02)
 
 
 def test_a_simulator_without_the_delay_pays_for_the_edges_it_shifts():
