@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 _ANY = float("-inf")
-_ONSET = {"rate_per_s": _ANY, "step": _ANY, "at_s": _ANY}
+_ONSET = {"rate_per_s": _ANY, "step": _ANY, "at_s": _ANY, "over_s": 0.0}
 
 LEAST: Mapping[str, Mapping[str, float]] = {
     "actuator_lag": {"lag_s": 0.0, "damping": 0.0},
@@ -25,7 +25,14 @@ LEAST: Mapping[str, Mapping[str, float]] = {
     "nonlinear_lift": {"Z_alpha2": _ANY, "Z_alpha3": _ANY, "stall_rad": _ANY, "sharpness": 0.0},
     "unsteady_lift": {"share": _ANY, "lag_s": 0.0},
     "mass_change": _ONSET,
-    "icing": {"Z_alpha": _ANY, "Z_delta_e": _ANY, "M_alpha": _ANY, "M_delta_e": _ANY, "at_s": _ANY},
+    "icing": {
+        "Z_alpha": _ANY,
+        "Z_delta_e": _ANY,
+        "M_alpha": _ANY,
+        "M_delta_e": _ANY,
+        "at_s": _ANY,
+        "over_s": 0.0,
+    },
     "airspeed_variation": {"change": _ANY, "exponent": _ANY},
     "ground_effect": {"Z_h": _ANY, "lift_h": _ANY, "M_h": _ANY, "scale_m": 0.0},
     "turbulence": {"sigma_w_m_s": 0.0, "length_m": 0.0},

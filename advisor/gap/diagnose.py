@@ -8,9 +8,10 @@ from advisor.flight.kinematics import SMALLEST_BIAS_RAD, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.explain import explain
-from advisor.gap.records.airspeed import measures_speed, speed_of_the_motion
+from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
+from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.merit import OFFSET_SIGMAS

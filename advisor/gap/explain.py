@@ -25,6 +25,7 @@ from advisor.gap.search.waterfall import Progress, Stage, as_measured, build_up,
 from advisor.gap.unnamed.laws import unnamed_law
 from advisor.gap.unnamed.leftover import (
     Leftover,
+    is_of_passing_air,
     is_the_gust,
     left_over,
     other_than_air,
@@ -142,7 +143,9 @@ def _without_a_name(
         return leftover
     if air.gust and leftover is not None and is_the_gust(problem, last, leftover):
         return None
-    return other_than_air(problem, first, last) if leftover is None or leftover.block == "air" else leftover
+    if leftover is None or leftover.block == "air" or is_of_passing_air(problem, last):
+        return other_than_air(problem, first, last)
+    return leftover
 
 
 def _of_instruments(problem: Problem, floor: FloatArray) -> FloatArray:

@@ -47,7 +47,7 @@ def in_units(parameter: str) -> tuple[float, str]:
         return 100.0, "%"
     if parameter in _OF_DERIVATIVES:
         return 1.0, _OF_DERIVATIVES[parameter]
-    if parameter == "at_s":
+    if parameter in ("at_s", "over_s"):
         return 1.0, "s"
     for ending, shown in _ENDINGS.items():
         if parameter.endswith(ending):

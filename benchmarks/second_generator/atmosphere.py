@@ -10,7 +10,7 @@ from .kernel import Floats
 
 @dataclass(frozen=True)
 class Air:
-    """Winds along the path [m/s]: upward, from behind; and the pitch rate of the gust field [rad/s]."""
+    """Winds along the path [m/s]: upward, from behind; and the pitch rate they amount to [rad/s]."""
 
     upward: Floats
     behind: Floats
@@ -29,9 +29,10 @@ def still_air(count: int) -> Air:
 def from_upward(upward: Floats, step: float, airspeed: float, span: float) -> Air:
     """Air with a vertical wind only, and the pitching that its gradient along the path brings.
 
-    The aircraft's length smooths the gradient; MIL-F-8785C takes pi V / (4 b) as the corner frequency.
+    A tail in air that rises less than the wing's does feels a nose that goes up: the pitch rate is minus the
+    gradient. The aircraft's length smooths it; MIL-F-8785C takes pi V / (4 b) as the corner frequency.
     """
-    gradient = np.gradient(upward, step) / airspeed
+    gradient = -np.gradient(upward, step) / airspeed
     decay = np.exp(-step * np.pi * airspeed / (4.0 * span))
     pitching = lfilter([1.0 - decay], [1.0, -decay], gradient)
     return Air(upward, np.zeros_like(upward), pitching)

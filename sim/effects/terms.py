@@ -53,15 +53,15 @@ def _between_maneuvers(names: tuple[str, ...], inverse: bool) -> Term:
             kit.fittings.plant.append(Drift(names, sizes["rate_per_s"], first_s, inverse))
         if "step" in sizes:
             share = 1.0 / (1.0 + sizes["step"]) - 1.0 if inverse else sizes["step"]
-            onset = Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, 0.0)
+            onset = Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, sizes.get("over_s", 0.0))
             kit.fittings.plant.append(FieldChange(onset, dict.fromkeys(names, share), {}))
 
     return fit
 
 
 def _ice(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-    onset = Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, 0.0)
-    factors = {name: value for name, value in sizes.items() if name != "at_s"}
+    onset = Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, sizes.get("over_s", 0.0))
+    factors = {name: value for name, value in sizes.items() if name not in ("at_s", "over_s")}
     kit.fittings.plant.append(FieldChange(onset, factors, {}))
 
 
@@ -112,13 +112,16 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
         _fields(Z_h="Z_h", lift_h="lift_h", M_h="M_h", scale_m="ground_scale"),
     ),
     "airspeed_variation": (frozenset({"change", "exponent"}), _speed),
-    "cg_shift": (frozenset({"rate_per_s", "step", "at_s"}), _between_maneuvers(("M_alpha",), inverse=False)),
+    "cg_shift": (
+        frozenset({"rate_per_s", "step", "at_s", "over_s"}),
+        _between_maneuvers(("M_alpha",), inverse=False),
+    ),
     "mass_change": (
-        frozenset({"rate_per_s", "step", "at_s"}),
+        frozenset({"rate_per_s", "step", "at_s", "over_s"}),
         _between_maneuvers(_DERIVATIVES, inverse=True),
     ),
     "gust": (frozenset({"amplitude_m_s", "length_m", "at_s"}), _gust),
-    "icing": (frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e", "at_s"}), _ice),
+    "icing": (frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e", "at_s", "over_s"}), _ice),
 }
 """Effects that are terms of the equations: their parameters, and how they are fitted."""
 

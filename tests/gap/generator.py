@@ -185,6 +185,8 @@ class Setup:
     """Relative change of Cm_α from first to last manoeuvre."""
     cg_step: float = 0.0
     """The same halfway."""
+    cg_course: tuple[float, ...] = ()
+    """The same, of each manoeuvre in turn; none: as the two before say."""
     mass_step: float = 0.0
     """Relative change of mass and inertia halfway."""
     ice_after: int = 99
@@ -235,6 +237,7 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
         halfway = i >= setup.maneuvers // 2
         mass_factor = 1.0 + (setup.mass_step if halfway else 0.0)
         moved = setup.cg_drift * i / max(setup.maneuvers - 1, 1) + setup.cg_step * halfway
+        moved = setup.cg_course[i] if setup.cg_course else moved
         cm_alpha = frame.cm_alpha * (1.0 + moved)
         body = (
             frame.mass * mass_factor, frame.iyy * mass_factor, frame.area, frame.chord,

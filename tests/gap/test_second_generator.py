@@ -15,6 +15,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 import benchmarks.second_generator
 from benchmarks.second_generator.aircraft import FLEET, Aircraft
+from benchmarks.second_generator.atmosphere import from_upward
 from benchmarks.second_generator.case_files import aircraft_text, draw_set, key_entry, key_file, log_bytes
 from benchmarks.second_generator.catalogue import EFFECTS, NAMED, OUTSIDE
 from benchmarks.second_generator.design import Assignment, assignments
@@ -93,6 +94,15 @@ def test_trim_is_an_equilibrium(aircraft: Aircraft) -> None:
     assert np.max(np.abs(slope[[U, W, Q, THETA, HEIGHT]])) < 1e-6
     assert abs(np.degrees(model.alpha)) < 8.0
     assert abs(np.degrees(model.elevator)) < 8.0
+
+
+def test_a_tail_that_meets_rising_air_later_than_the_wing_lifts_the_nose():
+    time = np.arange(0.0, 4.0, STEP_S)
+    air = from_upward(0.5 * np.maximum(time - 1.0, 0.0), STEP_S, 20.0, 2.0)
+    felt = plain_model(FLEET[0]).cm_q * air.pitching
+    # The tail's angle of attack is behind the wing's by the gradient along the path.
+    assert np.all(felt[time > 1.1] > 0.0)
+    assert air.pitching[-1] == pytest.approx(-0.5 / 20.0, rel=1e-3)
 
 
 def pulse_response(aircraft: Aircraft) -> tuple[Floats, Floats, Floats, Floats]:

@@ -43,6 +43,18 @@ def test_stability_that_drops_by_a_third_with_nothing_else_is_the_centre_of_grav
     assert found.causes[0].parameters["step"].value == pytest.approx(-0.35, abs=0.02)
 
 
+def test_a_centre_of_gravity_that_moves_for_a_while_and_stays_there_is_one_change_and_no_ice():
+    course = (0.0, 0.0, 0.0, -0.11, -0.22, -0.33, -0.33, -0.33)
+    maneuvers = fly(Setup(maneuvers=8, cg_course=course, seed=17))
+    found = diagnose(maneuvers, Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["cg_shift"]
+    numbers = found.causes[0].parameters
+    assert numbers["step"].value == pytest.approx(-0.33, abs=0.02)
+    began, ended = (maneuvers[i].span.start_s for i in (2, 5))
+    assert numbers["at_s"].value == pytest.approx(began, abs=0.1 * (ended - began))
+    assert numbers["over_s"].value == pytest.approx(ended - began, rel=0.1)
+
+
 @pytest.mark.parametrize("moves_in", [(0, 1, 2, 3, 4, 5), (2,)])
 def test_thrust_off_the_centre_of_gravity_is_named_even_if_the_throttle_moved_once_only(moves_in):
     setup = Setup(

@@ -9,8 +9,8 @@ from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.holdout import hold_out
-from advisor.gap.records.airspeed import speed_of_the_motion
 from advisor.gap.records.prepare import prepare
+from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.merit import LEAST_GAIN
 from advisor.gap.search.ranking import judge
@@ -129,6 +129,17 @@ def test_without_an_air_speed_in_the_log_the_motion_shows_it():
     assert shown.gap.after == pytest.approx(stated.gap.after, rel=0.1)
     assert any("No air speed in the log" in note for note in shown.notes)
     assert [c.effect for c in shown.causes if c.present] == ["transport_delay"]
+
+
+def test_without_an_air_speed_in_the_log_speeds_that_differ_between_manoeuvres_are_the_cause_and_no_mass():
+    logged = fly(Setup(maneuvers=8, speed_change=0.12, seed=52))
+    flown = without_instrument(logged)
+    measured = [f.slow[SPEED].mean() for f in prepare(logged, Aircraft()).flights]
+    shown = [f.slow[SPEED].mean() for f in prepare(flown, Aircraft(airspeed_m_s=UAV.speed)).flights]
+    assert np.array(shown) / np.mean(shown) == pytest.approx(np.array(measured) / np.mean(measured), abs=0.02)
+    found = diagnose(flown, Aircraft(airspeed_m_s=UAV.speed))
+    assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
+    assert any("off by the motion" in note for note in found.notes)
 
 
 def test_a_pitot_tube_that_reads_nothing_is_no_air_speed():

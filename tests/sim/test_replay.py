@@ -84,6 +84,7 @@ def plain(tmp_path_factory):
         ("alpha_dot", {"M_alpha_dot": -1.0}),
         ("unsteady_lift", {"share": 0.3, "lag_s": 0.3}),
         ("cg_shift", {"step": 0.2, "at_s": 35.0}),
+        ("cg_shift", {"step": 0.2, "at_s": 20.0, "over_s": 30.0}),
         ("mass_change", {"rate_per_s": 0.01}),
         ("icing", {"Z_alpha": -0.2, "M_alpha": -0.2, "at_s": 35.0}),
         ("ground_effect", {"Z_h": -0.05, "M_h": 0.05, "scale_m": 100.0}),

@@ -1,6 +1,7 @@
-"""Changes from one manoeuvre to the next: a ramp in time, or a step at a time nobody noted."""
+"""Changes from one manoeuvre to the next: a drift, a step at a time nobody noted, or what took a while."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +12,14 @@ from advisor.gap.simulator.layout import INDEX
 
 Change = Callable[[FloatArray, FloatArray], None]
 """Change driving numbers (manoeuvres, entries), given the relative change of each manoeuvre."""
+
+Course = Callable[[FloatArray, Values, FloatArray], None]
+"""Change driving numbers, given an effect's own numbers and the share of it that each manoeuvre has."""
+
+_FOR_GRADUAL = 4
+"""Manoeuvres that a change needs which begins and ends in flight: with fewer it is a step or a drift."""
+_TIME_STEP = 0.02
+"""Finite-difference step of when it begins and how long it takes, of the flight."""
 
 
 def shift_moments(p: FloatArray, by: FloatArray) -> None:
@@ -54,40 +63,69 @@ def ramps_and_steps(effect: str, block: str, flights: Flights, change: Change) -
     """One variant for a steady drift, one for a step at each place between two manoeuvres."""
     if len(flights) < 3:
         return []
-    t = starts_of(flights)
-    span = max(float(t[-1] - t[0]), 1.0)
+    t, span = starts_of(flights), _span_of(flights)
+    step = Variant(effect, block, ("step",), ((0.0,),), (0.005,), ((-0.9, 3.0),), 0.01)
 
-    def ramp(p: FloatArray, values: Values, _: Flights) -> None:
+    def course(p: FloatArray, values: Values, share: FloatArray) -> None:
+        change(p, values[0] * share)
+
+    def drift(p: FloatArray, values: Values, _: Flights) -> None:
         change(p, values[0] * (t - t[0]))
 
-    found = [
-        Variant(
-            effect,
-            block,
-            ("rate_per_s",),
-            ((0.0,),),
-            (0.005 / span,),
-            ((-0.9 / span, 3.0 / span),),
-            0.01 / span,
-            apply_with=ramp,
-        )
-    ]
-    for j, at_s in breaks(flights):
+    steady = Variant(
+        effect,
+        block,
+        ("rate_per_s",),
+        ((0.0,),),
+        (0.005 / span,),
+        ((-0.9 / span, 3.0 / span),),
+        0.01 / span,
+        apply_with=drift,
+        likewise=_longer(flights, step, course, lambda rate: (rate[0] * span, float(t[0]), span)),
+    )
+    return [steady, *steps_in(flights, step, course)]
 
-        def step(p: FloatArray, values: Values, _: Flights, j: int = j) -> None:
-            change(p, np.where(np.arange(len(p)) >= j, values[0], 0.0))
 
-        found.append(
-            Variant(
-                effect,
-                block,
-                ("step",),
-                ((0.0,),),
-                (0.005,),
-                ((-0.9, 3.0),),
-                0.01,
-                apply_with=step,
-                fixed={"at_s": at_s},
-            )
+def steps_in(flights: Flights, one: Variant, course: Course) -> list[Variant]:
+    """A step at each place between two manoeuvres; ``one`` has the names, starts and bounds of the change.
+
+    Beside each stands what takes a while, fitted where the step has led: a tank that is pumped over, people
+    who move, ice that grows.
+    """
+    lasts_s = _span_of(flights) / 3.0
+
+    def at(j: int, at_s: float) -> Variant:
+        later = (np.arange(len(flights)) >= j).astype(float)
+        return replace(
+            one,
+            apply_with=lambda p, values, _: course(p, values, later),
+            fixed={"at_s": at_s},
+            likewise=_longer(flights, one, course, lambda v: (*map(float, v), at_s - 0.5 * lasts_s, lasts_s)),
         )
-    return found
+
+    return [at(j, at_s) for j, at_s in breaks(flights)]
+
+
+def _longer(
+    flights: Flights, one: Variant, course: Course, carried: Callable[[FloatArray], Values]
+) -> tuple[Variant, ...]:
+    """The change as one that begins in mid-flight and takes a while; none where manoeuvres are too few."""
+    if len(flights) < _FOR_GRADUAL:
+        return ()
+    t, span = starts_of(flights), _span_of(flights)
+    gradual = replace(
+        one,
+        names=(*one.names, "at_s", "over_s"),
+        starts=(),
+        steps=(*one.steps, _TIME_STEP * span, _TIME_STEP * span),
+        bounds=(*one.bounds, (float(t[0] - span), float(t[-1])), (0.05 * span, 2.0 * span)),
+        apply_with=lambda p, v, _: course(p, v[:-2], np.clip((t - v[-2]) / v[-1], 0.0, 1.0)),
+        carried=carried,
+    )
+    return (gradual,)
+
+
+def _span_of(flights: Flights) -> float:
+    """Time from the first manoeuvre to the last, in s."""
+    t = starts_of(flights)
+    return max(float(t[-1] - t[0]), 1.0)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates.between import breaks, divide, ramps_and_steps
+from advisor.gap.candidates.between import divide, ramps_and_steps, steps_in
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, INDEX
@@ -102,25 +102,11 @@ def _icing(flights: Flights) -> list[Variant]:
     """Lift slope and controls weaken at once, each by its own share, somewhere between two manoeuvres."""
     if len(flights) < 3:
         return []
-    found = []
-    for j, at_s in breaks(flights):
 
-        def apply(p: FloatArray, values: Values, _: Flights, j: int = j) -> None:
-            for name, value in zip(_ICED, values, strict=True):
-                p[j:, INDEX[name]] *= 1.0 + value
+    def weaken(p: FloatArray, values: Values, share: FloatArray) -> None:
+        for name, value in zip(_ICED, values, strict=True):
+            p[:, INDEX[name]] *= 1.0 + value * share
 
-        found.append(
-            Variant(
-                "icing",
-                BLOCK,
-                _ICED,
-                ((0.0, 0.0, 0.0, 0.0),),
-                (0.005,) * 4,
-                ((-0.9, 0.02), (-0.9, 0.3), (-0.9, 0.3), (-0.9, 0.02)),
-                0.02,
-                apply_with=apply,
-                fixed={"at_s": at_s},
-                one_sided=True,
-            )
-        )
-    return found
+    bounds = ((-0.9, 0.02), (-0.9, 0.3), (-0.9, 0.3), (-0.9, 0.02))
+    one = Variant("icing", BLOCK, _ICED, ((0.0,) * 4,), (0.005,) * 4, bounds, 0.02, one_sided=True)
+    return steps_in(flights, one, weaken)

@@ -110,7 +110,7 @@ def variants() -> list[Variant]:
             apply_with=_second_order,
             fixed={"damping": _DAMPING},
         ),
-        replace(_RATE_LIMIT, likewise=replace(_RATE_LIMIT, apply_with=_limited_from_midway)),
+        replace(_RATE_LIMIT, likewise=(replace(_RATE_LIMIT, apply_with=_limited_from_midway),)),
         Variant(
             "actuator_backlash",
             BLOCK,

@@ -103,7 +103,7 @@ def variants(flights: Flights) -> list[Variant]:
             twin=_without_rate_of_alpha,
         ),
         *(
-            replace(moments, likewise=stability)
+            replace(moments, likewise=(stability, *moments.likewise))
             for moments, stability in zip(
                 ramps_and_steps("cg_shift", BLOCK, flights, shift_moments),
                 ramps_and_steps("cg_shift", BLOCK, flights, shift_stability),

@@ -47,12 +47,19 @@ class Variant:
     """For what derivatives imitate exactly: how all shared numbers, shape (k,), change per unit of the size
     while the motion stays the same, given the derivatives, the effects in the model and the reference speed.
     It is fitted with the aircraft file's derivatives trusted."""
-    likewise: "Variant | None" = None
-    """Another description by the same numbers, so near to this one that the full fit alone decides."""
+    likewise: "tuple[Variant, ...]" = ()
+    """Other descriptions, so near to this one that the full fit alone decides ..."""
+    carried: Callable[[FloatArray], Values] | None = None
+    """... and, for one of those, its numbers from those it stands beside; None: the same numbers."""
     sets: bool = False
     """Its number is all there is of it, whatever the simulation had: not what is added."""
     inverted: bool = False
     """The aircraft file has the reciprocal of the first parameter (a rate limit, searched as slowness)."""
+
+    @property
+    def comes_at_any_time(self) -> bool:
+        """Whether it is a change that may have come at any time of the flight."""
+        return "at_s" in self.fixed or "at_s" in self.names
 
     def apply(self, p: FloatArray, values: Values, flights: Flights) -> None:
         """Write the values into ``p``, shape (manoeuvres, entries)."""

@@ -110,7 +110,7 @@ def unseen_effects(
     tried = {v.effect for v in variants} | {"alpha_bias", "airspeed_variation", "turbulence", "gust"}
     if "climb_rate" not in problem.flights.has:
         tried.discard("alpha_bias")
-    if not problem.flights.speed_measured or problem.flights.speed_moves < SPEED_CHANGE:
+    if problem.flights.speed_moves < SPEED_CHANGE:
         tried.discard("airspeed_variation")
     flights = problem.flights
     needed = {e: need_of(e, flights) for e in NEEDS if e not in tried and e not in present}

@@ -11,7 +11,6 @@ import numpy as np
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.motion import integrated, speed_rate
-from advisor.gravity import GRAVITY_M_S2
 
 _SLOWEST_M_S = 1.0
 """Air speed at which nothing flies."""
@@ -50,52 +49,6 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
     apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
     # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
     return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else _smoothed(grid, t, y)
-
-
-def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
-    """The air speed in m/s without an instrument for it: what turns specific force into rate of α.
-
-    α̇ − q = (a_z cos α − a_x sin α + g cos(θ − α))/V in integral form, over all manoeuvres; of each a
-    straight line in time is taken out, which offsets of gyro and accelerometer make. None where a channel
-    is missing, or the flight shows no force.
-    """
-    product, square = 0.0, 0.0
-    for maneuver in maneuvers:
-        found = maneuver.channels
-        if not all(name in found and len(found[name]) > 10 for name in ("alpha", "q", "a_z", "theta")):
-            return None
-        t, alpha = found["alpha"].t, found["alpha"].y
-        q, a_z, theta = (np.interp(t, found[name].t, found[name].y) for name in ("q", "a_z", "theta"))
-        a_x = np.interp(t, found["a_x"].t, found["a_x"].y) if "a_x" in found else np.zeros(len(t))
-        force = a_z * np.cos(alpha) - a_x * np.sin(alpha) + GRAVITY_M_S2 * np.cos(theta - alpha)
-        line = np.linalg.qr(np.vander(t - t[0], 2))[0]
-        turned, pushed = (y - line @ (line.T @ y) for y in (alpha - integrated(t, q), integrated(t, force)))
-        product += float(turned @ pushed)
-        square += float(pushed @ pushed)
-    return square / product if product > 0.0 else None
-
-
-def speed_without_instrument(
-    grid: FloatArray, maneuver: Maneuver, start_s: float, level_m_s: float
-) -> FloatArray:
-    """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), as the accelerometers show its change.
-
-    Before the first step the aircraft is trimmed and its speed steady, at ``level_m_s``: what is read there
-    is an offset of the accelerometers or the attitude. Constant where a channel is missing.
-    """
-    found = maneuver.channels
-    level = np.full(len(grid), level_m_s)
-    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
-        return level
-
-    def at(name: str) -> FloatArray:
-        return np.interp(grid, found[name].t - start_s, found[name].y)
-
-    rate = speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"))
-    trimmed = grid < maneuver.span.start_s - start_s
-    if not np.any(trimmed):
-        return level
-    return np.maximum(level + integrated(grid, rate - np.mean(rate[trimmed])), 0.5 * level)
 
 
 def speed_doubts(

@@ -15,12 +15,12 @@ from advisor.gap.records.airspeed import (
     along_the_path,
     measures_speed,
     speed_doubts,
-    speed_without_instrument,
 )
 from advisor.gap.records.edges import edges_of, held_from, step_unseen
 from advisor.gap.records.flights import Flight, Flights, Measured
 from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
+from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_apart
 from advisor.gap.simulator.layout import OUTPUTS, SPEED, THETA_FROM, THRUST
 from advisor.gravity import GRAVITY_M_S2
 
@@ -51,16 +51,27 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
     speeds = [m.channels["airspeed"].y for m in usable if measures_speed(m)]
     measured = bool(usable) and len(speeds) == len(usable)
     if measured:
-        reference = aircraft.reference_airspeed_m_s or float(np.mean([np.mean(s) for s in speeds]))
-        moves = float(max(np.max(np.abs(s / np.mean(np.concatenate(speeds)) - 1.0)) for s in speeds))
+        reference, shown = (
+            aircraft.reference_airspeed_m_s or float(np.mean([np.mean(v) for v in speeds])),
+            None,
+        )
+        moves = float(max(np.max(np.abs(v / np.mean(np.concatenate(speeds)) - 1.0)) for v in speeds))
     else:
-        reference, moves = aircraft.stated_airspeed_m_s or ASSUMED_M_S, 0.0
-    flights = _about_their_mean(_ready(m, aircraft, reference, measured, scale_with_speed) for m in usable)
+        reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S
+        shown = speeds_apart(usable, reference)
+        moves = 0.0 if shown is None else float(np.max(np.abs(shown[0] / reference - 1.0)))
+    levels = np.full(len(usable), reference) if shown is None else shown[0]
+    flights = _about_their_mean(
+        _ready(m, aircraft, reference, None if measured else float(level), scale_with_speed)
+        for m, level in zip(usable, levels, strict=True)
+    )
     with_alpha = tuple("alpha" in f.outputs for f in flights)
     if sum(with_alpha) >= _ENOUGH:
         usable, flights = list(compress(usable, with_alpha)), tuple(compress(flights, with_alpha))
     if measured:
         flights = _with_doubt(flights, usable)
+    elif shown is not None:
+        flights = tuple(replace(f, speed_doubt=np.array([[shown[1]]])) for f in flights)
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
     flights = tuple(_with_rows(f, channels) for f in flights)
@@ -120,7 +131,8 @@ def _usable(maneuver: Maneuver) -> bool:
     return "alpha" not in found or float(np.ptp(found["alpha"].y)) < DEPARTED_RAD
 
 
-def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, scaled: bool) -> Flight:
+def _ready(m: Maneuver, aircraft: Aircraft, reference: float, level: float | None, scaled: bool) -> Flight:
+    """On the grid; ``level`` is its speed in m/s before the first step, None where the log has the speed."""
     start = max(m.channels["elevator"].t[0], m.channels["q"].t[0])
     end = min(m.channels["elevator"].t[-1], m.channels["q"].t[-1])
     n = int(np.ceil((end - start) / STEP_S)) + 1
@@ -133,7 +145,7 @@ def _ready(m: Maneuver, aircraft: Aircraft, reference: float, measured: bool, sc
             return np.full(n, otherwise)
         return np.asarray(np.interp(grid, channel.t - start, channel.y))
 
-    speed = airspeed_on(grid, m, start) if measured else speed_without_instrument(grid, m, start, reference)
+    speed = airspeed_on(grid, m, start) if level is None else speed_without_instrument(grid, m, start, level)
     theta_at = on_grid("theta", 0.0)
     a_x = smooth(on_grid("a_x", GRAVITY_M_S2 * float(np.sin(theta_at[0]))), 0.05)
     bank = smooth(on_grid("bank", 0.0), 0.1)

@@ -120,7 +120,7 @@ def quietest(problem: Problem, fitted: Fitted) -> Fitted:
         present = {variant.effect for variant in best.point.effects}
         # Of changes between manoeuvres the drift stands for all: what they leave dies down as fast as any.
         variants = [
-            v for v in variants_for(problem.flights) if v.effect not in present and "at_s" not in v.fixed
+            v for v in variants_for(problem.flights) if v.effect not in present and not v.comes_at_any_time
         ]
         likeliest = next(iter(Screen(problem, best, steps=1).try_all(variants, lambda _: 0.0)), None)
         if likeliest is None:

@@ -55,8 +55,11 @@ def judge(
     """Full fits of the best variants of the best effects; the best judgement first."""
     fits: list[Fitted] = []
     for s in shortlist(problem, before, candidates):
-        for point in _described(s.point):
-            fits.append(fit(problem, point, s.noise, _ITERATIONS, 0.5, beaten_by=_no_rival(before, fits)))
+        plainly, *otherwise = (
+            fit(problem, point, s.noise, _ITERATIONS, 0.5, beaten_by=_no_rival(before, fits))
+            for point in _described(s.point)
+        )
+        fits += [plainly, *(other for other in otherwise if other.cost < plainly.cost)]
     if not fits:
         return []
     independent = worth(problem, min(fits, key=lambda f: f.cost).innovations)
@@ -81,9 +84,16 @@ def _no_rival(before: Fitted, fits: Sequence[Fitted]) -> float:
 
 
 def _described(point: Point) -> list[Point]:
-    """The point, and the same with its last effect described another way, where there is one."""
-    other = point.effects[-1].likewise
-    return [point] if other is None else [point, replace(point, effects=(*point.effects[:-1], other))]
+    """The point, and the same with its last effect described in other ways, where there are any."""
+    last, values = point.effects[-1], point.values[-1]
+    before = replace(point, effects=point.effects[:-1], values=point.values[:-1])
+    return [
+        point,
+        *(
+            before.with_effect(other, values if other.carried is None else other.carried(values))
+            for other in last.likewise
+        ),
+    ]
 
 
 def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:

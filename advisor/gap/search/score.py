@@ -42,7 +42,7 @@ def smallest_of(problem: Problem, variant: Variant) -> float:
     """Size of an effect's first parameter below which it is not worth a name, the stamps as they are."""
     if variant.names[0] in TIMES:
         return variant.smallest + TIME_DOUBT_S + _JITTERS * problem.jitter_s
-    return variant.smallest * (_ANY_TIME if "at_s" in variant.fixed else 1.0)
+    return variant.smallest * (_ANY_TIME if variant.comes_at_any_time else 1.0)
 
 
 def addition(
@@ -106,7 +106,7 @@ def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: Flo
     """Of the least change: what is enough where an effect is certain."""
     if not _is_alone(before) or problem.knows_the_noise or variant.effect in _BY_NATURE:
         return 1.0
-    times = 2.0 if variant.names[0] in TIMES or variant.fixed else 1.0
+    times = 2.0 if variant.names[0] in TIMES or variant.comes_at_any_time else 1.0
     return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0
 
 

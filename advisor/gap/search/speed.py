@@ -45,10 +45,10 @@ def at_constant_speed(
 ) -> HeldOut | None:
     """What the model leaves when derivatives do not move with the air speed, everything refitted.
 
-    None where the speed hardly moves, or is not measured. ``folds`` as ``hold_out`` has them.
+    None where the speed hardly moves, or nothing shows it. ``folds`` as ``hold_out`` has them.
     """
     flights = problem.flights
-    if not flights.speed_measured or flights.speed_moves < SPEED_CHANGE:
+    if flights.speed_moves < SPEED_CHANGE:
         return None
     constant = tuple(f.at_constant_speed() for f in flights.flights)
     frozen = replace(problem, flights=replace(flights, flights=constant))
@@ -76,7 +76,12 @@ def speed_costs(constant: HeldOut, last: HeldOut, floor: FloatArray) -> float:
 def speed_is_a_cause(
     problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: Air | None
 ) -> bool:
-    """Whether work was done on the aircraft, beyond what gusts may feign, and it matters."""
+    """Whether work was done on the aircraft, beyond what gusts may feign, and it matters.
+
+    A speed that was not logged is the cause wherever it matters: no simulator was given it.
+    """
+    if constant is not None and not problem.flights.speed_measured:
+        return speed_costs(constant, last, floor) > _COSTS
     if constant is None or "height" not in problem.flights.has or (air is not None and air.gust):
         return False
     speed, energy = swings(problem.flights)

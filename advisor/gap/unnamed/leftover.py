@@ -212,12 +212,26 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
         active, quiet = unrest(problem, last.left)
         if active[c] < _RESTLESS * quiet[c]:
             return None
-    if best.block in ("input", "moment_equation"):
-        course = disturbance_courses(problem, last, noise, best.block, [best.size])[0]
-        if is_of_the_air(problem.flights.flights, course.knots):
-            return None
+    if _turns_as_air_does(problem, last, noise, best):
+        return None
     block = _block(problem, last, noise, probes)
     return Leftover(block, best.explained, _ranking(probes, block))
+
+
+def is_of_passing_air(problem: Problem, last: Fitted) -> bool:
+    """Whether what is left where the air moves is the moment by which passing air turns an aircraft.
+
+    The filter knows of the air at the wing; that of the tail, later, turns what is well damped most of all.
+    """
+    noise = _noise(problem)
+    return _turns_as_air_does(problem, last, noise, probe_blocks(problem, last, noise)[0])
+
+
+def _turns_as_air_does(problem: Problem, last: Fitted, noise: FloatArray, best: Probe) -> bool:
+    if best.block not in ("input", "moment_equation"):
+        return False
+    course = disturbance_courses(problem, last, noise, best.block, [best.size])[0]
+    return is_of_the_air(problem.flights.flights, course.knots)
 
 
 def placed(problem: Problem, last: Fitted) -> Leftover:

@@ -33,8 +33,11 @@ def notes_of(
             if aircraft.stated_airspeed_m_s
             else "assumed"
         )
+        apart = flights.speed_moves > 0.0
+        level = "on average" if apart else "before each manoeuvre"
+        differs = f", up to {100.0 * flights.speed_moves:.0f} % off by the motion" if apart else ""
         notes.append(
-            f"No air speed in the log: {flights.reference_m_s:.1f} m/s before each manoeuvre, {whence}; "
+            f"No air speed in the log: {flights.reference_m_s:.1f} m/s {level}, {whence}{differs}; "
             f"{from_there}."
         )
     if e.shear is not None:
