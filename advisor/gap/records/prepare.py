@@ -20,7 +20,7 @@ from advisor.gap.records.edges import edges_of, held_from, step_unseen
 from advisor.gap.records.flights import Flight, Flights, Measured
 from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
-from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_apart
+from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
 from advisor.gap.simulator.layout import OUTPUTS, SPEED, THETA_FROM, THRUST
 from advisor.gravity import GRAVITY_M_S2
 
@@ -58,20 +58,23 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
         moves = float(max(np.max(np.abs(v / np.mean(np.concatenate(speeds)) - 1.0)) for v in speeds))
     else:
         reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S
-        shown = speeds_apart(usable, reference)
-        moves = 0.0 if shown is None else float(np.max(np.abs(shown[0] / reference - 1.0)))
-    levels = np.full(len(usable), reference) if shown is None else shown[0]
+        shown = speeds_about(usable, reference)
+        moves = shown.moves
+    levels = [None] * len(usable) if shown is None else [float(v) for v in shown.before_m_s]
     flights = _about_their_mean(
-        _ready(m, aircraft, reference, None if measured else float(level), scale_with_speed)
+        _ready(m, aircraft, reference, level, scale_with_speed)
         for m, level in zip(usable, levels, strict=True)
     )
+    if shown is None:
+        flights = _with_doubt(flights, usable)
+    else:
+        flights = tuple(
+            replace(f, speed_doubt=np.array([[doubt]]))
+            for f, doubt in zip(flights, shown.doubt_m_s, strict=True)
+        )
     with_alpha = tuple("alpha" in f.outputs for f in flights)
     if sum(with_alpha) >= _ENOUGH:
         usable, flights = list(compress(usable, with_alpha)), tuple(compress(flights, with_alpha))
-    if measured:
-        flights = _with_doubt(flights, usable)
-    elif shown is not None:
-        flights = tuple(replace(f, speed_doubt=np.array([[shown[1]]])) for f in flights)
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
     flights = tuple(_with_rows(f, channels) for f in flights)

@@ -5,6 +5,7 @@ the accelerometers show the change.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,8 +20,29 @@ _LARGER = 3.0
 """Errors are up to so many times what blocks of a second show: α sees gusts, the integral does not."""
 _APART = 6.0
 """Scatter of the manoeuvres' speeds over what blocks show from which on they differ ..."""
-_LEAST_APART, _LEAST_DOUBT = 0.02, 0.01
-"""... and the scatter itself, relative; a speed found so is never known better than the second."""
+_LEAST_APART = 0.02
+"""... and the scatter itself, relative."""
+_FLOWN = 0.05
+"""Standard deviation of the speed that was flown about the one that was meant, relative ..."""
+_LEAST_DOUBT = 0.01
+"""... and of the best that the motion shows."""
+
+
+@dataclass(frozen=True)
+class Speeds:
+    """What is known of the speeds of manoeuvres that were flown without an instrument for them."""
+
+    before_m_s: FloatArray
+    """Shape (manoeuvres,): before the first step."""
+    doubt_m_s: FloatArray
+    """Shape (manoeuvres,): standard deviation of that."""
+    apart: bool
+    """Whether the motion shows beyond doubt that they differ."""
+
+    @property
+    def moves(self) -> float:
+        """Largest relative departure from the mean; 0 where none is certain."""
+        return float(np.max(np.abs(self.before_m_s / np.mean(self.before_m_s) - 1.0))) if self.apart else 0.0
 
 
 def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
@@ -39,33 +61,35 @@ def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
     return square / product if product > 0.0 else None
 
 
-def speeds_apart(maneuvers: Sequence[Maneuver], level_m_s: float) -> tuple[FloatArray, float] | None:
-    """Speed before each manoeuvre in m/s, shape (manoeuvres,), about a level, and its standard deviation.
+def speeds_about(maneuvers: Sequence[Maneuver], level_m_s: float) -> Speeds:
+    """Speeds about the one that was meant, as far as the motion of each manoeuvre shows them.
 
     What the motion shows may be off by some per cent in all of them alike, for a scale of α or of an
-    accelerometer: the level is left where it is. None where no manoeuvre is told apart from the others.
+    accelerometer: their mean is left where it is.
     """
+    meant = np.full(len(maneuvers), level_m_s)
+    unknown = Speeds(meant, _FLOWN * meant, False)
     inverse, error = [], []
     for maneuver in maneuvers:
         seen = _turned_and_pushed(maneuver, level_m_s)
         if seen is None:
-            return None
+            return unknown
         t, turned, pushed = seen
-        square = float(pushed @ pushed)
-        slope = float(turned @ pushed) / max(square, 1e-300)
+        square = max(float(pushed @ pushed), 1e-300)
+        inverse.append(float(turned @ pushed) / square)
         blocks = ((t - t[0]) / _BLOCK_S).astype(int)
-        scores = np.bincount(blocks, pushed * (turned - slope * pushed))
-        inverse.append(slope)
-        error.append(float(np.sqrt(np.sum(scores**2))) / max(square, 1e-300))
+        scores = np.bincount(blocks, pushed * (turned - inverse[-1] * pushed))
+        error.append(float(np.sqrt(np.sum(scores**2))) / square)
     shown, errors = np.array(inverse), np.array(error)
     if len(shown) < 2 or np.min(shown) <= 0.0:
-        return None
+        return unknown
     scatter = float(np.std(shown, ddof=1) / np.mean(shown))
-    known = float(np.sqrt(np.mean((errors / shown) ** 2)))
-    if scatter < max(_LEAST_APART, _APART * known):
-        return None
-    speeds: FloatArray = 1.0 / shown
-    return level_m_s * speeds / np.mean(speeds), level_m_s * max(_LEAST_DOUBT, _LARGER * known)
+    known = errors / shown
+    off, doubt = np.mean(shown) / shown - 1.0, np.maximum(_LARGER * known, _LEAST_DOUBT)
+    # Gusts spoil what one manoeuvre shows: then it is nearer to what was meant than that.
+    weight = _FLOWN**2 / (_FLOWN**2 + doubt**2)
+    apart = scatter > max(_LEAST_APART, _APART * float(np.sqrt(np.mean(known**2))))
+    return Speeds(meant * (1.0 + weight * off), level_m_s * np.sqrt(weight) * doubt, apart)
 
 
 def speed_without_instrument(
