@@ -7,6 +7,21 @@ from advisor.gap.candidates.variant import Variant
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
 """Where the search for a structural mode begins; it ends between them."""
 
+PROPORTION = Variant(
+    "proportion",
+    "accelerometer",
+    ("scale",),
+    ((0.0,),),
+    (0.002,),
+    ((-0.8, 3.0),),
+    0.0,
+    entries=("a_z_scale",),
+    spread=(0.03,),
+    always=True,
+)
+"""Part of every model with α and a_z: an air speed that reads too low by some per cent (an indicated one for
+a true one, the place of the static port) looks like an accelerometer that reads as much too high."""
+
 
 def variants(least_s: float) -> list[Variant]:
     """Effects of the three sensors, none later than ``least_s`` being worth a name.

@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates import input, moment, timing
+from advisor.gap.candidates import input, moment, sensors, timing
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.fitting.fit import Fitted, fit
@@ -39,6 +39,8 @@ def everywhere(point: Point, flights: Flights, latency_s: float = 0.0) -> Point:
     if flights.alpha_is_derived:
         filters = timing.filters(flights)
         late = late.with_effect(filters, (0.0,) * len(filters.names))
+    if {"alpha", "a_z"} <= set(flights.channels):
+        late = late.with_effect(sensors.PROPORTION, (0.0,))
     return late.with_effect(moment.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 
 

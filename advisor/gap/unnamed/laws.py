@@ -38,10 +38,7 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
 
 
 _READINGS = {
-    "a_z": (
-        _scale("accelerometer_scale", "accelerometer", "a_z"),
-        _curve("accelerometer_curve", "accelerometer", "a_z", 5.0),
-    ),
+    "a_z": (_curve("accelerometer_curve", "accelerometer", "a_z", 5.0),),
     "alpha": (_curve("alpha_curve", "alpha_sensor", "alpha", 0.05),),
     "theta": (_scale("attitude_scale", "attitude_sensor", "theta"),),
 }
@@ -56,8 +53,6 @@ _MOMENTS = (
     ),
 )  # fmt: skip
 _SAID = {
-    "accelerometer_scale": "The accelerometer reads {percent:+.1f} % against what the motion says; an air "
-    "speed that reads as much {other} looks the same: compare it with the ground speed on opposite headings.",
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
     "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
@@ -106,7 +101,7 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
 def _said(bent: Judged) -> str:
     """What the law is, and what else would look like it."""
     percent = 100.0 * float(bent.value[0])
-    return _SAID[bent.effect].format(percent=percent, other="too low" if percent > 0.0 else "too high")
+    return _SAID[bent.effect].format(percent=percent)
 
 
 def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:
