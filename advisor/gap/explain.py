@@ -32,9 +32,9 @@ from advisor.gap.unnamed.leftover import (
     swinging,
     swings_the_aircraft,
 )
-from advisor.gap.unnamed.proportion import proportion_of
 from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, only_numbers, remainder
 from advisor.gap.unnamed.tone import ringing_hz
+from advisor.gap.unnamed.true_speed import true_speed_of
 from advisor.gap.unnamed.wander import wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
 
@@ -77,14 +77,14 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
             stages = reduced_to(problem, stages, [])
         elif leftover is None and len(stages) == 1:
             leftover = wandering_sensor(problem, stages[-1].fitted)
-    proportion = proportion_of(problem, stages[-1].fitted)
-    if leftover is None and len(stages) == 1 and proportion is not None and proportion.is_wrong:
+    true_speed = true_speed_of(problem, stages[-1].fitted)
+    if leftover is None and len(stages) == 1 and true_speed is not None and true_speed.is_wrong:
         leftover = Leftover("accelerometer", 1.0, (("accelerometer", 1.0),))
     if leftover is not None and leftover.in_quiet is not None:
         least = np.maximum(stated_floor(problem.flights), tolerance)
         floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
     speed = at_constant_speed(problem, stages[-1].fitted)
-    return Evidence(problem, stages, leftover, air, floor, file_model, speed, proportion)
+    return Evidence(problem, stages, leftover, air, floor, file_model, speed, true_speed)
 
 
 def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> Variant:

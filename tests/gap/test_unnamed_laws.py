@@ -48,7 +48,7 @@ def test_where_a_named_instrument_is_off_no_other_is_suspected():
 def test_an_air_speed_that_is_off_is_not_blamed_on_the_aircraft_and_may_be_the_accelerometer(setup):
     found = diagnose(scaled(setup, "airspeed", 1.08), Aircraft())
     assert found.verdict == "unknown"
-    assert any("air speed that reads as much too high looks the same" in note for note in found.notes)
+    assert any("accelerometer that reads as much too low looks the same" in note for note in found.notes)
 
 
 @pytest.mark.parametrize(("channel", "reading", "block"), [

@@ -7,20 +7,20 @@ from advisor.gap.candidates.variant import Variant
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
 """Where the search for a structural mode begins; it ends between them."""
 
-PROPORTION = Variant(
-    "proportion",
+TRUE_AIR_SPEED = Variant(
+    "true_air_speed",
     "accelerometer",
     ("scale",),
     ((0.0,),),
     (0.002,),
-    ((-0.8, 3.0),),
+    ((-0.7, 3.0),),
     0.0,
-    entries=("a_z_scale",),
-    spread=(0.03,),
+    entries=("speed_scale",),
+    spread=(0.02,),
     always=True,
 )
-"""Part of every model with α and a_z: an air speed that reads too low by some per cent (an indicated one for
-a true one, the place of the static port) looks like an accelerometer that reads as much too high."""
+"""Part of every model with α and a_z: by how much the true air speed is above the one that is read. An
+indicated air speed is not the true one, and a static port reads what the wing makes of the pressure there."""
 
 
 def variants(least_s: float) -> list[Variant]:

@@ -119,6 +119,11 @@ class Problem:
         inverse, missed = self.pull(point)
         return float(inverse @ missed**2)
 
+    def strangeness(self, point: Point) -> float:
+        """The part of it that numbers have which are part of every model, beside what they usually are."""
+        with_spread = (pair for pair in zip(point.effects, point.values, strict=True) if pair[0].spread)
+        return float(sum(np.sum((values / np.array(effect.spread)) ** 2) for effect, values in with_spread))
+
     def driving(self, point: Point) -> FloatArray:
         """Shape (manoeuvres, entries): the numbers each manoeuvre is simulated with."""
         p = np.tile(self.base, (len(self.flights), 1))

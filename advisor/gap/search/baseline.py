@@ -40,7 +40,7 @@ def everywhere(point: Point, flights: Flights, latency_s: float = 0.0) -> Point:
         filters = timing.filters(flights)
         late = late.with_effect(filters, (0.0,) * len(filters.names))
     if {"alpha", "a_z"} <= set(flights.channels):
-        late = late.with_effect(sensors.PROPORTION, (0.0,))
+        late = late.with_effect(sensors.TRUE_AIR_SPEED, (0.0,))
     return late.with_effect(moment.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 
 

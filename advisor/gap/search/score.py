@@ -65,6 +65,7 @@ def addition(
     seen_before, seen_after = (before, fitted) if lone else (held_before, held)
     likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed=lone)
     likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
+    likelihood += 0.5 * (problem.strangeness(before.point) - problem.strangeness(point))
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)

@@ -36,6 +36,8 @@ EFFECT_ENTRIES = (
     "a_z_scale", "theta_scale", "a_z_read2", "a_z_read3", "alpha_read2", "alpha_read3",
     # error of the air speed: a parabola in time over the record, from -1 to 1
     "speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s",
+    # by how much the true air speed is above the one that is read, in all manoeuvres
+    "speed_scale",
 )  # fmt: skip
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}

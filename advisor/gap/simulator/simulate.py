@@ -54,7 +54,7 @@ LANES = 8
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY, A_Z_SCALE, THETA_SCALE,
     A_Z_READ2, A_Z_READ3, ALPHA_READ2, ALPHA_READ3,
-    SPEED_LEVEL, SPEED_SLOPE, SPEED_BOW,
+    SPEED_LEVEL, SPEED_SLOPE, SPEED_BOW, SPEED_SCALE,
 ) = range(len(ENTRIES))  # fmt: skip
 # Rows of a pack behind the driving numbers: what follows from them once, the state, what a step hands on.
 (
@@ -162,8 +162,9 @@ def simulate(
             along = 2.0 * j / n - 1.0
             for m in range(lanes):
                 off = x[SPEED_LEVEL, m] + along * (x[SPEED_SLOPE, m] + along * x[SPEED_BOW, m])
-                x[AIRSPEED, m] = slow[SPEED, j] + off
-                x[RATIO, m] = x[AIRSPEED, m] / reference if scaled else 1.0
+                # Derivatives are given at the speed as it is read; what bends the path is the true one.
+                x[AIRSPEED, m] = (slow[SPEED, j] + off) * (1.0 + x[SPEED_SCALE, m])
+                x[RATIO, m] = (slow[SPEED, j] + off) / reference if scaled else 1.0
             if disturbed:
                 d_delta, d_force = disturbance[DISTURB_INPUT, j], disturbance[DISTURB_FORCE, j]
                 d_moment, d_air = disturbance[DISTURB_MOMENT, j], disturbance[DISTURB_AIR, j]

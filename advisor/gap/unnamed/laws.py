@@ -63,6 +63,8 @@ _CERTAIN = 30.0
 """Log likelihood that a law must bring: most of what a reading's does is the lift's own slope."""
 _LIKELIER = 10.0
 """... and by how much it must beat all that was named together."""
+_SEVERAL = 2
+"""Names that together imitate a law."""
 _BESIDE = 0.5
 """What the named effects bring beside the law, of what they bring without, where they are another matter;
 certain is enough. And they must change that share of what the law removes: a speed that is off has
@@ -85,8 +87,9 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     named = _gain_of_all(problem, stages)
     if not bent.worth_naming or bent.gain < max(_CERTAIN, named + _LIKELIER):
         return None
-    if difference(problem, stages[-1].held_out, bent.held_out) < bent.least:
-        # Next to the same motion as what was named: the name stays.
+    alike = difference(problem, stages[-1].held_out, bent.held_out) < bent.least
+    if alike and sum(s.added is not None for s in stages) < _SEVERAL:
+        # Next to the same motion as what was named: one name stays, several in concert are no likelier.
         return None
     if len(stages) > 1 and _is_another_matter(problem, stages, bent, independent):
         return None
@@ -112,6 +115,7 @@ def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:
         return 0.0
     independent = worth(problem, last.fitted.innovations)
     likelihood = log_likelihood_gained(first.fitted, first.held_out, last.fitted, last.held_out, independent)
+    likelihood += 0.5 * (problem.strangeness(first.fitted.point) - problem.strangeness(last.fitted.point))
     belief = belief_in(problem, last.fitted, independent) - belief_in(problem, first.fitted, independent)
     return likelihood - 0.5 * numbers * float(np.log(np.sum(independent))) + belief
 

@@ -8,7 +8,7 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.search.air import Air
 from advisor.gap.search.waterfall import Stage
 from advisor.gap.unnamed.leftover import Leftover
-from advisor.gap.unnamed.proportion import Proportion
+from advisor.gap.unnamed.true_speed import TrueSpeed
 from advisor.gap.unnamed.weight import Weight
 from advisor.gap.unnamed.wind import Shear
 
@@ -28,8 +28,8 @@ class Evidence:
     """The aircraft file's own parameters, unfitted."""
     constant_speed: HeldOut | None
     """The final model without the change of air speed."""
-    proportion: Proportion | None = None
-    """By how much air speed and accelerometer differ, where it is worth saying."""
+    true_speed: TrueSpeed | None = None
+    """By how much the true air speed is off the one in use, where it is worth saying."""
     shear: Shear | None = None
     """Wind that changes with height: it has no name in the catalogue."""
     weight: Weight | None = None

@@ -43,8 +43,8 @@ def notes_of(
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
         notes.append(f"The wind changed with height, by {per_metre} a metre.")
-    if e.proportion is not None:
-        notes.append(e.proportion.sentence)
+    if e.true_speed is not None:
+        notes.append(e.true_speed.sentence)
     if e.weight is not None:
         notes.append(e.weight.sentence)
     if e.leftover is not None and e.leftover.note:

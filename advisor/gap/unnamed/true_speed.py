@@ -6,9 +6,7 @@ the wing makes of the pressure there. By more one of the two is wrong.
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from advisor.gap.candidates.sensors import PROPORTION
+from advisor.gap.candidates.sensors import TRUE_AIR_SPEED
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import shared_std, worth
@@ -20,8 +18,8 @@ _SIGMAS = 5.0
 
 
 @dataclass(frozen=True)
-class Proportion:
-    """By how much the accelerometer reads more than the path at the measured air speed demands."""
+class TrueSpeed:
+    """By how much the motion's air speed is above the one in use, or the accelerometer reads too high."""
 
     scale: float
     std: float
@@ -34,23 +32,22 @@ class Proportion:
     @property
     def sentence(self) -> str:
         """For the reader of the diagnosis."""
-        other = "too low" if self.scale > 0.0 else "too high"
+        too = "too high" if self.scale > 0.0 else "too low"
+        off = f"{100.0 * self.scale:+.1f} ± {100.0 * self.std:.1f} %"
         return (
-            f"The accelerometer reads {100.0 * self.scale:+.1f} ± {100.0 * self.std:.1f} % against what "
-            f"the motion says; an air speed that reads as much {other} looks the same: compare it with the "
-            "ground speed on opposite headings."
+            f"The true air speed is {off} off the one in use, as the motion shows; an accelerometer that "
+            f"reads as much {too} looks the same: compare the air speed with the ground speed on opposite "
+            "headings."
         )
 
 
-def proportion_of(problem: Problem, fitted: Fitted) -> Proportion | None:
+def true_speed_of(problem: Problem, fitted: Fitted) -> TrueSpeed | None:
     """What the fitted model says of it; None where that is next to nothing, or no channel shows it."""
     point = fitted.point
-    if PROPORTION not in point.effects:
+    if TRUE_AIR_SPEED not in point.effects:
         return None
-    k = point.effects.index(PROPORTION)
+    k = point.effects.index(TRUE_AIR_SPEED)
     at = len(point.derivatives) + sum(len(v) for v in point.values[:k])
     std = float(shared_std(problem, fitted, worth(problem, fitted.innovations))[at])
     scale = float(point.values[k][0])
-    if abs(scale) < max(_WORTH_SAYING, _SIGMAS * std):
-        return None
-    return Proportion(float(np.round(scale, 4)), std)
+    return TrueSpeed(scale, std) if abs(scale) > max(_WORTH_SAYING, _SIGMAS * std) else None
