@@ -147,7 +147,7 @@ def _without_a_name(
         return leftover
     if air.gust and leftover is not None and is_the_gust(problem, last, leftover):
         return None
-    if leftover is None or leftover.block == "air" or is_of_passing_air(problem, last):
+    if leftover is None or leftover.block == "air" or is_of_passing_air(problem, last, leftover):
         return other_than_air(problem, first, last)
     return leftover
 

@@ -50,11 +50,9 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
         usable = seen
     speeds = [m.channels["airspeed"].y for m in usable if measures_speed(m)]
     measured = bool(usable) and len(speeds) == len(usable)
+    shown = None
     if measured:
-        reference, shown = (
-            aircraft.reference_airspeed_m_s or float(np.mean([np.mean(v) for v in speeds])),
-            None,
-        )
+        reference = aircraft.reference_airspeed_m_s or float(np.mean([np.mean(v) for v in speeds]))
         moves = float(max(np.max(np.abs(v / np.mean(np.concatenate(speeds)) - 1.0)) for v in speeds))
     else:
         reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S

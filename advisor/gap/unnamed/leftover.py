@@ -50,6 +50,8 @@ _SAME_LINE = 0.1
 """How near to a named structure's frequency a swing is its own, relative ..."""
 _PLAINLY = 20.0
 """... and log likelihood by which another place than the gyro must explain it better."""
+_TURNS = ("input", "moment_equation")
+"""Blocks whose disturbance turns the aircraft, as air does that the tail meets later than the wing."""
 _BETTER_THAN_AIR = 1.1
 """What another block must take up of a residual, beside what the air does that moves."""
 
@@ -218,17 +220,19 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
     return Leftover(block, best.explained, _ranking(probes, block))
 
 
-def is_of_passing_air(problem: Problem, last: Fitted) -> bool:
+def is_of_passing_air(problem: Problem, last: Fitted, leftover: Leftover) -> bool:
     """Whether what is left where the air moves is the moment by which passing air turns an aircraft.
 
     The filter knows of the air at the wing; that of the tail, later, turns what is well damped most of all.
     """
+    if leftover.block not in _TURNS:
+        return False
     noise = _noise(problem)
     return _turns_as_air_does(problem, last, noise, probe_blocks(problem, last, noise)[0])
 
 
 def _turns_as_air_does(problem: Problem, last: Fitted, noise: FloatArray, best: Probe) -> bool:
-    if best.block not in ("input", "moment_equation"):
+    if best.block not in _TURNS:
         return False
     course = disturbance_courses(problem, last, noise, best.block, [best.size])[0]
     return is_of_the_air(problem.flights.flights, course.knots)
