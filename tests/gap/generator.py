@@ -53,12 +53,12 @@ SWITCHES = {
     "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
     "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0, "before_lag": 0.0,
     "speed_power": 0.0, "power_from": 22.0, "beat": 0.0, "beat_hz": 1.3,
-    "q_abs": 0.0, "cm_aq": 0.0,
+    "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
- KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ) = range(len(SWITCHES))  # fmt: skip
+ KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -76,7 +76,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
     x_lift, vane = a0, a0
     eta, deta = 0.0, 0.0
     alphadot, height = 0.0, sw[HEIGHT]
-    hyst, extra = 0.0, 0.0
+    hyst, extra, met = 0.0, 0.0, 0.0
     shift = round(sw[DELAY] / H)
     for k in range(n):
         t = k * H
@@ -115,6 +115,9 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
             + clde * (1 - 0.5 * ice) * de
             - 0.7 * cla * sw[KWIDTH] * np.log1p(np.exp((a - sw[KINK]) / sw[KWIDTH]))
         )
+        # The tail, so many chords behind, meets the gust later; its slope is what the damping says.
+        met += H * (gust[k] - met) * V / max(sw[TAIL] * chord, 10 * H * V)
+        turned = -cmq / (2.0 * sw[TAIL]) * (gust[k] - met) / V if sw[TAIL] > 0.0 else 0.0
         beyond = (V / sw[FROM]) ** sw[POWER]
         cl *= beyond
         cd = cd0 + induced * cl * cl + 3.0 * ice * cd0
@@ -131,6 +134,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
             + sw[QABS] * abs(q)
             + sw[CMAQ] * (a - a0) * q * chord / (2 * V)
             + sw[ECM] * (extra - de)
+            + turned
             + sw[BEAT] * np.sin(2 * np.pi * sw[BEATHZ] * t + phase)
         )
         lift, drag = qb * cl, qb * cd

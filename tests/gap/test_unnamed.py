@@ -20,7 +20,7 @@ from advisor.gap.simulator.surface import surface
 from advisor.gap.unnamed.leftover import other_than_air, swinging
 from advisor.gap.unnamed.origin import followed
 from advisor.gap.unnamed.wind import wind_shear
-from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
+from tests.gap.generator import LIGHT_AIRCRAFT, UAV, Setup, fly
 
 BELIEVED = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0])
 
@@ -165,6 +165,14 @@ def test_moving_air_is_believed_only_where_no_other_place_describes_the_residual
     found = other_than_air(problem, plain, plain)
     assert found is not None
     assert found.block == "moment_equation"
+
+
+def test_air_that_the_tail_meets_later_than_the_wing_is_the_air_where_an_aircraft_is_well_damped_too():
+    damped = replace(UAV, cm_alpha=-0.12, cm_q=-45.0, amplitude_deg=5.0)
+    setup = Setup(airframe=damped, maneuvers=6, gust_std=0.5, switches={"tail_chords": 3.0}, seed=1)
+    found = diagnose(fly(setup), Aircraft())
+    assert found.verdict == "effect"
+    assert [c.effect for c in found.causes if c.present] == ["turbulence"]
 
 
 def test_a_moment_of_the_angles_rate_is_told_from_three_other_derivatives_in_moving_air_too(still_file):
