@@ -17,6 +17,7 @@ from advisor.gap.records.smoothness import is_filtered, is_smoothed
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
+from advisor.gap.unnamed.course import has_tone
 from advisor.gap.unnamed.leftover import other_than_air, swinging
 from advisor.gap.unnamed.origin import followed
 from advisor.gap.unnamed.wind import wind_shear
@@ -63,6 +64,18 @@ def test_that_the_motion_swings_with_a_tone_does_not_tell_where_the_tone_is():
         t = KNOTS_S * np.arange(1.0, flight.duration_s / KNOTS_S)
         rates.append(np.sin(2.0 * np.pi * 1.2 * t))
     assert followed(flights, rates) is None
+
+
+def test_what_sticks_while_the_stick_goes_to_and_fro_has_a_tone_and_is_the_sticks_all_the_same():
+    flights, stuck = [], []
+    for n, flight in enumerate(prepare(fly(Setup(maneuvers=6, seed=26)), Aircraft()).flights):
+        to_and_fro = flight.u_trim + 0.08 * np.sin(2.0 * np.pi * 0.7 * flight.t_u + n)
+        flights.append(replace(flight, u=to_and_fro))
+        t = KNOTS_S * np.arange(1.0, flight.duration_s / KNOTS_S)
+        stick = np.interp(t, flight.t_u, to_and_fro) - flight.u_trim
+        stuck.append(stick - np.clip(stick, -0.05, 0.05))
+    assert has_tone(stuck)
+    assert followed(flights, stuck) == "input"
 
 
 @pytest.mark.parametrize("named", [{}, {"delay": 0.06}])

@@ -54,14 +54,14 @@ def stick_or_motion(
 
 def followed(flights: Sequence[Flight], courses: Sequence[FloatArray]) -> str | None:
     """The block whose quantities predict an unknown moment's courses, one value every ``KNOTS_S``."""
-    if has_tone(courses):
-        # With what swings of itself the motion swings: that one follows the other says nothing of the cause.
-        return None
     times = [KNOTS_S * np.arange(1.0, len(course) + 1.0) for course in courses]
     predicted = {
         block: _predicted([of(f, t) for f, t in zip(flights, times, strict=True)], courses)
         for block, of in (("input", _of_the_stick), ("moment_equation", _of_the_motion))
     }
+    if has_tone(courses):
+        # With what swings of itself the motion swings, too, and predicts it; the stick only what it makes.
+        return "input" if predicted["input"] > _TELLING else None
     likelier = max(predicted, key=lambda block: predicted[block])
     return likelier if predicted[likelier] > _TELLING else None
 
