@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from sim.airframe import GRAVITY_M_S2
 from sim.effects.air import Gusts
 from sim.effects.catalogue import CATALOGUE
 from sim.effects.changes import FieldChange, Onset
@@ -19,20 +20,27 @@ Term = Callable[[Kit, Any, Sizes, float], None]
 """Fits a term: kit, linear aircraft, parameters, and the boot time at which the log begins (s)."""
 
 
-class Drift:
-    """A derivative that changes steadily with time: factor 1 + rate · t."""
+class MoreMass:
+    """Mass and inertia that change: all but the weight's own part of Eq. (1) is divided by their growth."""
 
-    def __init__(self, names: tuple[str, ...], rate_per_s: float, from_s: float, inverse: bool) -> None:
-        self.names, self.rate, self.from_s, self.inverse = names, rate_per_s, from_s, inverse
+    def __init__(self, more: Callable[[float], float]) -> None:
+        self.more = more
+        """Relative growth of the mass at a time."""
         self._plain: dict[str, float] | None = None
 
     def apply(self, time_s: float, motion: Motion, engine: Any) -> None:
-        """Set the derivatives for ``time_s``."""
+        """Set the model's parameters for ``time_s``."""
         if self._plain is None:
-            self._plain = {name: float(engine.record[name][0]) for name in self.names}
-        factor = 1.0 + self.rate * max(time_s - self.from_s, 0.0)
+            self._plain = {name: float(engine.record[name][0]) for name in ShortPeriod.__dataclass_fields__}
+        growth = 1.0 + self.more(time_s)
         for name, plain in self._plain.items():
-            engine.record[name] = plain / factor if self.inverse else plain * factor
+            weight = _weight(engine) if name == "Z_0" else 0.0
+            engine.record[name] = weight + (plain - weight) / growth
+
+
+def _weight(engine: Any) -> float:
+    """The weight's part of Z_0, 1/s: the rest of it is aerodynamic."""
+    return GRAVITY_M_S2 / float(engine.record["speed_ref"][0])
 
 
 def _fields(**names: str) -> Term:
@@ -46,17 +54,36 @@ def _fields(**names: str) -> Term:
     return fit
 
 
-def _between_maneuvers(names: tuple[str, ...], inverse: bool) -> Term:
-    def fit(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-        first_s = kit.planned[0].start_s if kit.planned else 0.0
-        if "rate_per_s" in sizes:
-            kit.fittings.plant.append(Drift(names, sizes["rate_per_s"], first_s, inverse))
-        if "step" in sizes:
-            share = 1.0 / (1.0 + sizes["step"]) - 1.0 if inverse else sizes["step"]
-            onset = Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, sizes.get("over_s", 0.0))
-            kit.fittings.plant.append(FieldChange(onset, dict.fromkeys(names, share), {}))
+def _more_mass(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
+    first_s = kit.planned[0].start_s if kit.planned else 0.0
+    if "rate_per_s" in sizes:
+        kit.fittings.plant.append(MoreMass(lambda t: sizes["rate_per_s"] * max(t - first_s, 0.0)))
+    if "step" in sizes:
+        onset = Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, sizes.get("over_s", 0.0))
+        kit.fittings.plant.append(MoreMass(lambda t: sizes["step"] * onset.share(t)))
 
-    return fit
+
+def _moved_weight(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
+    """A centre of gravity that moves: all aerodynamic force gets a further arm, what carries the weight, too.
+
+    Sizes are relative changes of M_α.
+    """
+    model = {name: float(engine.record[name][0]) for name in ShortPeriod.__dataclass_fields__}
+    arm = model["M_alpha"] / model["Z_alpha"]
+    carried = model["Z_0"] - _weight(engine)
+    further = {"M_0": arm * carried, "M_q": arm * model["Z_q"], "M_delta_e": arm * model["Z_delta_e"]}
+
+    def change(onset: Onset, by: float) -> None:
+        offsets = {name: by * moment for name, moment in further.items()}
+        kit.fittings.plant.append(FieldChange(onset, {"M_alpha": by}, offsets))
+
+    if "rate_per_s" in sizes:
+        first_s = kit.planned[0].start_s if kit.planned else 0.0
+        lasts_s = max(kit.duration_s - first_s, 1.0)
+        change(Onset(first_s, lasts_s), sizes["rate_per_s"] * lasts_s)
+    if "step" in sizes:
+        begins_s = sizes.get("at_s", boot_s + kit.middle_s) - boot_s
+        change(Onset(begins_s, sizes.get("over_s", 0.0)), sizes["step"])
 
 
 def _ice(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
@@ -75,7 +102,7 @@ def _gust(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
     kit.fittings.air.append(Gusts(sizes.get("amplitude_m_s", 0.0), sizes.get("length_m", 1.0), times))
 
 
-_DERIVATIVES = tuple(name for name in ShortPeriod.__dataclass_fields__ if not name.endswith("_0"))
+_ONSET = frozenset({"rate_per_s", "step", "at_s", "over_s"})
 
 TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
     "nonlinear_lift": (
@@ -112,14 +139,8 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
         _fields(Z_h="Z_h", lift_h="lift_h", M_h="M_h", scale_m="ground_scale"),
     ),
     "airspeed_variation": (frozenset({"change", "exponent"}), _speed),
-    "cg_shift": (
-        frozenset({"rate_per_s", "step", "at_s", "over_s"}),
-        _between_maneuvers(("M_alpha",), inverse=False),
-    ),
-    "mass_change": (
-        frozenset({"rate_per_s", "step", "at_s", "over_s"}),
-        _between_maneuvers(_DERIVATIVES, inverse=True),
-    ),
+    "cg_shift": (_ONSET, _moved_weight),
+    "mass_change": (_ONSET, _more_mass),
     "gust": (frozenset({"amplitude_m_s", "length_m", "at_s"}), _gust),
     "icing": (frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e", "at_s", "over_s"}), _ice),
 }
@@ -154,7 +175,10 @@ def fit_terms(kit: Kit, engine: Any, effects: Mapping[str, Sizes], boot_s: float
         kind = CATALOGUE[name]
         if kind.fit is None:
             continue
+        # What is not sized is none; but air that moves is as long as it usually is.
         whole = {**dict.fromkeys(kind.sizes, 0.0), **sizes}
+        if "length_m" in whole:
+            whole["length_m"] = whole["length_m"] or kind.sizes["length_m"]
         if not all(math.isfinite(value) for value in whole.values()):
             continue
         kind.fit(kit, whole)

@@ -94,6 +94,8 @@ def plain(tmp_path_factory):
         ("structural_mode", {"gain": 2.0, "frequency_hz": 3.0, "damping": 0.05}),
         ("alpha_skew", {"skew_s": -0.05}),
         ("turbulence", {"sigma_w_m_s": 1.0, "length_m": 100.0}),
+        ("turbulence", {"sigma_w_m_s": 1.0}),
+        ("gust", {"amplitude_m_s": 2.0, "at_s": 35.0}),
     ],
 )
 def test_every_kind_of_added_term_can_be_flown(plain, tmp_path, effect, sizes):
@@ -101,6 +103,27 @@ def test_every_kind_of_added_term_can_be_flown(plain, tmp_path, effect, sizes):
     changed = [s.reading for s in modelled_flight(QUIET, path).samples()]
     moved = max(abs(a.q - b.q) + abs(a.alpha - b.alpha) for a, b in zip(plain, changed, strict=True))
     assert (moved > 1e-4) == (effect != "thrust_moment")
+
+
+def test_a_change_of_mass_or_of_the_centre_of_gravity_moves_all_but_the_weights_own_part(tmp_path):
+    def flown(effects):
+        flight = modelled_flight(QUIET, aircraft_file(tmp_path / "changed.yaml", effects=effects))
+        for _ in flight.samples():
+            pass
+        return {name: float(flight.engine.record[name][0]) for name in flight.engine.record.dtype.names}
+
+    plain = flown({})
+    weight = 9.80665 / plain["speed_ref"]
+    heavier = flown({"mass_change": {"step": 0.25, "at_s": 0.0}})
+    assert heavier["Z_0"] - weight == pytest.approx((plain["Z_0"] - weight) / 1.25)
+    assert [heavier[n] * 1.25 for n in ("Z_alpha", "M_0", "M_q")] == pytest.approx(
+        [plain[n] for n in ("Z_alpha", "M_0", "M_q")]
+    )
+    aft = flown({"cg_shift": {"step": -0.3, "at_s": 0.0}})
+    arm = -0.3 * plain["M_alpha"] / plain["Z_alpha"]
+    assert aft["M_alpha"] == pytest.approx(0.7 * plain["M_alpha"])
+    assert aft["M_0"] - plain["M_0"] == pytest.approx(arm * (plain["Z_0"] - weight))
+    assert aft["M_delta_e"] - plain["M_delta_e"] == pytest.approx(arm * plain["Z_delta_e"])
 
 
 def test_an_aircraft_file_that_cannot_be_flown_says_everything_that_is_wrong(tmp_path):

@@ -7,6 +7,7 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.belief import scale_of
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
@@ -18,6 +19,9 @@ from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.yardsticks import yardsticks
 from advisor.gravity import GRAVITY_M_S2
+
+_UNCHANGED = 0.1
+"""Share of the largest change of the derivatives that a manoeuvre flown before it may have."""
 
 
 def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
@@ -110,16 +114,27 @@ def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, V
     gravity = GRAVITY_M_S2 / problem.flights.reference_m_s
     slopes = {"Z_0": (0, 2), "M_0": (3, 5)}
     terms = {"Z_0": own[:, 2] + gravity, "M_0": own[:, 3]}
+    began = _as_it_began(problem, fitted)
     values = {}
     for name, pair in slopes.items():
         each = terms[name] - trims @ d[list(pair)]
         mean_trim = np.mean(trims, axis=0)
         together = mean_trim @ known[np.ix_(pair, pair)] @ mean_trim
-        apart = np.var(each, ddof=1) / len(each)
-        values[name] = Value(float(np.mean(each)), float(np.sqrt(apart + max(together, 0.0))))
+        apart = np.var(each[began] if np.count_nonzero(began) > 1 else each, ddof=1) / np.count_nonzero(began)
+        values[name] = Value(float(np.mean(each[began])), float(np.sqrt(apart + max(together, 0.0))))
     for k, name in enumerate(DERIVATIVES):
         values[name] = Value(float(d[k]), float(np.sqrt(max(known[k, k], 0.0))))
     return {name: values[name] for name in PARAMETERS}
+
+
+def _as_it_began(problem: Problem, fitted: Fitted) -> FloatArray:
+    """Shape (manoeuvres,), bool: those flown before a change in flight; all where nothing changed.
+
+    A mass or a centre of gravity that changed has changed the trim, too: the file begins without it.
+    """
+    derivatives = problem.driving(fitted.point)[:, : len(DERIVATIVES)]
+    off = np.max(np.abs(derivatives - fitted.point.derivatives) / scale_of(fitted.point.derivatives), axis=1)
+    return np.asarray(off <= _UNCHANGED * np.max(off))
 
 
 def fidelity_of(problem: Problem, before: HeldOut, last: HeldOut) -> dict[str, tuple[Yardsticks, Yardsticks]]:
