@@ -43,6 +43,11 @@ def _weight(engine: Any) -> float:
     return GRAVITY_M_S2 / float(engine.record["speed_ref"][0])
 
 
+def _onset(kit: Kit, sizes: Sizes, boot_s: float) -> Onset:
+    """When a change comes, in the middle of the flight unless said, and how long it takes."""
+    return Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, sizes.get("over_s", 0.0))
+
+
 def _fields(**names: str) -> Term:
     """A term whose parameters (keys) are fields of the linear aircraft's record (values)."""
 
@@ -59,7 +64,7 @@ def _more_mass(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
     if "rate_per_s" in sizes:
         kit.fittings.plant.append(MoreMass(lambda t: sizes["rate_per_s"] * max(t - first_s, 0.0)))
     if "step" in sizes:
-        onset = Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, sizes.get("over_s", 0.0))
+        onset = _onset(kit, sizes, boot_s)
         kit.fittings.plant.append(MoreMass(lambda t: sizes["step"] * onset.share(t)))
 
 
@@ -69,7 +74,7 @@ def _moved_weight(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
     Sizes are relative changes of M_α.
     """
     model = {name: float(engine.record[name][0]) for name in ShortPeriod.__dataclass_fields__}
-    arm = model["M_alpha"] / model["Z_alpha"]
+    arm = model["M_alpha"] / model["Z_alpha"] if model["Z_alpha"] else 0.0
     carried = model["Z_0"] - _weight(engine)
     further = {"M_0": arm * carried, "M_q": arm * model["Z_q"], "M_delta_e": arm * model["Z_delta_e"]}
 
@@ -82,12 +87,11 @@ def _moved_weight(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
         lasts_s = max(kit.duration_s - first_s, 1.0)
         change(Onset(first_s, lasts_s), sizes["rate_per_s"] * lasts_s)
     if "step" in sizes:
-        begins_s = sizes.get("at_s", boot_s + kit.middle_s) - boot_s
-        change(Onset(begins_s, sizes.get("over_s", 0.0)), sizes["step"])
+        change(_onset(kit, sizes, boot_s), sizes["step"])
 
 
 def _ice(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-    onset = Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, sizes.get("over_s", 0.0))
+    onset = _onset(kit, sizes, boot_s)
     factors = {name: value for name, value in sizes.items() if name not in ("at_s", "over_s")}
     kit.fittings.plant.append(FieldChange(onset, factors, {}))
 

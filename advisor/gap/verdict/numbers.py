@@ -21,7 +21,7 @@ from advisor.gap.verdict.yardsticks import yardsticks
 from advisor.gravity import GRAVITY_M_S2
 
 _UNCHANGED = 0.1
-"""Share of the largest change of the derivatives that a manoeuvre flown before it may have."""
+"""Share of the change of the derivatives that a manoeuvre may have and count as flown before it."""
 
 
 def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
@@ -134,7 +134,7 @@ def _as_it_began(problem: Problem, fitted: Fitted) -> FloatArray:
     """
     derivatives = problem.driving(fitted.point)[:, : len(DERIVATIVES)]
     off = np.max(np.abs(derivatives - fitted.point.derivatives) / scale_of(fitted.point.derivatives), axis=1)
-    return np.asarray(off <= _UNCHANGED * np.max(off))
+    return np.asarray(off - np.min(off) <= _UNCHANGED * np.ptp(off))
 
 
 def fidelity_of(problem: Problem, before: HeldOut, last: HeldOut) -> dict[str, tuple[Yardsticks, Yardsticks]]:
