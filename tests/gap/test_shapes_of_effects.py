@@ -41,6 +41,9 @@ def test_stability_that_drops_by_a_third_with_nothing_else_is_the_centre_of_grav
     found = diagnose(fly(Setup(maneuvers=6, cg_step=-0.35, seed=16)), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["cg_shift"]
     assert found.causes[0].parameters["step"].value == pytest.approx(-0.35, abs=0.02)
+    # The file begins with the trim of before the change.
+    before = diagnose(fly(Setup(maneuvers=6, seed=16)), Aircraft()).model["M_0"].value
+    assert found.model["M_0"].value == pytest.approx(before, rel=0.03)
 
 
 def test_a_centre_of_gravity_that_moves_for_a_while_and_stays_there_is_one_change_and_no_ice():
