@@ -165,6 +165,8 @@ def _kind(levels: FloatArray, durations: FloatArray, t: FloatArray) -> InputKind
     if len(levels) == 4 and even:
         unit = float(np.sum(durations)) / 7.0
         step_s = float(np.max(np.diff(t)))
-        if np.all(np.abs(durations - unit * np.array([3, 2, 1, 1])) <= 0.45 * unit + step_s):
-            return "3-2-1-1" if levels[0] < 0.0 else "reverse 3-2-1-1"
+        near = np.abs(durations - unit * np.array([[3, 2, 1, 1], [1, 1, 2, 3]])) <= 0.45 * unit + step_s
+        forwards, backwards = np.all(near, axis=1)
+        if forwards or backwards:
+            return "3-2-1-1" if forwards and levels[0] < 0.0 else "reverse 3-2-1-1"
     return "other"

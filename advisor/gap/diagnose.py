@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.aircraft import Aircraft
-from advisor.flight.kinematics import SMALLEST_BIAS_RAD, check_alpha, combine
+from advisor.flight.kinematics import SMALLEST_BIAS_RAD, KinematicCheck, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.explain import explain
@@ -19,6 +19,7 @@ from advisor.gap.search.waterfall import Progress
 from advisor.gap.unnamed.leftover import Leftover, of_the_wind
 from advisor.gap.unnamed.weight import weight_carried
 from advisor.gap.unnamed.wind import wind_shear
+from advisor.gap.verdict.amid import is_told_without, torn_by_a_change
 from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
@@ -54,6 +55,25 @@ def diagnose(
     aircraft = _with_speed(maneuvers, aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = [_without_offset(m, offset) for m in maneuvers]
+    evidence, kinematics = _explained(maneuvers, aircraft, progress)
+    torn = torn_by_a_change(evidence)
+    if torn is not None:
+        others = _explained([m for m in maneuvers if m.number != torn], aircraft, progress)
+        if is_told_without(evidence, others[0], torn):
+            evidence, kinematics = others
+        else:
+            torn = None
+    progress("measuring the gap", 0.9)
+    diagnosis = answer(evidence, aircraft, kinematics, holdout)
+    used = {flight.number for flight in evidence.problem.flights.flights}
+    missing = left_out([m.number for m in maneuvers if m.number not in used], torn)
+    return replace(diagnosis, notes=(*diagnosis.notes, *missing))
+
+
+def _explained(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, progress: Progress
+) -> tuple[Evidence, KinematicCheck]:
+    """What the manoeuvres tell, and the check of α without aerodynamics."""
     flights = prepare(maneuvers, aircraft)
     _refuse(flights)
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
@@ -65,11 +85,7 @@ def diagnose(
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
         flights = prepare([_without_offset(m, kinematics.bias_rad) for m in maneuvers], aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
-    evidence = _held_against_the_path(explain(problem, baseline, aircraft, progress), flown)
-    progress("measuring the gap", 0.9)
-    diagnosis = answer(evidence, aircraft, kinematics, holdout)
-    missing = left_out([m.number for m in maneuvers if m.number not in numbers])
-    return replace(diagnosis, notes=(*diagnosis.notes, *missing))
+    return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown), kinematics
 
 
 def _refuse(flights: Flights) -> None:

@@ -87,6 +87,14 @@ def test_a_first_step_with_the_trailing_edge_up_is_a_3211_and_the_other_its_reve
         assert span.kind == kind
 
 
+@pytest.mark.parametrize("sense", [-1.0, 1.0])
+def test_a_3211_whose_steps_come_in_reverse_order_is_its_reverse(sense):
+    t = np.arange(0.0, 20.0, 0.02)
+    u = sense * DEG * steps(t, 6.0, 0.4, PATTERNS["3-2-1-1"][::-1])
+    (span,) = found(Stream(t, u))
+    assert span.kind == "reverse 3-2-1-1"
+
+
 def test_a_measured_surface_drawn_out_by_its_servo_is_recognised():
     t = np.arange(0.0, 20.0, 0.02)
     command = DEG * steps(t, 6.0, 0.4, PATTERNS["3-2-1-1"])

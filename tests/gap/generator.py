@@ -53,12 +53,13 @@ SWITCHES = {
     "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
     "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0, "before_lag": 0.0,
     "speed_power": 0.0, "power_from": 22.0, "beat": 0.0, "beat_hz": 1.3,
-    "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0,
+    "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0, "change_t": 1e9, "cg_after": 0.0, "mass_after": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
- KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL) = range(len(SWITCHES))  # fmt: skip
+ KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
+ MASSAFTER) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -80,6 +81,10 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
     shift = round(sw[DELAY] / H)
     for k in range(n):
         t = k * H
+        if t - H < sw[CHANGET] <= t:
+            cma *= 1.0 + sw[CGAFTER]
+            mass *= 1.0 + sw[MASSAFTER]
+            iyy *= 1.0 + sw[MASSAFTER]
         want = command[max(k - shift, 0)]
         if sw[DEAD] > 0.0:
             want = np.sign(want) * max(abs(want) - sw[DEAD], 0.0)
@@ -193,6 +198,8 @@ class Setup:
     """The same, of each manoeuvre in turn; none: as the two before say."""
     mass_step: float = 0.0
     """Relative change of mass and inertia halfway."""
+    comes_at_s: float = 0.0
+    """The steps of centre of gravity and mass come that much into the record halfway."""
     ice_after: int = 99
     noise: float = 0.01
     coloured: float = 0.0
@@ -239,6 +246,9 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
         if setup.heights_m:
             sw[HEIGHT] = setup.heights_m[i % len(setup.heights_m)]
         halfway = i >= setup.maneuvers // 2
+        if setup.comes_at_s and i == setup.maneuvers // 2:
+            halfway = False
+            sw[CHANGET], sw[CGAFTER], sw[MASSAFTER] = setup.comes_at_s, setup.cg_step, setup.mass_step
         mass_factor = 1.0 + (setup.mass_step if halfway else 0.0)
         moved = setup.cg_drift * i / max(setup.maneuvers - 1, 1) + setup.cg_step * halfway
         moved = setup.cg_course[i] if setup.cg_course else moved

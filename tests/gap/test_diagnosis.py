@@ -138,6 +138,13 @@ def test_of_two_effects_each_has_the_size_it_has_beside_the_other():
     assert found["accelerometer_skew"]["skew_s"].value == pytest.approx(0.047, abs=0.003)
 
 
+def test_an_angle_of_attack_that_comes_early_is_no_vane_that_lags():
+    found = diagnose(fly(Setup(maneuvers=6, skew={"alpha": -0.015}, seed=31)), Aircraft())
+    assert found.causes[0].effect == "alpha_skew"
+    assert found.causes[0].parameters["skew_s"].value == pytest.approx(-0.015, abs=0.003)
+    assert all(c.effect != "alpha_lag" for c in found.causes)
+
+
 def test_a_slow_servo_is_not_taken_for_a_late_one_though_its_response_has_kinks():
     setup = Setup(maneuvers=6, switches={"rate_limit": 0.7}, seed=5)
     found = diagnose(fly(setup), Aircraft())

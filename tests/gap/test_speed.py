@@ -142,6 +142,17 @@ def test_without_an_air_speed_in_the_log_speeds_that_differ_between_manoeuvres_a
     assert any("off by the motion" in note for note in found.notes)
 
 
+def test_speeds_that_nothing_measured_come_before_numbers_that_are_a_little_off_besides():
+    setup = Setup(maneuvers=8, speed_change=0.2, seed=54)
+    model = {
+        name: v.value for name, v in diagnose(fly(replace(setup, speed_change=0.0)), Aircraft()).model.items()
+    }
+    model["M_alpha"] *= 1.15
+    found = diagnose(without_instrument(fly(setup)), Aircraft(airspeed_m_s=UAV.speed, model=model))
+    assert found.verdict == "effect"
+    assert found.causes[0].effect == "airspeed_variation"
+
+
 @pytest.mark.parametrize("off", [0.95, 1.03])
 def test_an_air_speed_that_is_not_quite_the_true_one_is_no_cause_and_is_said(off):
     setup = Setup(maneuvers=6, speed_change=0.06, seed=53)

@@ -35,7 +35,7 @@ def variants(least_s: float) -> list[Variant]:
             ("lag_s",),
             ((0.02,), (0.1,)),
             (1e-3,),
-            ((-0.02, 1.0),),
+            ((0.0, 1.0),),
             least_s,
             entries=("alpha_lag_s",),
         ),

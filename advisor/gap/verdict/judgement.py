@@ -10,7 +10,7 @@ from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE, Cause, Value, Verdict
-from advisor.gap.search.speed import airspeed_cause, speed_is_a_cause
+from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause
 from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.kept_out import without_air
@@ -65,10 +65,11 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     if all(judged.effect != "airspeed_variation" for judged in named):
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
     unknown = e.leftover is not None and late is None
-    wrong_values = _wrong_values(e)
+    beyond = _beyond_fitted_numbers(e)
+    wrong_values = beyond > VISIBLE and file_is_off(problem, stages[-1].fitted, plainly=beyond > PLAIN)
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
-    explained = bool(named or bias or late or wrong_values)
-    if speed is not None and not explained:
+    told = named or bias or late or (wrong_values and not _outweighs(e, beyond))
+    if speed is not None and not told:
         # Noise that the air makes hides nothing from a simulator that knows the air's motion.
         still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
         worked = speed_is_a_cause(problem, e.constant_speed, last, still, e.air)
@@ -85,7 +86,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     verdict: Verdict = "none"
     if unknown:
         verdict = "unknown"
-    elif wrong_values and not (named or bias or late):
+    elif wrong_values and not (named or bias or late or speed in apart):
         # Moving air may be there besides: it comes with the day, wrong numbers stay.
         verdict = "parameters"
     elif any(c.present for c in causes):
@@ -100,12 +101,18 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     return Judgement(verdict, causes, apart, speed, bias, before, wrong_values)
 
 
-def _wrong_values(e: Evidence) -> bool:
-    """Whether the file's own parameters leave a gap, and cannot be right within their tolerance."""
+def _beyond_fitted_numbers(e: Evidence) -> float:
+    """What the file's own derivatives leave beyond fitted ones, mean square over the floor's."""
     if e.file_model is None:
+        return 0.0
+    return float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2))
+
+
+def _outweighs(e: Evidence, beyond: float) -> bool:
+    """Whether speeds that nothing measured cost a simulator more than wrong numbers do."""
+    if e.problem.flights.speed_measured or e.constant_speed is None:
         return False
-    more = float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2))
-    return more > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted, plainly=more > PLAIN)
+    return speed_costs(e.constant_speed, e.stages[-1].held_out, e.floor) > beyond
 
 
 def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ...]:

@@ -100,14 +100,15 @@ def _command(e: Evidence) -> str:
     )
 
 
-def left_out(numbers: Sequence[int]) -> tuple[str, ...]:
-    """Which manoeuvres were not used, and why that may be."""
-    if not numbers:
-        return ()
-    which = ", ".join(map(str, numbers))
-    return (
-        f"Left out: manoeuvre {which}. It departed, lacks a channel, or a step fell into a hole of the log.",
-    )
+def left_out(numbers: Sequence[int], torn: int | None) -> tuple[str, ...]:
+    """Which manoeuvres were not used, and why that may be; ``torn`` is the one in which a change came."""
+    notes = []
+    if torn is not None:
+        notes.append(f"Left out: manoeuvre {torn}. The change came while it was flown.")
+    if which := ", ".join(str(number) for number in numbers if number != torn):
+        why = "It departed, lacks a channel, or a step fell into a hole of the log."
+        notes.append(f"Left out: manoeuvre {which}. {why}")
+    return tuple(notes)
 
 
 def _known(effects: Effects) -> list[str]:

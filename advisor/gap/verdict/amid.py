@@ -1,0 +1,67 @@
+"""A change that came while a manoeuvre was flown: no step between two manoeuvres describes that one.
+
+Fuel is pumped, a load drops, somebody moves: nobody waits for the end of a record. The one in which it
+happened fits neither what was before nor what was after, and would be told as a gust, or as something
+unknown. Without it the others tell what changed.
+"""
+
+import numpy as np
+
+from advisor.gap.records.flights import Flight
+from advisor.gap.verdict.evidence import Evidence
+
+_UNKNOWN = 2
+"""Riddles that something without a name is worth: a second name is the better answer."""
+
+
+def torn_by_a_change(e: Evidence) -> int | None:
+    """Number of the manoeuvre in which a change may have come; None where nothing points to one.
+
+    It is the one with the gust or, of those beside or within a change that was named, the one of which most
+    is left; never the first or the last, for nothing would be left to change from or to.
+    """
+    flights = e.problem.flights.flights
+    if _riddles(e) < 2:
+        return None
+    if e.air is not None and e.air.gust:
+        return next((f.number for f in flights[1:-1] if f.number == e.air.gust_number), None)
+    left = np.mean(e.stages[-1].held_out.by_maneuver / e.floor**2, axis=1)
+    changes = _changes(e)
+
+    def beside(i: int) -> bool:
+        earliest, latest = _end_s(flights[i - 1]), flights[i + 1].started_s
+        return any(began <= latest and earliest <= ended for began, ended in changes)
+
+    torn = max(filter(beside, range(1, len(flights) - 1)), key=lambda i: float(left[i]), default=None)
+    return None if torn is None else flights[torn].number
+
+
+def is_told_without(e: Evidence, without: Evidence, number: int) -> bool:
+    """Whether the other manoeuvres, by themselves, tell of a step at this one, and leave fewer riddles."""
+    flights = without.problem.flights.flights
+    earliest = max(_end_s(f) for f in flights if f.number < number)
+    latest = min(f.started_s for f in flights if f.number > number)
+    step = any(earliest <= began == ended <= latest for began, ended in _changes(without))
+    return step and _riddles(without) < _riddles(e)
+
+
+def _end_s(flight: Flight) -> float:
+    return flight.started_s + flight.duration_s
+
+
+def _changes(e: Evidence) -> list[tuple[float, float]]:
+    """From when to when each change came that was named, s."""
+    found = []
+    for judged in (s.added for s in e.stages):
+        if judged is None or not judged.variant.comes_at_any_time:
+            continue
+        said = {**judged.variant.fixed, **dict(zip(judged.variant.names, judged.value, strict=True))}
+        found.append((float(said["at_s"]), float(said["at_s"] + said.get("over_s", 0.0))))
+    return found
+
+
+def _riddles(e: Evidence) -> int:
+    """How much it takes: names, a gust, something without a name."""
+    named = sum(s.added is not None for s in e.stages)
+    gust = e.air is not None and e.air.gust
+    return named + gust + _UNKNOWN * (e.leftover is not None)
