@@ -54,12 +54,13 @@ SWITCHES = {
     "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0, "before_lag": 0.0,
     "speed_power": 0.0, "power_from": 22.0, "beat": 0.0, "beat_hz": 1.3,
     "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0, "change_t": 1e9, "cg_after": 0.0, "mass_after": 0.0,
+    "bends_about": -9.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
- MASSAFTER) = range(len(SWITCHES))  # fmt: skip
+ MASSAFTER, ABOUT) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -103,7 +104,10 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
         qb = 0.5 * rho * V * V * area
         x_lift += H * (a - x_lift) / max(sw[LLAG], 10 * H)
         ae = a - sw[LSHARE] * (a - x_lift)
-        da = ae - a0
+        # What bends with α bends about the trim of this very speed, or about one angle.
+        about = sw[ABOUT] if sw[ABOUT] > -1.0 else a0
+        da, d0 = ae - about, a0 - about
+        db = a - about
         ice = sw[ICE] if t > sw[ICET] else 0.0
         near = sw[GROUND] * np.exp(-height / (6.0 * chord))
         hyst += H * (a - hyst) / 0.4
@@ -114,8 +118,8 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
         cl = (
             cl0
             + cla * (1.0 - ice) * (1.0 + near) * ae
-            + sw[CLA2] * da * da
-            + sw[CLA3] * da**3
+            + sw[CLA2] * (da * da - d0 * d0)
+            + sw[CLA3] * (da**3 - d0**3)
             + clq * q * chord / (2 * V)
             + clde * (1 - 0.5 * ice) * de
             - 0.7 * cla * sw[KWIDTH] * np.log1p(np.exp((a - sw[KINK]) / sw[KWIDTH]))
@@ -129,8 +133,8 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
         cm = beyond * (
             cm0
             + cma * (1.0 - 0.6 * ice) * a
-            + sw[CMA2] * (a - a0) ** 2
-            + sw[CMA3] * (a - a0) ** 3
+            + sw[CMA2] * (db * db - d0 * d0)
+            + sw[CMA3] * (db**3 - d0**3)
             + (cmq * q + (cmad + sw[CMAD]) * alphadot) * chord / (2 * V)
             + wash * cmde * (1 - 0.5 * ice) * (de + sw[DE2] * de * de + sw[DE3] * de**3)
             - 0.4 * near

@@ -3,6 +3,7 @@
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.bent import bent_in_alpha
 from advisor.gap.candidates.between import divide, ramps_and_steps, steps_in
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
@@ -12,21 +13,22 @@ BLOCK = "force_equation"
 _DECAYS_M = (0.1, 50.0)
 """Height over which the ground's influence may decay, m: a fraction of any span to more than a span."""
 _ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
+_CURVED_LIFT = Variant(
+    "nonlinear_lift",
+    BLOCK,
+    ("Z_alpha2", "Z_alpha3"),
+    ((0.0, 0.0),),
+    (0.5, 5.0),
+    ((-500.0, 500.0), (-1e4, 1e4)),
+    0.0,
+    entries=("Z_alpha2", "Z_alpha3"),
+)
 
 
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block; those between manoeuvres depend on how many were flown."""
     return [
-        Variant(
-            "nonlinear_lift",
-            BLOCK,
-            ("Z_alpha2", "Z_alpha3"),
-            ((0.0, 0.0),),
-            (0.5, 5.0),
-            ((-500.0, 500.0), (-1e4, 1e4)),
-            0.0,
-            entries=("Z_alpha2", "Z_alpha3"),
-        ),
+        bent_in_alpha(_CURVED_LIFT, "Z_alpha", flights),
         Variant(
             "unsteady_lift",
             BLOCK,

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.bent import bent_in_alpha, bent_in_elevator
 from advisor.gap.candidates.between import ramps_and_steps, shift_moments, shift_stability
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.records.flights import Flights
@@ -32,6 +33,28 @@ elevator in the propeller's wake meets more than the stream's dynamic pressure, 
 path. For a light single the wake's share of the elevator's power is about a fifth."""
 
 
+_CURVED_ELEVATOR = Variant(
+    "elevator_nonlinearity",
+    BLOCK,
+    ("M_delta2", "M_delta3"),
+    ((0.0, 0.0),),
+    (5.0, 100.0),
+    ((-2e4, 2e4), (-2e6, 2e6)),
+    0.0,
+    entries=("M_delta2", "M_delta3"),
+)
+_CURVED_MOMENT = Variant(
+    "nonlinear_pitching_moment",
+    BLOCK,
+    ("M_alpha2", "M_alpha3"),
+    ((0.0, 0.0),),
+    (5.0, 50.0),
+    ((-5e3, 5e3), (-1e5, 1e5)),
+    0.0,
+    entries=("M_alpha2", "M_alpha3"),
+)
+
+
 def _without_rate_of_alpha(
     derivatives: FloatArray, effects: Sequence[Variant], speed_m_s: float
 ) -> FloatArray:
@@ -49,26 +72,8 @@ def _without_rate_of_alpha(
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block; those between manoeuvres depend on how many were flown."""
     return [
-        Variant(
-            "elevator_nonlinearity",
-            BLOCK,
-            ("M_delta2", "M_delta3"),
-            ((0.0, 0.0),),
-            (5.0, 100.0),
-            ((-2e4, 2e4), (-2e6, 2e6)),
-            0.0,
-            entries=("M_delta2", "M_delta3"),
-        ),
-        Variant(
-            "nonlinear_pitching_moment",
-            BLOCK,
-            ("M_alpha2", "M_alpha3"),
-            ((0.0, 0.0),),
-            (5.0, 50.0),
-            ((-5e3, 5e3), (-1e5, 1e5)),
-            0.0,
-            entries=("M_alpha2", "M_alpha3"),
-        ),
+        bent_in_elevator(_CURVED_ELEVATOR, "M_delta_e", flights),
+        bent_in_alpha(_CURVED_MOMENT, "M_alpha", flights),
         Variant(
             "thrust_moment",
             BLOCK,

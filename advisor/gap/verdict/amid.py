@@ -37,7 +37,12 @@ def torn_by_a_change(e: Evidence) -> int | None:
 
 
 def is_told_without(e: Evidence, without: Evidence, number: int) -> bool:
-    """Whether the other manoeuvres, by themselves, tell of a step at this one, and leave fewer riddles."""
+    """Whether the other manoeuvres, by themselves, tell of a step at this one, and leave fewer riddles.
+
+    Where a gust passes through more than one of them, that was no change either.
+    """
+    if without.air is not None and without.air.gust:
+        return False
     flights = without.problem.flights.flights
     earliest = max(_end_s(f) for f in flights if f.number < number)
     latest = min(f.started_s for f in flights if f.number > number)

@@ -1,0 +1,59 @@
+"""A curve has its own angle: at other speeds the same wing is flown on another part of it."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.diagnose import diagnose
+from advisor.gap.records.prepare import prepare
+from advisor.gap.simulator.layout import ENTRIES, INDEX
+from tests.gap.generator import UAV, Setup, fly
+
+
+@pytest.mark.parametrize(
+    ("effect", "switches", "speed_change"),
+    [
+        ("nonlinear_pitching_moment", {"cm_a2": 3.0}, 0.15),
+        ("nonlinear_pitching_moment", {"cm_a3": -40.0}, 0.22),
+        ("nonlinear_lift", {"cl_a3": -150.0}, 0.15),
+    ],
+)
+@pytest.mark.parametrize("about_rad", [0.08, None])
+def test_what_bends_about_one_angle_or_about_each_trim_is_one_effect_at_all_speeds(
+    effect, switches, speed_change, about_rad
+):
+    about = {} if about_rad is None else {"bends_about": about_rad}
+    setup = Setup(
+        maneuvers=8, speed_change=speed_change, seed=int(100 * speed_change), switches=switches | about
+    )
+    found = diagnose(fly(setup), Aircraft())
+    assert found.verdict == "effect"
+    assert [c.effect for c in found.causes if c.present] == [effect]
+    assert found.gap.after < 0.1 * found.gap.before
+
+
+def test_the_same_curve_about_another_angle_is_the_same_moment():
+    flights = prepare(fly(Setup(maneuvers=4, speed_change=0.2, seed=9)), Aircraft())
+    about_trims = next(v for v in variants_for(flights) if v.effect == "nonlinear_pitching_moment")
+    (about_one,) = about_trims.likewise
+    p = np.zeros((4, len(ENTRIES)))
+    about_one.apply(p, (50.0, -700.0), flights)
+    trims = np.array([f.alpha_trim for f in flights.flights])
+    x = np.linspace(-0.05, 0.05, 5)[:, None]
+
+    def curve(angle):
+        return 50.0 * angle**2 - 700.0 * angle**3
+
+    apart = trims - np.median(trims)
+    made = p[:, INDEX["M_alpha"]] * x + p[:, INDEX["M_alpha2"]] * x**2 + p[:, INDEX["M_alpha3"]] * x**3
+    assert np.max(np.abs(apart)) > 0.02
+    assert made == pytest.approx(curve(x + apart) - curve(apart), abs=1e-12)
+
+
+def test_trims_that_are_all_alike_leave_nothing_to_tell_apart():
+    flights = prepare(fly(Setup(maneuvers=3, seed=10)), Aircraft(airspeed_m_s=UAV.speed))
+    bent = [
+        v for v in variants_for(flights) if v.effect in ("nonlinear_pitching_moment", "elevator_nonlinearity")
+    ]
+    assert [v.likewise for v in bent] == [(), ()]
