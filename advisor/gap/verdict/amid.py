@@ -44,8 +44,8 @@ def is_told_without(e: Evidence, without: Evidence, number: int) -> bool:
     if without.air is not None and without.air.gust:
         return False
     flights = without.problem.flights.flights
-    earliest = max(_end_s(f) for f in flights if f.number < number)
-    latest = min(f.started_s for f in flights if f.number > number)
+    earliest = max((_end_s(f) for f in flights if f.number < number), default=np.inf)
+    latest = min((f.started_s for f in flights if f.number > number), default=-np.inf)
     step = any(earliest <= began == ended <= latest for began, ended in _changes(without))
     return step and _riddles(without) < _riddles(e)
 
