@@ -22,6 +22,7 @@ from advisor.gap.search.air import Air, moving_air
 from advisor.gap.search.command import is_likelier_held, may_be_held, read_as_held
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.waterfall import Progress, Stage, as_measured, build_up, reduced_to
+from advisor.gap.unnamed.drift import drifting
 from advisor.gap.unnamed.laws import unnamed_law
 from advisor.gap.unnamed.leftover import (
     Leftover,
@@ -68,7 +69,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     tolerance = tolerance_of(problem.flights)
     stages = as_measured(problem, stages)
     floor = _floor(problem, stages[-1], tolerance)
-    leftover = law or _without_a_name(problem, stages, air, tolerance, floor)
+    leftover = law or drifting(problem, stages)
+    leftover = leftover or _without_a_name(problem, stages, air, tolerance, floor)
     file_model = _file_model(problem, stages[0].fitted)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, floor)

@@ -1,0 +1,107 @@
+"""What was named is there, but grows or fades while the flight lasts: a vane ages, a clock runs off.
+
+A named effect of an instrument, of the stamps or of the servo is one number. One that is not the same from
+the first manoeuvre to the last has no name, only a place.
+"""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.between import starts_of
+from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import worth
+from advisor.gap.records.flights import Flights
+from advisor.gap.search.merit import Judged
+from advisor.gap.search.score import addition
+from advisor.gap.search.waterfall import Stage
+from advisor.gap.simulator.layout import ENTRIES
+from advisor.gap.unnamed.leftover import Leftover
+
+_STEADY = frozenset(
+    {
+        "alpha_lag", "alpha_scale", "pitch_rate_scale", "alpha_skew", "pitch_rate_skew", "accelerometer_skew",
+        "attitude_skew", "transport_delay", "actuator_lag",
+    }
+)  # fmt: skip
+"""Effects that are one number for a whole flight. A bias may wander a little, and is one all the same."""
+_CERTAIN = 30.0
+"""Log likelihood that the change must bring on manoeuvres kept out."""
+_LEAST_CHANGE = 0.8
+"""From the first manoeuvre to the last, over the number itself."""
+_ALONE = 2
+"""Stages where a single effect was named."""
+_FEW = 5
+"""Manoeuvres from which on a course in time is no chance."""
+
+
+def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
+    """The named effect that is not the same throughout; None where all are, or the flight is too short."""
+    if len(problem.flights) < _FEW:
+        return None
+    for stage in stages:
+        if stage.added is None or stage.added.effect not in _STEADY or len(stage.added.value) != 1:
+            continue
+        drifts = [_with_drift(problem, stages[-1].fitted, stages[-1].held_out, stage.added)]
+        if not _is_plain(drifts[0], stage.added):
+            continue
+        likeliest, said = drifts[0], stage.added
+        if len(stages) == _ALONE:
+            # Of a lag and a clock that are hard to tell apart one may drift as the other does not.
+            rivals = [
+                j for j in stage.considered if j.effect in _STEADY and j.variant.block != said.variant.block
+            ]
+            for rival in rivals:
+                drift = _with_drift(problem, rival.fitted, rival.held_out, rival)
+                if drift.fitted.cost < likeliest.fitted.cost and _is_plain(drift, rival):
+                    likeliest, said = drift, rival
+        block = said.variant.block
+        return Leftover(block, 1.0, ((block, 1.0),), note=_said(said, float(likeliest.value[0])))
+    return None
+
+
+def _is_plain(drift: Judged, named: Judged) -> bool:
+    """Whether the change is certain, shows, and is a good part of the number itself."""
+    change = abs(float(drift.value[0]))
+    shows = drift.gain >= _CERTAIN and drift.removed >= drift.least
+    return shows and change >= _LEAST_CHANGE * abs(float(named.value[0]))
+
+
+def _with_drift(problem: Problem, before: Fitted, held_before: HeldOut, judged: Judged) -> Judged:
+    """What it adds that the effect changes evenly from the first manoeuvre to the last."""
+    t = starts_of(problem.flights)
+    course = (t - np.mean(t)) / np.ptp(t)
+    named = judged.variant
+    per_unit = _written(named, 1.0, problem.flights) - _written(named, 0.0, problem.flights)
+    lowest = min(named.bounds[0][0], 0.0)
+
+    def apply(p: FloatArray, values: Values, _: Flights) -> None:
+        moved = per_unit != 0.0
+        p += values[0] * course[:, None] * per_unit
+        p[moved] = np.maximum(p[moved], lowest)
+
+    width = named.bounds[0][1] - lowest
+    drift = Variant(
+        f"{named.effect}_drift", named.block, (named.names[0],), ((0.0,),), named.steps, ((-width, width),),
+        named.smallest, apply_with=apply,
+    )  # fmt: skip
+    fitted = fit(problem, before.point.with_effect(drift, (0.0,)), before.noise, tolerance=0.5)
+    independent = worth(problem, fitted.innovations)
+    return addition(problem, before, held_before, fitted, drift.effect, independent)
+
+
+def _written(variant: Variant, value: float, flights: Flights) -> FloatArray:
+    p = np.zeros((len(flights), len(ENTRIES)))
+    variant.apply(p, [value], flights)
+    return p
+
+
+def _said(judged: Judged, change: float) -> str:
+    name, value = judged.variant.names[0], float(judged.value[0])
+    unit, scale = ("ms", 1e3) if name.endswith("_s") else ("%", 1e2)
+    began, ended = scale * (value - 0.5 * change), scale * (value + 0.5 * change)
+    return (
+        f"It is not the same throughout: {began:.0f} {unit} at the beginning, {ended:.0f} {unit} at the end."
+    )

@@ -1,0 +1,53 @@
+"""A number that is not the same from the first manoeuvre to the last is no effect of the catalogue."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.diagnose import diagnose
+from tests.gap.generator import Setup, fly
+
+HARD = Setup(maneuvers=8, gust_std=0.1, coloured=0.5, jitter=0.003, speed_change=0.03, seed=61)
+
+
+def late_by(flown, channel, delays_s):
+    """The same flight with one channel late, in each manoeuvre by so much."""
+    return [
+        replace(
+            m, channels={**m.channels, channel: replace(m.channels[channel], t=m.channels[channel].t + late)}
+        )
+        for m, late in zip(flown, delays_s, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), HARD])
+@pytest.mark.parametrize(("channel", "block"), [("alpha", "timing"), ("a_z", "timing")])
+def test_a_clock_that_runs_off_is_unknown_in_the_time_stamps(setup, channel, block):
+    found = diagnose(late_by(fly(setup), channel, np.linspace(0.0, 0.06, 8)), Aircraft())
+    assert found.verdict == "unknown"
+    assert found.where.block == block
+
+
+@pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), HARD])
+def test_a_vane_that_grows_slower_is_unknown_in_the_vane(setup):
+    flown = [
+        fly(replace(setup, switches={"vane_lag": lag}))[i]
+        for i, lag in enumerate(np.linspace(0.001, 0.08, 8))
+    ]
+    found = diagnose(flown, Aircraft())
+    assert found.verdict == "unknown"
+    assert found.where.block == "alpha_sensor"
+    assert any("not the same throughout" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=62), replace(HARD, seed=63)])
+def test_a_lag_that_is_a_third_longer_in_the_end_keeps_its_name(setup):
+    flown = [
+        fly(replace(setup, switches={"vane_lag": lag}))[i]
+        for i, lag in enumerate(np.linspace(0.04, 0.053, 8))
+    ]
+    found = diagnose(flown, Aircraft())
+    assert found.verdict == "effect"
+    assert found.causes[0].effect == "alpha_lag"
