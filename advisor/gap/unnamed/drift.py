@@ -44,21 +44,18 @@ def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
     for stage in stages:
         if stage.added is None or stage.added.effect not in _STEADY or len(stage.added.value) != 1:
             continue
-        drifts = [_with_drift(problem, stages[-1].fitted, stages[-1].held_out, stage.added)]
-        if not _is_plain(drifts[0], stage.added):
+        said, drift = stage.added, _with_drift(problem, stages[-1].fitted, stages[-1].held_out, stage.added)
+        if not _is_plain(drift, said):
             continue
-        likeliest, said = drifts[0], stage.added
-        if len(stages) == _ALONE:
-            # Of a lag and a clock that are hard to tell apart one may drift as the other does not.
-            rivals = [
-                j for j in stage.considered if j.effect in _STEADY and j.variant.block != said.variant.block
-            ]
-            for rival in rivals:
-                drift = _with_drift(problem, rival.fitted, rival.held_out, rival)
-                if drift.fitted.cost < likeliest.fitted.cost and _is_plain(drift, rival):
-                    likeliest, said = drift, rival
+        # Of a lag and a clock that are hard to tell apart one may drift as the other does not.
         block = said.variant.block
-        return Leftover(block, 1.0, ((block, 1.0),), note=_said(said, float(likeliest.value[0])))
+        alike = [j for j in stage.considered if j.effect in _STEADY and j.variant.block != block]
+        for rival in alike if len(stages) == _ALONE else []:
+            other = _with_drift(problem, rival.fitted, rival.held_out, rival)
+            if other.fitted.cost < drift.fitted.cost and _is_plain(other, rival):
+                said, drift = rival, other
+        block = said.variant.block
+        return Leftover(block, 1.0, ((block, 1.0),), note=_said(said, float(drift.value[0])))
     return None
 
 
@@ -101,7 +98,5 @@ def _written(variant: Variant, value: float, flights: Flights) -> FloatArray:
 def _said(judged: Judged, change: float) -> str:
     name, value = judged.variant.names[0], float(judged.value[0])
     unit, scale = ("ms", 1e3) if name.endswith("_s") else ("%", 1e2)
-    began, ended = scale * (value - 0.5 * change), scale * (value + 0.5 * change)
-    return (
-        f"It is not the same throughout: {began:.0f} {unit} at the beginning, {ended:.0f} {unit} at the end."
-    )
+    began, ended = (round(scale * (value + half)) for half in (-0.5 * change, 0.5 * change))
+    return f"It is not the same throughout: {began} {unit} at the beginning, {ended} {unit} at the end."
