@@ -22,6 +22,11 @@ def late_by(flown, channel, delays_s):
     ]
 
 
+def through_a_vane(setup, lags_s):
+    """A flight whose vane has another lag in each manoeuvre."""
+    return [fly(replace(setup, switches={"vane_lag": lag}))[i] for i, lag in enumerate(lags_s)]
+
+
 @pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), HARD])
 @pytest.mark.parametrize(("channel", "block"), [("alpha", "timing"), ("a_z", "timing")])
 def test_a_clock_that_runs_off_is_unknown_in_the_time_stamps(setup, channel, block):
@@ -32,11 +37,7 @@ def test_a_clock_that_runs_off_is_unknown_in_the_time_stamps(setup, channel, blo
 
 @pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), HARD])
 def test_a_vane_that_grows_slower_is_unknown_in_the_vane(setup):
-    flown = [
-        fly(replace(setup, switches={"vane_lag": lag}))[i]
-        for i, lag in enumerate(np.linspace(0.001, 0.08, 8))
-    ]
-    found = diagnose(flown, Aircraft())
+    found = diagnose(through_a_vane(setup, np.linspace(0.001, 0.08, 8)), Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == "alpha_sensor"
     assert any("not the same throughout" in note for note in found.notes)
@@ -44,10 +45,6 @@ def test_a_vane_that_grows_slower_is_unknown_in_the_vane(setup):
 
 @pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=62), replace(HARD, seed=63)])
 def test_a_lag_that_is_a_third_longer_in_the_end_keeps_its_name(setup):
-    flown = [
-        fly(replace(setup, switches={"vane_lag": lag}))[i]
-        for i, lag in enumerate(np.linspace(0.04, 0.053, 8))
-    ]
-    found = diagnose(flown, Aircraft())
+    found = diagnose(through_a_vane(setup, np.linspace(0.04, 0.053, 8)), Aircraft())
     assert found.verdict == "effect"
     assert found.causes[0].effect == "alpha_lag"
