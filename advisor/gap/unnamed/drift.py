@@ -48,8 +48,7 @@ def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
         if not _is_plain(drift, said):
             continue
         # Of a lag and a clock that are hard to tell apart one may drift as the other does not.
-        block = said.variant.block
-        alike = [j for j in stage.considered if j.effect in _STEADY and j.variant.block != block]
+        alike = [j for j in stage.considered if j.effect in _STEADY and j.variant.block != said.variant.block]
         for rival in alike if len(stages) == _ALONE else []:
             other = _with_drift(problem, rival.fitted, rival.held_out, rival)
             if other.fitted.cost < drift.fitted.cost and _is_plain(other, rival):
