@@ -206,3 +206,17 @@ def test_a_wind_that_changes_in_a_layer_only_is_told_by_the_manoeuvres_flown_in_
     # Winds of every second manoeuvre in height make no layer.
     low_to_high = [m for _, m in sorted(zip(heights, flown, strict=True), key=lambda pair: pair[0])]
     assert wind_shear([blown(m, 0.2) if k % 2 else m for k, m in enumerate(low_to_high)]) is None
+
+
+def test_a_layer_of_wind_is_told_by_two_manoeuvres_that_cross_its_edge():
+    heights = (150.0, 40.0, 220.0, 60.0, 151.0, 30.0, 260.0, 50.0, 300.0)
+    sheared = []
+    for m in fly(Setup(seed=11, heights_m=heights)):
+        speed, height = m.channels["airspeed"], m.channels["height"]
+        wind = 0.4 * np.clip(np.interp(speed.t, height.t, height.y) - 150.0, -10.0, 10.0)
+        sheared.append(replace(m, channels={**m.channels, "airspeed": replace(speed, y=speed.y + wind)}))
+    found = wind_shear(sheared)
+    assert found.is_plain
+    assert abs(found.gradient_per_s - 0.4) < 0.1
+    # One that was flown in it agrees with no other.
+    assert wind_shear([m for k, m in enumerate(sheared) if k != 4]) is None

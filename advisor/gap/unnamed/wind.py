@@ -1,12 +1,14 @@
 """Does the wind change with height? The air speed against the accelerations, without any aerodynamics.
 
 In air that moves steadily the air speed changes as the accelerometers have it. Where the wind changes with
-height, it changes by the gradient times the climb besides. Of both, a parabola in time is taken out of
-every manoeuvre: the drift of the integral, and the slow wandering of the wind.
+height, it changes by the gradient times the climb besides: everywhere, or in a layer above and below which
+the wind is the same. Of both, a parabola in time is taken out of every manoeuvre: the drift of the integral,
+and the slow wandering of the wind.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from scipy.special import stdtrit
@@ -33,6 +35,14 @@ _PLAIN_SHARE = 0.25
 """... and in air that moves of itself, from this share on it is plain all the same ..."""
 _SURE_CHANCE = 1e-4
 """... or where manoeuvres agree as they would with this chance."""
+_LAYER_CHANCE = 2e-2
+"""Of a layer's gradient, from the plain share on: few manoeuvres tell of a layer, and leaving one of them out
+scatters by much. In nearly 500 flights of five simulators without it no layer explains more than 0.17."""
+_ALONE = 1e-3
+"""Share of the heights' changes that all manoeuvres but one must hold."""
+_HEIGHTS = 14
+_THINNEST_M = 2.0
+"""Heights between which a layer is sought, as many in every part of what was flown; and the least of one."""
 
 
 @dataclass(frozen=True)
@@ -62,46 +72,62 @@ class Shear:
 def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     """The gradient of the wind when it is there; None when the air speed follows from the accelerations.
 
-    Wind may change in a layer only: then manoeuvres that follow one another in height agree on it.
+    Wind may change in a layer only: then the height of every sample says what it does.
     """
-    apart = [(_height_of(m), p) for m, p in ((m, _apart(m)) for m in maneuvers) if p is not None]
-    pairs = [p for _, p in sorted(apart, key=lambda found: found[0])]
-    if len(pairs) < _LEAST_MANEUVERS:
+    paths = [p for p in map(_path_of, maneuvers) if p is not None]
+    if len(paths) < _LEAST_MANEUVERS:
         return None
-    everywhere = _gradient(pairs)
+    everywhere = _gradient(paths)
     chance = _PLAIN_CHANCE if everywhere.share >= _PLAIN_SHARE else _CHANCE
     if everywhere.share >= _LEAST_SHARE and everywhere.is_agreed(chance):
         return everywhere
-    if any(np.isnan(height) for height, _ in apart):
+    heights = np.concatenate([p.height for p in paths])
+    if np.any(np.isnan(heights)):
         return None
-    sizes = range(_LEAST_MANEUVERS, len(pairs))
-    layers = [pairs[i : i + size] for size in sizes for i in range(len(pairs) - size + 1)]
-    # With so many layers to choose from, one must be as much less likely by chance, and plain.
-    found = map(_gradient, layers)
-    there = [s for s in found if s.share >= _PLAIN_SHARE and s.is_agreed(_CHANCE / len(layers))]
-    return max(there, key=lambda s: abs(s.gradient_per_s) / max(s.std, 1e-12), default=None)
+    between = combinations(np.quantile(heights, np.linspace(0.0, 1.0, _HEIGHTS)), 2)
+    layers = [_gradient(paths, low, high) for low, high in between if high - low >= _THINNEST_M]
+    likeliest = max(layers, key=lambda s: s.share, default=everywhere)
+    there = likeliest.share >= _PLAIN_SHARE and likeliest.is_agreed(_LAYER_CHANCE)
+    return likeliest if there else None
 
 
-def _gradient(pairs: Sequence[tuple[FloatArray, FloatArray]]) -> Shear:
-    """The gradient over some manoeuvres."""
-    products = np.array([float(height @ speed) for height, speed in pairs])
-    squares = np.array([float(height @ height) for height, _ in pairs])
+@dataclass(frozen=True)
+class _Path:
+    """What one manoeuvre tells, shape (n,) each, at the stamps of the air speed."""
+
+    height: FloatArray
+    """m; NaN where none was measured."""
+    climbed: FloatArray
+    """m, without the parabola."""
+    speed: FloatArray
+    """Air speed beyond the accelerations, m/s, without the parabola."""
+    parabola: FloatArray
+    """Shape (n, 3): orthonormal."""
+
+    def freed(self, y: FloatArray) -> FloatArray:
+        """A course without its parabola."""
+        return np.asarray(y - self.parabola @ (self.parabola.T @ y))
+
+
+def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf) -> Shear:
+    """The gradient over all manoeuvres, of a wind that changes between two heights only."""
+    whole = not np.isfinite(high - low)
+    winds = [p.climbed if whole else p.freed(np.clip(p.height, low, high)) for p in paths]
+    products = np.array([float(w @ p.speed) for w, p in zip(winds, paths, strict=True)])
+    squares = np.array([float(w @ w) for w in winds])
+    n, rest = len(paths), np.sum(squares) - squares
+    if np.min(rest) <= _ALONE * np.sum(squares):
+        # One manoeuvre that tells alone agrees with no other.
+        return Shear(0.0, np.inf, 0.0, n)
     gradient = float(np.sum(products) / np.sum(squares))
-    without = (np.sum(products) - products) / (np.sum(squares) - squares)
-    n = len(pairs)
+    without = (np.sum(products) - products) / rest
     std = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
-    power = sum(float(speed @ speed) for _, speed in pairs)
+    power = sum(float(p.speed @ p.speed) for p in paths)
     return Shear(gradient, std, gradient * float(np.sum(products)) / max(power, 1e-300), n)
 
 
-def _height_of(maneuver: Maneuver) -> float:
-    """Mean height, m; NaN without one."""
-    height = maneuver.channels.get("height")
-    return float("nan") if height is None or not len(height) else float(np.mean(height.y))
-
-
-def _apart(maneuver: Maneuver) -> tuple[FloatArray, FloatArray] | None:
-    """Height, and what the air speed has beyond the accelerations, both shape (n,), a parabola taken out."""
+def _path_of(maneuver: Maneuver) -> _Path | None:
+    """What a manoeuvre tells; None without the channels, or with too few samples."""
     found = maneuver.channels
     if not all(name in found and len(found[name]) > _LEAST_SAMPLES for name in _NEEDED):
         return None
@@ -110,15 +136,17 @@ def _apart(maneuver: Maneuver) -> tuple[FloatArray, FloatArray] | None:
         np.interp(t, found[c].t, found[c].y) for c in ("a_x", "theta", "alpha", "airspeed")
     )
     known = integrated(t, speed_rate(a_x, found["a_z"].y, theta, alpha))
-    height = integrated(t, speed * np.sin(theta - alpha))
+    climbed = integrated(t, speed * np.sin(theta - alpha))
     stamps = found["airspeed"].t
     inside = (stamps >= t[0]) & (stamps <= t[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return None
     stamps, measured = stamps[inside], found["airspeed"].y[inside]
+    # Barometers are coarse and late: they say how high a manoeuvre was flown, not how it climbed.
+    height, begun = found.get("height"), np.nan
+    if height is not None and len(height):
+        begun = float(np.mean(height.y - np.interp(height.t, t, climbed)))
+    climbed = np.interp(stamps, t, climbed)
     parabola = np.linalg.qr(np.vander((stamps - stamps[0]) / (stamps[-1] - stamps[0]), 3))[0]
-
-    def freed(y: FloatArray) -> FloatArray:
-        return np.asarray(y - parabola @ (parabola.T @ y))
-
-    return freed(np.interp(stamps, t, height)), freed(measured - np.interp(stamps, t, known))
+    path = _Path(climbed + begun, climbed, measured - np.interp(stamps, t, known), parabola)
+    return replace(path, climbed=path.freed(climbed), speed=path.freed(path.speed))
