@@ -30,10 +30,9 @@ from advisor.gap.unnamed.leftover import (
     is_the_gust,
     left_over,
     other_than_air,
-    swinging,
-    swings_the_aircraft,
 )
 from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, only_numbers, remainder
+from advisor.gap.unnamed.swing import swinging, swings_the_aircraft
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
 from advisor.gap.unnamed.wander import wandering_sensor

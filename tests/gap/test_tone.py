@@ -13,7 +13,7 @@ from advisor.gap.fitting.fit import fit, noise_of
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.unnamed.leftover import swings_the_aircraft
+from advisor.gap.unnamed.swing import swings_the_aircraft
 from advisor.gap.unnamed.tone import line_of, ringing_hz, tone_in
 from tests.gap.generator import Setup, fly
 

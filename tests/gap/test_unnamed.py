@@ -18,8 +18,9 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
 from advisor.gap.unnamed.course import has_tone
-from advisor.gap.unnamed.leftover import other_than_air, swinging
+from advisor.gap.unnamed.leftover import other_than_air
 from advisor.gap.unnamed.origin import followed
+from advisor.gap.unnamed.swing import swinging
 from advisor.gap.unnamed.wind import wind_shear
 from tests.gap.generator import LIGHT_AIRCRAFT, UAV, Setup, fly
 

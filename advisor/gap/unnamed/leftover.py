@@ -21,7 +21,6 @@ from advisor.gap.unnamed.clock import is_of_the_clock
 from advisor.gap.unnamed.course import is_in_few, is_of_the_air
 from advisor.gap.unnamed.jumps import jumping_sensor
 from advisor.gap.unnamed.origin import stick_or_motion
-from advisor.gap.unnamed.tone import Tone, tone_in
 from advisor.gap.unnamed.unrest import unrest
 
 _LEAST_GAIN = 100.0
@@ -40,16 +39,8 @@ _LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
 _OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that."""
-_OF_PEAK_SWINGING = 0.005
-"""The same for a motion at one frequency: no error of a model looks like that."""
 _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
-_VISIBLE = 0.05
-"""Power of a swing, beside the instruments' noise, from which on there is something to explain."""
-_SAME_LINE = 0.1
-"""How near to a named structure's frequency a swing is its own, relative ..."""
-_PLAINLY = 20.0
-"""... and log likelihood by which another place than the gyro must explain it better."""
 _TURNS = ("input", "moment_equation")
 """Blocks whose disturbance turns the aircraft, as air does that the tail meets later than the wing."""
 _BETTER_THAN_AIR = 1.1
@@ -98,18 +89,18 @@ def left_over(
     all_named
         Whether named effects leave no gap: then only a sensor that jumps is asked for: the floor hides it.
     """
-    noise = _noise(problem)
+    noise = noise_of(problem)
     probes = probe_blocks(problem, last, noise)
     best, jumping = probes[0], jumping_sensor(problem, last, tolerance)
     # What a disturbance with a memory describes did not jump.
     if jumping is not None and best.explained < _LEAST_SHARE:
-        return Leftover(jumping, 1.0, _ranking(probes, jumping), note="It jumps now and then.")
+        return Leftover(jumping, 1.0, ranking_of(probes, jumping), note="It jumps now and then.")
     if all_named:
         return None
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     active, quiet = unrest(problem, last.innovations)
     telling = np.isin(np.arange(len(problem.channels)), problem.flights.telling)
-    beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - _instruments(problem) ** 2, 0.0))
+    beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - instruments_of(problem) ** 2, 0.0))
     peaks = problem.flights.peaks
     telling &= beyond > max(_OF_PEAK, _of_the_command(problem, last)) * peaks
     if not np.any(telling):
@@ -129,51 +120,8 @@ def left_over(
     least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else _LEAST_OF_GAP
     if unexplained < least * taken and not plain:
         return None
-    block = _block(problem, last, _instruments(problem), probes)
-    return Leftover(block, best.explained, _ranking(probes, block))
-
-
-def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArray) -> Leftover | None:
-    """What swings of itself, where it is more than an instrument's noise. Arguments as in ``left_over``."""
-    noise, instruments = _noise(problem), np.maximum(_instruments(problem), 1e-12)
-    tone = tone_in(problem, last, noise)
-    if tone is None or tone.probes[0].gain < _LEAST_GAIN or tone.probes[0].block == "air":
-        return None
-    best = tone.probes[0]
-    least = _OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
-    if not np.any(tone.power > np.maximum(least * problem.flights.peaks, tolerance) ** 2):
-        return None
-    if float(np.mean(tone.power / instruments**2)) < _VISIBLE:
-        return None
-    powers = (rms_of(problem, last.innovations) / noise) ** 2
-    taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
-    if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
-        return None
-    if best.block in SENSOR_CHANNELS and is_of_the_clock(problem, last, SENSOR_CHANNELS[best.block]):
-        # What comes too early or too late swings with the motion, not by itself.
-        return Leftover("timing", best.explained, _ranking(tone.probes, "timing"))
-    return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power, _swings(tone))
-
-
-def swings_the_aircraft(problem: Problem, first: Fitted, last: Fitted) -> Leftover | None:
-    """A named structure of which all channels tell, not the gyro alone: then it is the aircraft that swings.
-
-    Arguments as in ``left_over``. The plain model shows it: the other's numbers have adapted to the name.
-    """
-    named = zip(last.point.effects, last.point.values, strict=True)
-    omegas = (v[e.names.index("omega_rad_s")] for e, v in named if e.effect == "structural_mode")
-    omega = next(omegas, None)
-    tone = tone_in(problem, first, _noise(problem)) if omega is not None else None
-    if omega is None or tone is None or abs(2.0 * np.pi * tone.hz - omega) > _SAME_LINE * omega:
-        return None
-    best, gyro = tone.probes[0], next(p for p in tone.probes if p.block == "pitch_rate_sensor")
-    if best.block in (*SENSOR_CHANNELS, "air") or best.gain - gyro.gain < _PLAINLY:
-        return None
-    return Leftover(best.block, best.explained, _ranking(tone.probes, best.block), tone.power, _swings(tone))
-
-
-def _swings(tone: Tone) -> str:
-    return f"It swings by itself, {tone.hz:.2g} times a second."
+    block = _block(problem, last, instruments_of(problem), probes)
+    return Leftover(block, best.explained, ranking_of(probes, block))
 
 
 def is_the_gust(problem: Problem, last: Fitted, leftover: Leftover) -> bool:
@@ -181,7 +129,7 @@ def is_the_gust(problem: Problem, last: Fitted, leftover: Leftover) -> bool:
 
     It is in few manoeuvres, and the air describes it nearly as well as any other block.
     """
-    noise = _noise(problem)
+    noise = noise_of(problem)
     powers = np.mean(mean_squares(problem, last.innovations) / noise**2, axis=1)
     return dict(leftover.ranking).get("air", 0.0) * _BETTER_THAN_AIR >= 1.0 and is_in_few(powers)
 
@@ -197,7 +145,7 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
         # An estimate of α sees no gust: what it leaves out looks like a disturbance elsewhere.
         return None
     problem, last = unfiltered(problem, last)
-    noise = _instruments(problem)
+    noise = instruments_of(problem)
     probes = probe_blocks(problem, last, noise)
     # A gust along the path changes the lift alone: a disturbance of the force is as much the air's.
     air = max((p for p in probes if p.block in ("air", "force_equation")), key=lambda p: p.gain)
@@ -217,7 +165,7 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
     if _turns_as_air_does(problem, last, noise, best):
         return None
     block = _block(problem, last, noise, probes)
-    return Leftover(block, best.explained, _ranking(probes, block))
+    return Leftover(block, best.explained, ranking_of(probes, block))
 
 
 def is_of_passing_air(problem: Problem, last: Fitted, leftover: Leftover) -> bool:
@@ -227,7 +175,7 @@ def is_of_passing_air(problem: Problem, last: Fitted, leftover: Leftover) -> boo
     """
     if leftover.block not in _TURNS:
         return False
-    noise = _noise(problem)
+    noise = noise_of(problem)
     return _turns_as_air_does(problem, last, noise, probe_blocks(problem, last, noise)[0])
 
 
@@ -240,9 +188,9 @@ def _turns_as_air_does(problem: Problem, last: Fitted, noise: FloatArray, best: 
 
 def placed(problem: Problem, last: Fitted) -> Leftover:
     """What is left, in the block whose unknown disturbance explains it best."""
-    probes = probe_blocks(problem, last, _noise(problem))
-    block = _block(problem, last, _instruments(problem), probes)
-    return Leftover(block, probes[0].explained, _ranking(probes, block))
+    probes = probe_blocks(problem, last, noise_of(problem))
+    block = _block(problem, last, instruments_of(problem), probes)
+    return Leftover(block, probes[0].explained, ranking_of(probes, block))
 
 
 def _block(problem: Problem, last: Fitted, noise: FloatArray, probes: Sequence[Probe]) -> str:
@@ -268,16 +216,18 @@ def _of_the_command(problem: Problem, last: Fitted) -> float:
     return frequency * interval / 12.0
 
 
-def _noise(problem: Problem) -> FloatArray:
-    """Shape (channels,): what innovations are measured against."""
-    return np.ones(len(problem.channels)) if problem.knows_the_noise else _instruments(problem)
+def noise_of(problem: Problem) -> FloatArray:
+    """What innovations are measured against, shape (channels,): 1 where the filter knows the noise."""
+    return np.ones(len(problem.channels)) if problem.knows_the_noise else instruments_of(problem)
 
 
-def _instruments(problem: Problem) -> FloatArray:
+def instruments_of(problem: Problem) -> FloatArray:
+    """White noise of the instruments, shape (channels,); 0 where it is not known."""
     return np.zeros(len(problem.channels)) if problem.instruments is None else problem.instruments
 
 
-def _ranking(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ...]:
+def ranking_of(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ...]:
+    """Blocks and their scores, 1 for the first."""
     best = max(probes[0].gain, 1e-9)
     scores = {first: 1.0}
     for p in probes:

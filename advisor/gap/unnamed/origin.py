@@ -43,13 +43,16 @@ def stick_or_motion(
     probes
         Likeliest first, from ``probe_blocks``.
     """
-    if {probes[0].block, probes[1].block} != ALIKE or "alpha" not in problem.channels:
-        return None
-    if probes[0].gain - probes[1].gain > _TIED:
+    if not are_tied(probes) or "alpha" not in problem.channels:
         return None
     size = next(p.size for p in probes if p.block == "moment_equation")
     course = disturbance_courses(problem, fitted, noise, "moment_equation", [size])[0]
     return followed(problem.flights.flights, course.knots)
+
+
+def are_tied(probes: Sequence[Probe]) -> bool:
+    """Whether the two alike are likeliest and explain a residual equally well. Likeliest first."""
+    return {probes[0].block, probes[1].block} == ALIKE and probes[0].gain - probes[1].gain <= _TIED
 
 
 def followed(flights: Sequence[Flight], courses: Sequence[FloatArray]) -> str | None:

@@ -10,6 +10,8 @@ import numpy as np
 from advisor.gap.records.flights import Flight
 from advisor.gap.verdict.evidence import Evidence
 
+_MOST = 0.5
+"""Of a change that took its time, what must lie between the manoeuvres before and after."""
 _UNKNOWN = 2
 """Riddles that something without a name is worth: a second name is the better answer."""
 
@@ -37,7 +39,7 @@ def torn_by_a_change(e: Evidence) -> int | None:
 
 
 def is_told_without(e: Evidence, without: Evidence, number: int) -> bool:
-    """Whether the other manoeuvres, by themselves, tell of a step at this one, and leave fewer riddles.
+    """Whether the others, by themselves, tell of a change mostly at this one, and leave fewer riddles.
 
     Where a gust passes through more than one of them, that was no change either.
     """
@@ -46,8 +48,12 @@ def is_told_without(e: Evidence, without: Evidence, number: int) -> bool:
     flights = without.problem.flights.flights
     earliest = max((_end_s(f) for f in flights if f.number < number), default=np.inf)
     latest = min((f.started_s for f in flights if f.number > number), default=-np.inf)
-    step = any(earliest <= began == ended <= latest for began, ended in _changes(without))
-    return step and _riddles(without) < _riddles(e)
+
+    def mostly_there(began: float, ended: float) -> bool:
+        there = min(ended, latest) - max(began, earliest)
+        return there >= _MOST * (ended - began)
+
+    return any(mostly_there(*change) for change in _changes(without)) and _riddles(without) < _riddles(e)
 
 
 def _end_s(flight: Flight) -> float:
