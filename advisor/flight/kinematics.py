@@ -28,6 +28,11 @@ its own rate, and the rate of α enters the moment equation as a change of M_q."
 SMALLEST_LAG_S = 0.004
 SMALLEST_SCALE = 0.01
 SMALLEST_BIAS_RAD = np.radians(0.1)
+_STAYS = 0.5
+"""Share of itself that an offset may lack in the first second, in the mean of all manoeuvres."""
+_BEGIN_S = 1.0
+_SCATTERS = 3.0
+_NO_BIAS = (float("nan"), float("nan"), float("nan"))
 
 Finding = Literal["consistent", "late", "early", "scaled", "inconsistent", "not possible"]
 
@@ -49,12 +54,20 @@ class KinematicCheck:
     bias_rad: float = float("nan")
     """Mean of α minus (θ − flight-path angle); NaN without a climb rate."""
     bias_std_rad: float = float("nan")
+    bias_change_rad: float = float("nan")
+    """How much more it is over the record than in its first second; 0 within three times what manoeuvres
+    scatter by. An instrument's offset is there from the first; air that begins to sink is not."""
     drift_rad_s: float = float("nan")
     """Rate at which reconstruction and α part: bias of pitch rate and accelerometers together."""
     rms_rad: float = float("nan")
     """What is left between the two when lag, scale and drift are allowed for."""
     explained: float = float("nan")
     """Share of the variance of α that the reconstruction explains."""
+
+    @property
+    def bias_stays(self) -> bool:
+        """Whether the offset is there from the beginning."""
+        return abs(self.bias_change_rad) < _STAYS * abs(self.bias_rad)
 
     @property
     def possible(self) -> bool:
@@ -89,10 +102,11 @@ def check_alpha(
         listed = ", ".join(missing)
         said = f"alpha cannot be checked against the motion: no {listed} in this log."
         # What alpha is off on average takes the attitude and the climb rate only.
-        offset = _bias(maneuver, airspeed_m_s) if missing == ["a_z"] else (float("nan"), float("nan"))
+        offset = _bias(maneuver, airspeed_m_s) if missing == ["a_z"] else _NO_BIAS
         return KinematicCheck(
-            "not possible", said, tuple(missing), bias_rad=offset[0], bias_std_rad=offset[1]
-        )
+            "not possible", said, tuple(missing),
+            bias_rad=offset[0], bias_std_rad=offset[1], bias_change_rad=offset[2],
+        )  # fmt: skip
     t_alpha, alpha = renewed(found["alpha"].t, found["alpha"].y)
     t = found["q"].t
 
@@ -140,11 +154,11 @@ def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
     return found
 
 
-def _bias(maneuver: Maneuver, airspeed_m_s: float | None) -> tuple[float, float]:
-    """Mean of α − (θ − γ) and its error, from the climb rate; NaN without one."""
+def _bias(maneuver: Maneuver, airspeed_m_s: float | None) -> tuple[float, float, float]:
+    """Mean of α − (θ − γ), its error, and its change, from the climb rate; NaN without one."""
     found = maneuver.channels
-    if "climb_rate" not in found or len(found["climb_rate"]) < 3:
-        return float("nan"), float("nan")
+    if "climb_rate" not in found or len(found["climb_rate"]) < 4:
+        return _NO_BIAS
     climb = found["climb_rate"]
 
     def at(name: str) -> FloatArray:
@@ -156,7 +170,8 @@ def _bias(maneuver: Maneuver, airspeed_m_s: float | None) -> tuple[float, float]
     apart = at("alpha") - (at("theta") - np.arcsin(np.clip(climb.y / speed, -0.9, 0.9)))
     # The climb rate is slow and smoothed: count one independent reading a second.
     independent = max(2.0, climb.t[-1] - climb.t[0])
-    return float(np.mean(apart)), float(np.std(apart) / np.sqrt(independent))
+    change = float(np.mean(apart) - np.mean(apart[climb.t <= climb.t[0] + _BEGIN_S]))
+    return float(np.mean(apart)), float(np.std(apart) / np.sqrt(independent)), change
 
 
 def _compare(
@@ -166,7 +181,7 @@ def _compare(
     commanded: FloatArray | None,
     t_alpha: FloatArray,
     alpha: FloatArray,
-    bias: tuple[float, float],
+    bias: tuple[float, float, float],
 ) -> KinematicCheck:
     """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b.
 
@@ -253,15 +268,18 @@ def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:
     The scatter between manoeuvres widens the error where it exceeds what each claims.
     """
     biased = [c for c in checks if np.isfinite(c.bias_rad)]
-    bias = (
-        _weighted([c.bias_rad for c in biased], [c.bias_std_rad for c in biased])
-        if biased
-        else (np.nan, np.nan)
-    )
+    bias = _NO_BIAS
+    if biased:
+        stds = [c.bias_std_rad for c in biased]
+        changes = np.array([c.bias_change_rad for c in biased])
+        scatter = np.std(changes) / np.sqrt(max(len(changes) - 1, 1))
+        change = float(np.mean(changes))
+        plain = len(changes) > 1 and abs(change) > _SCATTERS * scatter
+        bias = (*_weighted([c.bias_rad for c in biased], stds), change if plain else 0.0)
     usable = [c for c in checks if c.possible and np.isfinite(c.lag_std_s) and c.lag_std_s > 0.0]
     if not usable:
         first = checks[0] if checks else KinematicCheck("not possible", "No manoeuvre to check alpha on.")
-        return replace(first, bias_rad=bias[0], bias_std_rad=bias[1])
+        return replace(first, bias_rad=bias[0], bias_std_rad=bias[1], bias_change_rad=bias[2])
     lag, lag_std = _weighted([c.lag_s for c in usable], [c.lag_std_s for c in usable])
     scale, scale_std = _weighted([c.scale for c in usable], [c.scale_std for c in usable])
     explained = float(np.median([c.explained for c in usable]))

@@ -81,7 +81,8 @@ def _explained(
     flown = [_without_dead_pitot(m) for m in maneuvers if m.number in numbers]
     kinematics = combine([check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown])
     progress("fitting the simulator's model", 0.1)
-    if abs(kinematics.bias_rad) > max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * kinematics.bias_std_rad):
+    least = max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * kinematics.bias_std_rad)
+    if kinematics.bias_stays and abs(kinematics.bias_rad) > least:
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
         flights = prepare([_without_offset(m, kinematics.bias_rad) for m in maneuvers], aircraft)
     problem, baseline = fit_baseline(flights, aircraft)

@@ -80,7 +80,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
             leftover = wandering_sensor(problem, stages[-1].fitted)
     true_speed = true_speed_of(problem, stages[-1].fitted)
     # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
-    alone = len(stages) == 1 and not (air is not None and air.gust)
+    # Air that moves is read as a wrong speed, too.
+    alone = len(stages) == 1 and air is None
     if leftover is None and alone and true_speed is not None and true_speed.is_wrong:
         leftover = Leftover("accelerometer", 1.0, (("accelerometer", 1.0),))
     if leftover is not None and leftover.in_quiet is not None:

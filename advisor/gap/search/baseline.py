@@ -9,7 +9,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.candidates import input, moment, sensors, timing
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
-from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.fit import Fitted, fit, rms_of
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.fitting.whitening import Weighting
@@ -30,7 +30,9 @@ _AT_MOST = 2
 _MAIN = [DERIVATIVES.index(name) for name in ("Z_alpha", "M_alpha", "M_delta_e")]
 """Derivatives that a regression hardly ever misses by a factor of three ..."""
 _ALIKE = 1.0 / 3.0
-"""... so that within it the aircraft file's are the better start."""
+"""... so that within it the aircraft file's are the better start ..."""
+_MUCH = 0.1
+"""... unless the fit from there leaves this share of a channel's peak."""
 
 
 def everywhere(point: Point, flights: Flights, latency_s: float = 0.0) -> Point:
@@ -70,21 +72,29 @@ def arms_in(aircraft: Aircraft) -> frozenset[str]:
     return frozenset(effect for effect, arm in arms.items() if arm is not None)
 
 
-def first_guesses(flights: Flights, aircraft: Aircraft) -> list[Point]:
-    """Derivatives by equation error (regression of the rates), or the aircraft file's own.
+def first_fit(problem: Problem, aircraft: Aircraft) -> Fitted:
+    """The plain model fitted from the aircraft file's derivatives, or from a regression of the rates.
 
-    The file's are nearer as a rule. But where a sign or a unit in it is wrong, no step leads away from them:
-    where the regression sees something else altogether, both are worth a try.
+    The file's are nearer as a rule. But where a sign or a unit in it is wrong no step leads away from them:
+    where the regression sees something else altogether, or the fit leaves much, all are tried.
     """
+    flights = problem.flights
     own = np.zeros((len(flights), len(NUISANCES)))
     own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
-    guesses = regressions(flights)
-    believed = believed_derivatives(aircraft)
-    if believed is not None:
-        last = guesses[-1][_MAIN]
-        agree = last * believed[_MAIN] > _ALIKE * np.maximum(last**2, believed[_MAIN] ** 2)
-        guesses = [believed.copy()] if np.all(agree) else [believed.copy(), *guesses]
-    return [Point(guess, own) for guess in guesses]
+
+    def fitted_from(guess: FloatArray) -> Fitted:
+        return fit(problem, everywhere(Point(guess, own), flights, latency_s=0.001))
+
+    seen, believed = regressions(flights), believed_derivatives(aircraft)
+    if believed is None:
+        return min(map(fitted_from, seen), key=lambda found: found.cost)
+    fitted = fitted_from(believed.copy())
+    agree = seen[-1][_MAIN] * believed[_MAIN] > _ALIKE * np.maximum(
+        seen[-1][_MAIN] ** 2, believed[_MAIN] ** 2
+    )
+    if np.all(agree) and np.all(rms_of(problem, fitted.left) < _MUCH * flights.peaks):
+        return fitted
+    return min([fitted, *map(fitted_from, seen)], key=lambda found: found.cost)
 
 
 def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]:
@@ -98,8 +108,7 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )
-    starts = [everywhere(guess, flights, latency_s=0.001) for guess in first_guesses(flights, aircraft)]
-    fitted = min((fit(problem, start) for start in starts), key=lambda found: found.cost)
+    fitted = first_fit(problem, aircraft)
     plain, seen = fitted, quietest(problem, fitted)
     problem, fitted = read_command(*_filtered(problem, fitted, seen, first_look=True))
     if not problem.knows_the_noise:

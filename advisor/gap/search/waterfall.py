@@ -22,6 +22,8 @@ _CERTAIN = 100.0
 """Log likelihood from which on an effect too small for a name is worth a look at what shows beside it."""
 _CLEARLY = 20.0
 """Cost by which another companion must beat the one that was found first."""
+_OPEN = 0.1
+"""What counts of an effect that is something to measure rather; see ``_rank_of``."""
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share done, 0 to 1."""
@@ -166,7 +168,7 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
         }
         weakest = min(names, key=lambda name: missed[name].gain)
         if missed[weakest].worth_naming:
-            names.sort(key=lambda name: (_may_be_known(problem, name), -missed[name].gain))
+            names.sort(key=lambda name: -missed[name].gain * _rank_of(problem, name))
             break
         names.remove(weakest)
         full = without[weakest]
@@ -183,9 +185,13 @@ def _stands_alone(problem: Problem, first: Stage, full: Fitted, name: str) -> bo
     return addition(problem, first.fitted, first.held_out, full, name, independent).worth_naming
 
 
-def _may_be_known(problem: Problem, effect: str) -> bool:
-    """An accelerometer's place that the file leaves open: something to measure rather, so it comes last."""
-    return effect == "accelerometer_offset" and effect not in problem.arms_in_file
+def _rank_of(problem: Problem, effect: str) -> float:
+    """What an effect's gain counts when effects are put in order.
+
+    An accelerometer's place that the file leaves open is something to measure rather: it comes last, unless
+    next to nothing else is there.
+    """
+    return _OPEN if effect == "accelerometer_offset" and effect not in problem.arms_in_file else 1.0
 
 
 def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:

@@ -154,7 +154,7 @@ def alpha_bias_cause(
     A scale error shifts the trim, too; only what the named one leaves over is an offset. ``left`` is the gap
     of the last model: what the motion alone shows takes nothing off it.
     """
-    if not np.isfinite(check.bias_rad) or "alpha" not in problem.channels:
+    if not np.isfinite(check.bias_rad) or not check.bias_stays or "alpha" not in problem.channels:
         return None
     least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * check.bias_std_rad)
     trim = float(np.mean([flight.alpha_trim for flight in problem.flights.flights]))

@@ -66,7 +66,9 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
     unknown = e.leftover is not None and late is None
     beyond = _beyond_fitted_numbers(e)
-    wrong_values = beyond > VISIBLE and file_is_off(problem, stages[-1].fitted, plainly=beyond > PLAIN)
+    # Fitted numbers bend to the air's motion, and take up a part of it.
+    plainly = beyond > PLAIN and e.air is None
+    wrong_values = beyond > VISIBLE and file_is_off(problem, stages[-1].fitted, plainly)
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
     told = named or bias or late or (wrong_values and not _outweighs(e, beyond))
     if speed is not None and not told:
