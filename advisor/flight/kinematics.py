@@ -66,8 +66,8 @@ class KinematicCheck:
 
     @property
     def bias_stays(self) -> bool:
-        """Whether the offset is there from the beginning."""
-        return abs(self.bias_change_rad) < _STAYS * abs(self.bias_rad)
+        """Whether nothing says that the offset was not there from the beginning."""
+        return not abs(self.bias_change_rad) >= _STAYS * abs(self.bias_rad)
 
     @property
     def possible(self) -> bool:

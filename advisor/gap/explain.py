@@ -80,9 +80,9 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
             leftover = wandering_sensor(problem, stages[-1].fitted)
     true_speed = true_speed_of(problem, stages[-1].fitted)
     # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
-    # Air that moves is read as a wrong speed, too.
-    alone = len(stages) == 1 and air is None
-    if leftover is None and alone and true_speed is not None and true_speed.is_wrong:
+    # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
+    alone = len(stages) == 1 and not (air is not None and air.gust)
+    if leftover is None and alone and true_speed is not None and true_speed.is_wrong(air is not None):
         leftover = Leftover("accelerometer", 1.0, (("accelerometer", 1.0),))
     if leftover is not None and leftover.in_quiet is not None:
         least = np.maximum(stated_floor(problem.flights), tolerance)

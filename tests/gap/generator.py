@@ -54,13 +54,13 @@ SWITCHES = {
     "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0, "before_lag": 0.0,
     "speed_power": 0.0, "power_from": 22.0, "beat": 0.0, "beat_hz": 1.3,
     "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0, "change_t": 1e9, "cg_after": 0.0, "mass_after": 0.0,
-    "bends_about": -9.0,
+    "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
- MASSAFTER, ABOUT) = range(len(SWITCHES))  # fmt: skip
+ MASSAFTER, ABOUT, SLOSH, SLOSHHZ) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -79,6 +79,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
     eta, deta = 0.0, 0.0
     alphadot, height = 0.0, sw[HEIGHT]
     hyst, extra, met = 0.0, 0.0, 0.0
+    fuel, flow, turned_at = 0.0, 0.0, 0.0
     shift = round(sw[DELAY] / H)
     for k in range(n):
         t = k * H
@@ -144,8 +145,15 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
             + sw[CMAQ] * (a - a0) * q * chord / (2 * V)
             + sw[ECM] * (extra - de)
             + turned
+            - sw[SLOSH] * fuel
             + sw[BEAT] * np.sin(2 * np.pi * sw[BEATHZ] * t + phase)
         )
+        # Fuel that pitching sets swinging, hardly damped.
+        flow += (q - turned_at) - H * (2 * np.pi * sw[SLOSHHZ]) * (
+            2 * np.pi * sw[SLOSHHZ] * fuel + 0.06 * flow
+        )
+        fuel += H * flow
+        turned_at = q
         lift, drag = qb * cl, qb * cd
         fx = -drag * np.cos(a) + lift * np.sin(a) + thrust
         fz = -drag * np.sin(a) - lift * np.cos(a)

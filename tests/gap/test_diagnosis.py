@@ -96,7 +96,15 @@ def test_what_fitted_numbers_do_does_not_pass_for_the_work_of_the_effect_beside_
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"M_alpha": 37.0}, {"M_delta_e": 52.0}, {"M_delta_e": 0.0}, {"M_delta_e": -0.9}]
+    "wrong",
+    [
+        {"M_alpha": 37.0},
+        {"M_delta_e": 52.0},
+        {"M_delta_e": 0.0},
+        {"M_delta_e": -0.9},
+        {"M_q": 9.0},
+        {"M_q": 40.0},
+    ],
 )
 def test_a_sign_or_a_unit_that_is_wrong_in_the_file_does_not_hide_the_cause(wrong):
     flown = fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=3))
@@ -121,6 +129,12 @@ def test_numbers_that_are_off_by_a_few_per_cent_each_are_told_where_they_leave_a
     found = diagnose(fly(Setup(maneuvers=6, noise=0.02, seed=4)), Aircraft(model=wrong))
     assert found.gap.before > 0.5
     assert found.verdict == "parameters"
+
+
+def test_an_arm_that_the_file_leaves_open_comes_first_where_next_to_nothing_else_is_there():
+    flown = fly(Setup(switches={"acc_arm": 1.5, "cl_a2": -3.0}, noise=0.005, seed=10))
+    found = diagnose(flown, Aircraft(model=MODEL))
+    assert found.causes[0].effect == "accelerometer_offset"
 
 
 def test_a_faint_error_of_an_instrument_is_named_when_it_is_certain_in_still_air():

@@ -131,6 +131,19 @@ def test_errors_of_a_coloured_fit_are_wider_than_those_of_a_white_one():
     assert np.all(np.diag(coloured_covariance(jacobian, slow)) > 4 * np.diag(plain))
 
 
+def test_air_that_begins_to_sink_is_no_offset_of_the_angle_of_attack():
+    offset, sunk = [], []
+    for m in flown():
+        alpha = m.channels["alpha"]
+        began = alpha.t > alpha.t[0] + 2.5
+        for course, shift in ((offset, np.full(len(alpha), -0.03)), (sunk, -0.03 * began)):
+            course.append(replace(m, channels={**m.channels, "alpha": replace(alpha, y=alpha.y + shift)}))
+    constant, begun = (combine([check_alpha(m) for m in course]) for course in (offset, sunk))
+    assert constant.bias_stays
+    assert constant.bias_rad == pytest.approx(-0.03, abs=0.003)
+    assert not begun.bias_stays
+
+
 def blown(maneuver, gradient):
     """The manoeuvre in a wind that changes with height."""
     speed, climb = maneuver.channels["airspeed"], maneuver.channels["climb_rate"]

@@ -80,6 +80,19 @@ def test_an_engine_that_beats_is_unknown_in_the_moment_and_no_noise(gust_std):
     assert found.gap.before > VISIBLE
 
 
+@pytest.mark.parametrize("seed", [39, 40, 41])
+def test_fuel_that_the_stick_sets_swinging_is_a_moment_and_no_servo_that_hunts(seed):
+    found = diagnose(fly(Setup(maneuvers=6, switches={"slosh": 0.12}, seed=seed)), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "moment_equation")
+    assert any("Once set off, it swings" in note for note in found.notes)
+
+
+def test_what_swung_before_the_stick_moved_was_not_set_off_by_it():
+    found = diagnose(fly(Setup(maneuvers=6, switches={"beat": 0.01, "beat_hz": 0.9}, seed=42)), Aircraft())
+    assert found.verdict == "unknown"
+    assert any("It swings by itself" in note for note in found.notes)
+
+
 @pytest.mark.parametrize(("channel", "amplitude", "block"), [
     ("q", 0.01, "pitch_rate_sensor"), ("a_z", 0.4, "accelerometer"), ("theta", 0.006, "attitude_sensor"),
 ])  # fmt: skip

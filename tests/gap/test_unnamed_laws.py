@@ -63,6 +63,22 @@ def test_a_bent_reading_is_no_sum_of_bent_forces_even_in_moving_air(channel, rea
     assert any("does not read in proportion" in note for note in found.notes)
 
 
+@pytest.mark.parametrize(("setup", "felt"), [
+    (Setup(maneuvers=6, seed=38), lambda pull: -0.012 * pull),
+    (HARD, lambda pull: -0.012 * pull),
+    (Setup(maneuvers=6, seed=38), lambda pull: 0.003 * pull**2),
+])  # fmt: skip
+def test_a_gyro_that_feels_the_acceleration_is_unknown_in_the_gyro(setup, felt):
+    flown = []
+    for maneuver in fly(setup):
+        q, a_z = maneuver.channels["q"], maneuver.channels["a_z"]
+        wrong = replace(q, y=q.y + felt(np.interp(q.t, a_z.t, a_z.y) + 9.81))
+        flown.append(replace(maneuver, channels={**maneuver.channels, "q": wrong}))
+    found = diagnose(flown, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "pitch_rate_sensor")
+    assert "The pitch rate feels the acceleration." in found.notes
+
+
 @pytest.mark.parametrize("switches", [{"cl_a2": -9.0}, {"cl_a3": -120.0}, {"cm_a2": 4.0}, {"kink_at": 0.12}])
 def test_a_force_or_a_moment_that_bends_is_no_instruments_fault(switches):
     found = diagnose(fly(replace(HARD, switches=switches)), Aircraft())

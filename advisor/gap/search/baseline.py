@@ -87,14 +87,18 @@ def first_fit(problem: Problem, aircraft: Aircraft) -> Fitted:
 
     seen, believed = regressions(flights), believed_derivatives(aircraft)
     if believed is None:
-        return min(map(fitted_from, seen), key=lambda found: found.cost)
+        return min(map(fitted_from, seen), key=_finite_cost)
     fitted = fitted_from(believed.copy())
     agree = seen[-1][_MAIN] * believed[_MAIN] > _ALIKE * np.maximum(
         seen[-1][_MAIN] ** 2, believed[_MAIN] ** 2
     )
     if np.all(agree) and np.all(rms_of(problem, fitted.left) < _MUCH * flights.peaks):
         return fitted
-    return min([fitted, *map(fitted_from, seen)], key=lambda found: found.cost)
+    return min([fitted, *map(fitted_from, seen)], key=_finite_cost)
+
+
+def _finite_cost(fitted: Fitted) -> float:
+    return fitted.cost if np.isfinite(fitted.cost) else np.inf
 
 
 def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]:

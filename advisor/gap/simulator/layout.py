@@ -33,7 +33,7 @@ EFFECT_ENTRIES = (
     # few milliseconds between a command's stamp and its effect, in every model
     "latency_s",
     # instruments whose reading is a scaled or bent one, and has no name for it
-    "a_z_scale", "theta_scale", "a_z_read2", "a_z_read3", "alpha_read2", "alpha_read3",
+    "a_z_scale", "theta_scale", "a_z_read2", "a_z_read3", "alpha_read2", "alpha_read3", "q_pull", "q_pull2",
     # error of the air speed: a parabola in time over the record, from -1 to 1
     "speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s",
     # by how much the true air speed is above the one that is read, in all manoeuvres

@@ -53,7 +53,7 @@ LANES = 8
     ALPHA_LAG, ALPHA_SCALE, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY, A_Z_SCALE, THETA_SCALE,
-    A_Z_READ2, A_Z_READ3, ALPHA_READ2, ALPHA_READ3,
+    A_Z_READ2, A_Z_READ3, ALPHA_READ2, ALPHA_READ3, Q_PULL, Q_PULL2,
     SPEED_LEVEL, SPEED_SLOPE, SPEED_BOW, SPEED_SCALE,
 ) = range(len(ENTRIES))  # fmt: skip
 # Rows of a pack behind the driving numbers: what follows from them once, the state, what a step hands on.
@@ -247,11 +247,12 @@ def simulate(
                 turned = x[VANE_OUT, m] - alpha_trim
                 bent = (x[ALPHA_READ2, m] + x[ALPHA_READ3, m] * turned) * turned
                 out[k, i, 0, m] = alpha_trim + (1.0 + x[ALPHA_SCALE, m] + bent) * turned
-                out[k, i, 1, m] = ((1.0 + x[Q_SCALE, m]) * q + x[Q_BIAS, m] + x[MODE_GAIN, m] * x[BEND, m]
-                                   + x[MODE_RATE_GAIN, m] * x[BEND_RATE, m] * x[SOFTNESS, m])  # fmt: skip
                 a_z = (x[AIRSPEED, m] * x[NORMAL_0, m] + a_x * x[SIN_ALPHA, m]) / x[COS_ALPHA, m]
                 a_z -= x[IMU_ARM, m] * x[QDOT_0, m]
                 pulled = a_z + GRAVITY_M_S2
+                out[k, i, 1, m] = ((1.0 + x[Q_SCALE, m]) * q + x[Q_BIAS, m] + x[MODE_GAIN, m] * x[BEND, m]
+                                   + x[MODE_RATE_GAIN, m] * x[BEND_RATE, m] * x[SOFTNESS, m]
+                                   + (x[Q_PULL, m] + x[Q_PULL2, m] * pulled) * pulled)  # fmt: skip
                 bent = (x[A_Z_READ2, m] + x[A_Z_READ3, m] * pulled) * pulled
                 out[k, i, 2, m] = (1.0 + x[A_Z_SCALE, m]) * a_z + bent * pulled
                 out[k, i, 3, m] = theta_from + (1.0 + x[THETA_SCALE, m]) * (theta - theta_from)

@@ -1,8 +1,9 @@
 """A simple law that has no name in the catalogue: a reading out of proportion, a moment that bends.
 
-α and q may be scaled by name; a_z and θ may not, and no reading may be bent. A moment may bend by name with
-the deflection and with α, but not with the pitch rate, nor with products. Yet two or three named effects
-together imitate such a law well. One law that explains more than all of them do is likelier.
+α and q may be scaled by name; a_z and θ may not, no reading may be bent, and no gyro feel an acceleration.
+A moment may bend by name with the deflection and with α, but not with the pitch rate, nor with products. Yet
+two or three named effects together imitate such a law well. One law that explains more than all of them do
+is likelier.
 """
 
 import numpy as np
@@ -37,10 +38,24 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
     )  # fmt: skip
 
 
+_PULLED = "gyro_pulled"
 _READINGS = {
     "a_z": (_curve("accelerometer_curve", "accelerometer", "a_z", 5.0),),
     "alpha": (_curve("alpha_curve", "alpha_sensor", "alpha", 0.05),),
     "theta": (_scale("attitude_scale", "attitude_sensor", "theta"),),
+    "q": (
+        # IEEE Std 1431: drift that goes with acceleration, and with its square.
+        Variant(
+            "gyro_pulled",
+            "pitch_rate_sensor",
+            ("per_m_s2", "per_m_s2_squared"),
+            ((0.0, 0.0),),
+            (1e-4, 1e-5),
+            ((-0.1, 0.1), (-0.02, 0.02)),
+            0.0,
+            entries=("q_pull", "q_pull2"),
+        ),
+    ),
 }
 _MOMENTS = (
     Variant(
@@ -56,13 +71,19 @@ _SAID = {
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
     "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
+    _PULLED: "The pitch rate feels the acceleration.",
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
 }
 _CERTAIN = 30.0
 """Log likelihood that a law must bring: most of what a reading's does is the lift's own slope."""
+_WORTH_A_FIT = 0.2
+"""Share of the likeliest law's gain in the screening from which on another is fitted, too."""
 _LIKELIER = 10.0
 """... and by how much it must beat all that was named together."""
+_LEAVES = 0.3
+"""Share of a channel's power that a gyro leaves at most, if it feels acceleration: an attitude that leans
+looks alike, but for that."""
 _SEVERAL = 2
 """Names that together imitate a law."""
 _BESIDE = 0.5
@@ -78,12 +99,19 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     tried = [variant for channel in readings for variant in _READINGS.get(channel, ())]
     found = Screen(problem, plain).quick_fits([*tried, *_MOMENTS])
     samples = float(np.sum(worth(problem, plain.innovations)))
-    likeliest = min(found, key=lambda s: s.cost + penalty(s.variant, samples), default=None)
-    if likeliest is None or 0.5 * (plain.cost - likeliest.cost) < _CERTAIN:
+    gains = {screened.variant.effect: 0.5 * (plain.cost - screened.cost) for screened in found}
+    least = max(_CERTAIN, _WORTH_A_FIT * max(gains.values(), default=0.0))
+    # A law that changes what the derivatives are takes more steps than a screening makes.
+    fits = [
+        (s.variant, fit(problem, s.point, s.noise, tolerance=0.5))
+        for s in found
+        if gains[s.variant.effect] >= least
+    ]
+    if not fits:
         return None
-    fitted = fit(problem, likeliest.point, likeliest.noise, tolerance=0.5)
+    law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
     independent = worth(problem, fitted.innovations)
-    bent = addition(problem, plain, held, fitted, likeliest.variant.effect, independent)
+    bent = addition(problem, plain, held, fitted, law.effect, independent)
     named = _gain_of_all(problem, stages)
     if not bent.worth_naming or bent.gain < max(_CERTAIN, named + _LIKELIER):
         return None
@@ -94,7 +122,9 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     if len(stages) > 1 and _is_another_matter(problem, stages, bent, independent):
         return None
     left = bent.held_out.mean_square / held.mean_square
-    block = likeliest.variant.block
+    if law.effect == _PULLED and np.min(left) > _LEAVES:
+        return None
+    block = law.block
     rivals = {BLOCK_OF[j.effect]: _share(j, bent) for j in reversed(stages[0].considered)}
     ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
     share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))

@@ -2,8 +2,9 @@
 
 A servo that sticks and a pitching moment without a name push the aircraft alike; only the little lift of the
 elevator tells them apart. But what happens between stick and surface follows the stick and what it did
-before, and an aerodynamic moment follows the motion. The course of the unknown moment is regressed
-on either, and each regression judged on manoeuvres that it has not seen.
+before, and an aerodynamic moment follows the motion. The course of the unknown moment is regressed on
+either, and each regression judged on manoeuvres that it has not seen. Where neither predicts it, an actuator
+for which play or the like was named is likelier to do something else besides than one for which nothing was.
 """
 
 from collections.abc import Sequence
@@ -19,6 +20,8 @@ from advisor.gap.records.flights import Flight
 from advisor.gap.unnamed.course import has_tone
 
 ALIKE = frozenset({"input", "moment_equation"})
+_MECHANISMS = frozenset({"actuator_backlash", "actuator_deadband", "actuator_rate_limit"})
+"""What is named of an actuator that does something else."""
 _TIED = 10.0
 """Difference in log likelihood below which the two blocks explain a residual equally well."""
 _TELLING = 0.1
@@ -34,7 +37,7 @@ _WIDTHS = (0.15, 0.3, 0.6)
 def stick_or_motion(
     problem: Problem, fitted: Fitted, noise: FloatArray, probes: Sequence[Probe]
 ) -> str | None:
-    """``input`` or ``moment_equation`` where the two are likeliest and tied; None when nothing tells.
+    """``input`` or ``moment_equation`` where the two are likeliest and tied; None where they are not.
 
     Parameters
     ----------
@@ -43,16 +46,14 @@ def stick_or_motion(
     probes
         Likeliest first, from ``probe_blocks``.
     """
-    if not are_tied(probes) or "alpha" not in problem.channels:
+    tied = probes[0].gain - probes[1].gain <= _TIED
+    if not tied or {probes[0].block, probes[1].block} != ALIKE or "alpha" not in problem.channels:
         return None
     size = next(p.size for p in probes if p.block == "moment_equation")
     course = disturbance_courses(problem, fitted, noise, "moment_equation", [size])[0]
-    return followed(problem.flights.flights, course.knots)
-
-
-def are_tied(probes: Sequence[Probe]) -> bool:
-    """Whether the two alike are likeliest and explain a residual equally well. Likeliest first."""
-    return {probes[0].block, probes[1].block} == ALIKE and probes[0].gain - probes[1].gain <= _TIED
+    named = {variant.effect for variant in fitted.point.effects}
+    otherwise = "input" if named & _MECHANISMS else "moment_equation"
+    return followed(problem.flights.flights, course.knots) or otherwise
 
 
 def followed(flights: Sequence[Flight], courses: Sequence[FloatArray]) -> str | None:

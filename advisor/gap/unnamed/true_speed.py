@@ -14,7 +14,9 @@ from advisor.gap.fitting.uncertainty import shared_std, worth
 _WORTH_SAYING, _WRONG = 0.02, 0.06
 """Relative difference from which on it is said, and from which on something is wrong ..."""
 _SIGMAS = 5.0
-"""... and the standard deviations it must have."""
+"""... and the standard deviations it must have ..."""
+_SIGMAS_IN_GUSTS = 8.0
+"""... to be wrong in moving air: a wave that is met in every manoeuvre is read as a wrong speed, too."""
 
 
 @dataclass(frozen=True)
@@ -24,10 +26,9 @@ class TrueSpeed:
     scale: float
     std: float
 
-    @property
-    def is_wrong(self) -> bool:
+    def is_wrong(self, moving_air: bool) -> bool:
         """Whether no air speed indicator of an aircraft is that far off."""
-        return abs(self.scale) > _WRONG
+        return abs(self.scale) > max(_WRONG, _SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
 
     @property
     def sentence(self) -> str:
