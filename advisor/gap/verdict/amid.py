@@ -10,6 +10,8 @@ import numpy as np
 from advisor.gap.records.flights import Flight
 from advisor.gap.verdict.evidence import Evidence
 
+_STANDS_OUT = 3.0
+"""What is left of such a manoeuvre, beside a usual one."""
 _MOST = 0.5
 """Of a change that took its time, what must lie between the manoeuvres before and after."""
 _UNKNOWN = 2
@@ -20,7 +22,7 @@ def torn_by_a_change(e: Evidence) -> int | None:
     """Number of the manoeuvre in which a change may have come; None where nothing points to one.
 
     It is the one with the gust or, of those beside or within a change that was named, the one of which most
-    is left; never the first or the last, for nothing would be left to change from or to.
+    is left, by far; never the first or the last, for nothing would be left to change from or to.
     """
     flights = e.problem.flights.flights
     if _riddles(e) < 2:
@@ -35,7 +37,9 @@ def torn_by_a_change(e: Evidence) -> int | None:
         return any(began <= latest and earliest <= ended for began, ended in changes)
 
     torn = max(filter(beside, range(1, len(flights) - 1)), key=lambda i: float(left[i]), default=None)
-    return None if torn is None else flights[torn].number
+    if torn is None or left[torn] < _STANDS_OUT * np.median(np.delete(left, torn)):
+        return None
+    return flights[torn].number
 
 
 def is_told_without(e: Evidence, without: Evidence, number: int) -> bool:
