@@ -54,13 +54,13 @@ SWITCHES = {
     "kink_at": 9.0, "kink_width": 0.02, "wash": 0.0, "before_lag": 0.0,
     "speed_power": 0.0, "power_from": 22.0, "beat": 0.0, "beat_hz": 1.3,
     "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0, "change_t": 1e9, "cg_after": 0.0, "mass_after": 0.0,
-    "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9,
+    "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9, "stop_low": -9.0, "stop_high": 9.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
- MASSAFTER, ABOUT, SLOSH, SLOSHHZ) = range(len(SWITCHES))  # fmt: skip
+ MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -98,7 +98,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
             link = lag_state - sw[PLAY]
         elif lag_state - link < -sw[PLAY]:
             link = lag_state + sw[PLAY]
-        de = link
+        de = min(max(link, sw[LOWEST]), sw[HIGHEST])
         wa = w + gust[k]
         V = np.sqrt(u * u + wa * wa)
         a = np.arctan2(wa, u)

@@ -153,6 +153,12 @@ def test_speeds_that_nothing_measured_come_before_numbers_that_are_a_little_off_
     assert found.causes[0].effect == "airspeed_variation"
 
 
+def test_speeds_that_nothing_measured_come_before_a_smaller_effect_besides():
+    flown = without_instrument(fly(Setup(maneuvers=8, speed_change=0.25, switches={"delay": 0.015}, seed=54)))
+    found = diagnose(flown, Aircraft(airspeed_m_s=UAV.speed))
+    assert [c.effect for c in found.causes if c.present][:2] == ["airspeed_variation", "transport_delay"]
+
+
 @pytest.mark.parametrize("off", [0.95, 1.03])
 def test_an_air_speed_that_is_not_quite_the_true_one_is_no_cause_and_is_said(off):
     setup = Setup(maneuvers=6, speed_change=0.06, seed=53)

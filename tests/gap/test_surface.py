@@ -55,6 +55,22 @@ def test_a_servo_with_limits_does_what_it_does_in_small_steps(held, rate, lag, p
     assert found == pytest.approx(expected, abs=2e-3)
 
 
+@pytest.mark.parametrize("held", [True, False])
+def test_a_surface_moves_from_its_trim_as_far_as_its_stops_and_no_further(held):
+    rng = np.random.default_rng(9)
+    t_u = np.arange(0.0, DURATION, 0.02)
+    u = 0.02 + rng.uniform(-0.1, 0.1, len(t_u)).cumsum() * 0.4
+    p = np.zeros(len(ENTRIES))
+    p[INDEX["stop_up_rad"]], p[INDEX["stop_down_rad"]] = 0.03, 0.05
+    found = surface(H, round(DURATION / H), t_u, u, held, 0.02, p)
+    t = (np.arange(round(DURATION / SMALL)) + 0.5) * SMALL
+    command = u[np.searchsorted(t_u, t, side="right") - 1] if held else np.interp(t, t_u, u)
+    stopped = np.clip(command - 0.02, -0.05, 0.03).reshape(len(found), -1).mean(axis=1)
+    assert found == pytest.approx(stopped, abs=2e-4)
+    assert np.max(found) <= 0.03 + 1e-12
+    assert np.min(found) >= -0.05 - 1e-12
+
+
 def test_a_servo_at_its_limit_is_no_later_for_steps_that_lie_anywhere_between_two_stamps(tmp_path):
     limited = (
         "aircraft: uav\nseed: 2\nloop_hz: 250\nunit_s: 0.36\n"

@@ -79,6 +79,15 @@ def test_a_gyro_that_feels_the_acceleration_is_unknown_in_the_gyro(setup, felt):
     assert "The pitch rate feels the acceleration." in found.notes
 
 
+@pytest.mark.parametrize(("lowest", "highest"), [(-0.045, 0.5), (-0.5, 0.03), (-0.05, 0.035)])
+@pytest.mark.parametrize("setup", [Setup(seed=40), HARD])
+def test_a_surface_that_stops_before_the_command_is_no_bent_moment(setup, lowest, highest):
+    found = diagnose(fly(replace(setup, switches={"stop_low": lowest, "stop_high": highest})), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "input")
+    (note,) = (n for n in found.notes if "The surface stops before the command does" in n)
+    assert f"{np.degrees(highest if highest < 0.4 else -lowest):.1f}" in note
+
+
 @pytest.mark.parametrize("switches", [{"cl_a2": -9.0}, {"cl_a3": -120.0}, {"cm_a2": 4.0}, {"kink_at": 0.12}])
 def test_a_force_or_a_moment_that_bends_is_no_instruments_fault(switches):
     found = diagnose(fly(replace(HARD, switches=switches)), Aircraft())

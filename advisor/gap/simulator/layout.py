@@ -16,7 +16,7 @@ at the trimmed α and δe instead of at zero."""
 EFFECT_ENTRIES = (
     # input
     "delay_s", "lag_s", "lag_damping", "slowness_s_rad",
-    "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad",
+    "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
     # moment equation
     "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_alpha_dot", "M_h",
     "M_throttle", "engine_lag_s", "M_thrust", "washed_share", "blown_share",

@@ -1,4 +1,4 @@
-"""From the stick to the surface: delay, lag, rate limit, play and dead band, each switched off by a zero."""
+"""From stick to surface: delay, lag, rate limit, play, dead band and stops, each switched off by a zero."""
 
 import numpy as np
 from numba import njit
@@ -8,9 +8,9 @@ from advisor.gap.simulator.layout import INDEX
 
 _READ = tuple(INDEX[name] for name in (
     "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
-    "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad",
+    "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
 ))  # fmt: skip
-DELAY, LATENCY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL = _READ
+DELAY, LATENCY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL, STOP_UP, STOP_DOWN = _READ
 
 _UNLIMITED = 1e6
 """Rate of a servo without a limit, rad/s: a jump takes no time."""
@@ -68,6 +68,7 @@ def surface(
     k = 0
     late = p[DELAY] + p[LATENCY]
     tau, slow, play, dead = p[LAG], p[SLOWNESS], max(p[PLAY], 0.0), max(p[DEADBAND], 0.0)
+    up, down = p[STOP_UP], p[STOP_DOWN]
     decay = np.exp(-h / tau) if tau > 1e-6 else 0.0
     # A servo of second order that trails a ramp by τ = 2 ζ/ω, solved exactly for what it is told in a step.
     zeta = p[LAG_DAMPING] if tau > 1e-3 else 0.0
@@ -102,6 +103,12 @@ def surface(
                 mean = _mean_beyond(begin - p[NEUTRAL], end - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
                 begin = _beyond(begin - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
                 end = _beyond(end - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
+            if up > 0.0:
+                mean -= _mean_over(begin, end, up)
+                begin, end = min(begin, up), min(end, up)
+            if down > 0.0:
+                mean += _mean_over(-begin, -end, down)
+                begin, end = max(begin, -down), max(end, -down)
             if np.isnan(servo):
                 servo = begin
                 link = begin + p[PLAY_SIDE] * play
@@ -186,4 +193,13 @@ def _mean_beyond(begin: float, end: float, dead: float) -> float:
     if abs(end - begin) < _HERE:
         return float(_beyond(begin, dead))
     squares = max(abs(end) - dead, 0.0) ** 2 - max(abs(begin) - dead, 0.0) ** 2
+    return float(0.5 * squares / (end - begin))
+
+
+@njit(cache=True)
+def _mean_over(begin: float, end: float, top: float) -> float:
+    """Mean of what lies above a stop while its argument moves linearly from begin to end."""
+    if abs(end - begin) < _HERE:
+        return float(max(begin - top, 0.0))
+    squares = max(end - top, 0.0) ** 2 - max(begin - top, 0.0) ** 2
     return float(0.5 * squares / (end - begin))

@@ -6,19 +6,24 @@ two or three named effects together imitate such a law well. One law that explai
 is likelier.
 """
 
+from collections.abc import Sequence
+from functools import partial
+
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import BLOCK_OF
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
+from advisor.gap.records.flights import Flights
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.score import addition, difference, log_likelihood_gained
 from advisor.gap.search.screen import Screen, penalty
 from advisor.gap.search.waterfall import Stage
+from advisor.gap.simulator.layout import INDEX
 from advisor.gap.unnamed.leftover import Leftover
 
 
@@ -38,7 +43,9 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
     )  # fmt: skip
 
 
-_PULLED = "gyro_pulled"
+_PULLED, _STOP = "gyro_pulled", "surface_stop"
+_TRIMMED_RAD = 0.002
+"""Nearest to its trim that a surface may be stopped."""
 _READINGS = {
     "a_z": (_curve("accelerometer_curve", "accelerometer", "a_z", 5.0),),
     "alpha": (_curve("alpha_curve", "alpha_sensor", "alpha", 0.05),),
@@ -71,6 +78,7 @@ _SAID = {
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
     "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
+    _STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no further.",
     _PULLED: "The pitch rate feels the acceleration.",
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
@@ -92,21 +100,45 @@ certain is enough. And they must change that share of what the law removes: a sp
 side effects."""
 
 
+def _stops(flights: Flights) -> list[Variant]:
+    """A surface that goes no further than to a stop, one way or both, wherever each manoeuvre was trimmed."""
+    trims = np.array([flight.u_trim for flight in flights.flights])
+    middle = float(np.median(trims))
+    ways = {"stop_up_rad": 1.0, "stop_down_rad": -1.0}
+
+    def stopped(entries: Sequence[str], p: FloatArray, values: Values, _: Flights) -> None:
+        for entry, value in zip(entries, values, strict=True):
+            p[:, INDEX[entry]] = np.maximum(value + ways[entry] * (middle - trims), _TRIMMED_RAD)
+
+    def furthest(entry: str) -> float:
+        return max(float(np.max(ways[entry] * (f.u - middle))) for f in flights.flights)
+
+    variants = []
+    for entries in (tuple(ways), ("stop_up_rad",), ("stop_down_rad",)):
+        most = [furthest(entry) for entry in entries]
+        if min(most) <= _TRIMMED_RAD:
+            continue
+        variants.append(
+            Variant(
+                _STOP, "input", entries, tuple(tuple(x * m for m in most) for x in (0.5, 0.8)),
+                (1e-3,) * len(entries), tuple((_TRIMMED_RAD, 1.5 * m) for m in most), 0.0,
+                apply_with=partial(stopped, entries),
+            )
+        )  # fmt: skip
+    return variants
+
+
 def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     """The law that explains more than everything that was named; None where none does."""
     plain, held = stages[0].fitted, stages[0].held_out
     readings = [problem.channels[c] for c in problem.flights.telling]
     tried = [variant for channel in readings for variant in _READINGS.get(channel, ())]
-    found = Screen(problem, plain).quick_fits([*tried, *_MOMENTS])
+    found = Screen(problem, plain).quick_fits([*tried, *_MOMENTS, *_stops(problem.flights)])
     samples = float(np.sum(worth(problem, plain.innovations)))
-    gains = {screened.variant.effect: 0.5 * (plain.cost - screened.cost) for screened in found}
-    least = max(_CERTAIN, _WORTH_A_FIT * max(gains.values(), default=0.0))
+    best = min((s.cost for s in found), default=plain.cost)
+    most = plain.cost - 2.0 * max(_CERTAIN, 0.5 * _WORTH_A_FIT * (plain.cost - best))
     # A law that changes what the derivatives are takes more steps than a screening makes.
-    fits = [
-        (s.variant, fit(problem, s.point, s.noise, tolerance=0.5))
-        for s in found
-        if gains[s.variant.effect] >= least
-    ]
+    fits = [(s.variant, fit(problem, s.point, s.noise, tolerance=0.5)) for s in found if s.cost <= most]
     if not fits:
         return None
     law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
@@ -133,8 +165,8 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
 
 def _said(bent: Judged) -> str:
     """What the law is, and what else would look like it."""
-    percent = 100.0 * float(bent.value[0])
-    return _SAID[bent.effect].format(percent=percent)
+    degrees = " and ".join(f"{np.degrees(value):.1f}" for value in bent.value)
+    return _SAID[bent.effect].format(percent=100.0 * float(bent.value[0]), degrees=degrees)
 
 
 def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:

@@ -70,7 +70,9 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     plainly = beyond > PLAIN and e.air is None
     wrong_values = beyond > VISIBLE and file_is_off(problem, stages[-1].fitted, plainly)
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
-    told = named or bias or late or (wrong_values and not _outweighs(e, beyond))
+    removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
+    outweighs = _speed_outweighs(e, max(beyond, removed))
+    told = (named or bias or late or wrong_values) and not outweighs
     if speed is not None and not told:
         # Noise that the air makes hides nothing from a simulator that knows the air's motion.
         still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
@@ -82,9 +84,11 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     )
     causes = _merge(causes, apart)
     if bias is not None and not unknown and not problem.flights.alpha_is_derived:
-        removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
         offset = (bias.parameters["bias_rad"].value / floor[problem.channels.index("alpha")]) ** 2
-        causes = _bias_first(causes, float(offset) / len(floor) > max(removed, 0.0))
+        if float(offset) / len(floor) > max(removed, 0.0):
+            causes = _put_first(causes, bias)
+    if speed is not None and speed in apart and outweighs:
+        causes = _put_first(causes, speed)
     verdict: Verdict = "none"
     if unknown:
         verdict = "unknown"
@@ -110,11 +114,11 @@ def _beyond_fitted_numbers(e: Evidence) -> float:
     return float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2))
 
 
-def _outweighs(e: Evidence, beyond: float) -> bool:
-    """Whether speeds that nothing measured cost a simulator more than wrong numbers do."""
+def _speed_outweighs(e: Evidence, others: float) -> bool:
+    """Whether speeds that nothing measured cost a simulator more than wrong numbers or named effects do."""
     if e.problem.flights.speed_measured or e.constant_speed is None:
         return False
-    return speed_costs(e.constant_speed, e.stages[-1].held_out, e.floor) > beyond
+    return speed_costs(e.constant_speed, e.stages[-1].held_out, e.floor) > others
 
 
 def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ...]:
@@ -134,13 +138,10 @@ def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ..
     return (*present, *extra, *other)[:5]
 
 
-def _bias_first(causes: tuple[Cause, ...], larger: bool) -> tuple[Cause, ...]:
-    """The constant offset ahead of everything else, when it makes the larger part of the gap."""
-    if not larger:
-        return causes
-    bias = next(c for c in causes if c.effect == "alpha_bias")
-    rest = tuple(replace(c, probability=_BEHIND * c.probability) for c in causes if c is not bias)
-    return (replace(bias, probability=_FIRST), *rest)
+def _put_first(causes: tuple[Cause, ...], first: Cause) -> tuple[Cause, ...]:
+    """What makes the larger part of the gap ahead of everything else."""
+    rest = tuple(replace(c, probability=_BEHIND * c.probability) for c in causes if c.effect != first.effect)
+    return (replace(first, probability=_FIRST), *rest)[:5]
 
 
 def _air_cause(e: Evidence) -> Cause | None:
