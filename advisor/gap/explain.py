@@ -78,7 +78,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
             stages = reduced_to(problem, stages, [])
         elif leftover is None and len(stages) == 1:
             leftover = wandering_sensor(problem, stages[-1].fitted)
-    true_speed = true_speed_of(problem, stages[-1].fitted)
+    # A model without the law that was found bends its air speed to it.
+    true_speed = true_speed_of(problem, stages[-1].fitted) if law is None else None
     # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
     # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
     alone = len(stages) == 1 and not (air is not None and air.gust)

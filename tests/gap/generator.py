@@ -55,12 +55,14 @@ SWITCHES = {
     "speed_power": 0.0, "power_from": 22.0, "beat": 0.0, "beat_hz": 1.3,
     "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0, "change_t": 1e9, "cg_after": 0.0, "mass_after": 0.0,
     "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9, "stop_low": -9.0, "stop_high": 9.0,
+    "ring_hz": 0.0, "ring_zeta": 0.2,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
- MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST) = range(len(SWITCHES))  # fmt: skip
+ MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST, RINGHZ,
+ RINGZETA) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -80,6 +82,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
     alphadot, height = 0.0, sw[HEIGHT]
     hyst, extra, met = 0.0, 0.0, 0.0
     fuel, flow, turned_at = 0.0, 0.0, 0.0
+    rung, rung_rate = 0.0, 0.0
     shift = round(sw[DELAY] / H)
     for k in range(n):
         t = k * H
@@ -98,7 +101,13 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
             link = lag_state - sw[PLAY]
         elif lag_state - link < -sw[PLAY]:
             link = lag_state + sw[PLAY]
-        de = min(max(link, sw[LOWEST]), sw[HIGHEST])
+        rung_rate += (
+            H
+            * (2 * np.pi * sw[RINGHZ])
+            * (2 * np.pi * sw[RINGHZ] * (link - rung) - 2 * sw[RINGZETA] * rung_rate)
+        )
+        rung += H * rung_rate
+        de = min(max(rung if sw[RINGHZ] > 0.0 else link, sw[LOWEST]), sw[HIGHEST])
         wa = w + gust[k]
         V = np.sqrt(u * u + wa * wa)
         a = np.arctan2(wa, u)

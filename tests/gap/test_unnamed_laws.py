@@ -88,6 +88,22 @@ def test_a_surface_that_stops_before_the_command_is_no_bent_moment(setup, lowest
     assert f"{np.degrees(highest if highest < 0.4 else -lowest):.1f}" in note
 
 
+@pytest.mark.parametrize(("setup", "hz"), [(Setup(seed=41), 2.5), (Setup(seed=42), 4.0), (HARD, 2.5)])
+def test_a_servo_that_overshoots_is_no_delay_with_a_structure_that_bends(setup, hz):
+    found = diagnose(fly(replace(setup, switches={"ring_hz": hz, "ring_zeta": 0.2})), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "input")
+    assert any("The surface overshoots its command" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    "switches", [{"lag": 0.05}, {"lag": 0.03, "before_lag": 0.03}, {"delay": 0.04, "lag": 0.04}]
+)
+def test_a_servo_that_is_well_damped_keeps_its_name(switches):
+    found = diagnose(fly(Setup(switches=switches, seed=43)), Aircraft())
+    assert found.verdict == "effect"
+    assert found.causes[0].effect in ("actuator_lag", "transport_delay")
+
+
 @pytest.mark.parametrize("switches", [{"cl_a2": -9.0}, {"cl_a3": -120.0}, {"cm_a2": 4.0}, {"kink_at": 0.12}])
 def test_a_force_or_a_moment_that_bends_is_no_instruments_fault(switches):
     found = diagnose(fly(replace(HARD, switches=switches)), Aircraft())

@@ -43,7 +43,7 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
     )  # fmt: skip
 
 
-_PULLED, _STOP = "gyro_pulled", "surface_stop"
+_PULLED, _STOP, _RINGS = "gyro_pulled", "surface_stop", "servo_rings"
 _TRIMMED_RAD = 0.002
 """Nearest to its trim that a surface may be stopped."""
 _READINGS = {
@@ -74,11 +74,16 @@ _MOMENTS = (
         ((-300.0, 300.0), (-2000.0, 2000.0)), 0.0, entries=("M_alpha_q", "M_alpha_delta_e"),
     ),
 )  # fmt: skip
+_RINGING = Variant(
+    _RINGS, "input", ("lag_s", "damping"), ((0.05, 0.25), (0.025, 0.25), (0.012, 0.25)), (5e-4, 0.01),
+    ((0.002, 0.3), (0.02, 0.45)), 0.0, entries=("lag_s", "lag_damping"),
+)  # fmt: skip
 _SAID = {
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
     "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
     _STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no further.",
+    _RINGS: "The surface overshoots its command: a servo of second order that is hardly damped.",
     _PULLED: "The pitch rate feels the acceleration.",
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
@@ -133,7 +138,7 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     plain, held = stages[0].fitted, stages[0].held_out
     readings = [problem.channels[c] for c in problem.flights.telling]
     tried = [variant for channel in readings for variant in _READINGS.get(channel, ())]
-    found = Screen(problem, plain).quick_fits([*tried, *_MOMENTS, *_stops(problem.flights)])
+    found = Screen(problem, plain).quick_fits([*tried, *_MOMENTS, *_stops(problem.flights), _RINGING])
     samples = float(np.sum(worth(problem, plain.innovations)))
     best = min((s.cost for s in found), default=plain.cost)
     most = plain.cost - 2.0 * max(_CERTAIN, 0.5 * _WORTH_A_FIT * (plain.cost - best))
