@@ -18,7 +18,7 @@ from advisor.gap.search.merit import OFFSET_SIGMAS
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.unnamed.leftover import Leftover, of_the_wind
 from advisor.gap.unnamed.weight import weight_carried
-from advisor.gap.unnamed.wind import wind_shear
+from advisor.gap.unnamed.wind import blows_along, wind_shear
 from advisor.gap.verdict.amid import is_told_without, torn_by_a_change
 from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
@@ -134,6 +134,9 @@ def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver]) -> Evidence:
         # Air that moves swings the air speed, too: beside it what is not plain is worth a note, no more.
         is_there = e.air is None or shear.is_plain
         e = replace(e, shear=shear, leftover=of_the_wind(e.leftover) if is_there else e.leftover)
+    if e.leftover is not None and e.leftover.block == "force_equation" and blows_along(flown):
+        # A wind that changes is felt as lift that comes and goes.
+        e = replace(e, leftover=of_the_wind(e.leftover))
     weight = weight_carried(flown, e.problem.flights.reference_m_s)
     # What an accelerometer reads wrong looks like a force, too: a name for one is no other explanation.
     elsewhere = any(s.added is not None and BLOCK_OF[s.added.effect] != "force_equation" for s in e.stages)

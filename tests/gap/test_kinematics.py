@@ -12,7 +12,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES
-from advisor.gap.unnamed.wind import wind_shear
+from advisor.gap.unnamed.wind import blows_along, wind_shear
 from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
@@ -233,3 +233,15 @@ def test_a_layer_of_wind_is_told_by_two_manoeuvres_that_cross_its_edge():
     assert abs(found.gradient_per_s - 0.4) < 0.1
     # One that was flown in it agrees with no other.
     assert wind_shear([m for k, m in enumerate(sheared) if k != 4]) is None
+
+
+def test_air_that_moves_along_the_path_shows_in_the_air_speed_and_a_late_engine_does_not():
+    def gusty(m, size_m_s):
+        speed = m.channels["airspeed"]
+        y = speed.y + size_m_s * np.tanh((speed.t - speed.t[0] - 4.0) / 0.5)
+        return replace(m, channels={**m.channels, "airspeed": replace(speed, y=y)})
+
+    still = fly(Setup(maneuvers=5, thrust_amplitude=0.5, engine_lag_s=0.8, seed=61))
+    assert not blows_along(still)
+    assert not blows_along([gusty(m, 0.2) for m in still])
+    assert blows_along([gusty(m, 2.0) for m in still])
