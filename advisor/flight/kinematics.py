@@ -28,10 +28,9 @@ its own rate, and the rate of α enters the moment equation as a change of M_q."
 SMALLEST_LAG_S = 0.004
 SMALLEST_SCALE = 0.01
 SMALLEST_BIAS_RAD = np.radians(0.1)
-_STAYS = 0.5
-"""Share of itself that an offset may lack in the first second, in the mean of all manoeuvres."""
-_BEGIN_S = 1.0
-_SCATTERS = 3.0
+_BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
+"""The beginning of a record; share of itself that an offset may lack there, in the mean of all manoeuvres;
+and how many times their scatter that takes."""
 _NO_BIAS = (float("nan"), float("nan"), float("nan"))
 
 Finding = Literal["consistent", "late", "early", "scaled", "inconsistent", "not possible"]

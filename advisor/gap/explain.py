@@ -23,7 +23,6 @@ from advisor.gap.search.command import is_likelier_held, may_be_held, read_as_he
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.waterfall import Progress, Stage, as_measured, build_up, reduced_to
 from advisor.gap.unnamed.drift import drifting
-from advisor.gap.unnamed.laws import unnamed_law
 from advisor.gap.unnamed.leftover import (
     Leftover,
     is_of_passing_air,
@@ -35,6 +34,7 @@ from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, only_numbe
 from advisor.gap.unnamed.swing import swinging, swings_the_aircraft
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
+from advisor.gap.unnamed.unnamed_law import unnamed_law
 from advisor.gap.unnamed.wander import wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
 
@@ -80,7 +80,6 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
             leftover = wandering_sensor(problem, stages[-1].fitted)
     # A model without the law that was found bends its air speed to it.
     true_speed = true_speed_of(problem, stages[-1].fitted) if law is None else None
-    # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
     # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
     alone = len(stages) == 1 and not (air is not None and air.gust)
     if leftover is None and alone and true_speed is not None and true_speed.is_wrong(air is not None):
