@@ -35,7 +35,7 @@ _PLAIN_SHARE = 0.25
 """... and in air that moves of itself, from this share on it is plain all the same ..."""
 _SURE_CHANCE = 1e-4
 """... or where manoeuvres agree as they would with this chance."""
-_LAYER_CHANCE = 2e-2
+_LAYER_CHANCE = 1e-2
 """Of a layer's gradient, from the plain share on: few manoeuvres tell of a layer, and leaving one of them out
 scatters by much. In 470 flights of four simulators without it no layer explains more than 0.17, but for one
 whose attitude was wrong."""
