@@ -33,7 +33,9 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
     )  # fmt: skip
 
 
-PULLED, _STOP, _RINGS = "gyro_pulled", "surface_stop", "servo_rings"
+_PULLED, _STOP, _RINGS = "gyro_pulled", "surface_stop", "servo_rings"
+PLAIN = frozenset({_PULLED, _STOP, _RINGS})
+"""Laws that leave little where they are the truth: what they resemble is of another kind."""
 _TRIMMED_RAD = 0.002
 """Nearest to its trim that a surface may be stopped."""
 _READINGS = {
@@ -43,7 +45,7 @@ _READINGS = {
     "q": (
         # IEEE Std 1431: drift that goes with acceleration, and with its square.
         Variant(
-            PULLED,
+            _PULLED,
             "pitch_rate_sensor",
             ("per_m_s2", "per_m_s2_squared"),
             ((0.0, 0.0),),
@@ -74,7 +76,7 @@ _SAID = {
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
     _STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no further.",
     _RINGS: "The surface overshoots its command: a servo of second order that is hardly damped.",
-    PULLED: "The pitch rate feels the acceleration.",
+    _PULLED: "The pitch rate feels the acceleration.",
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
 }

@@ -16,7 +16,7 @@ from advisor.gap.search.merit import Judged
 from advisor.gap.search.score import addition, difference, log_likelihood_gained
 from advisor.gap.search.screen import Screen, penalty
 from advisor.gap.search.waterfall import Stage
-from advisor.gap.unnamed.laws import PULLED, laws_for, said
+from advisor.gap.unnamed.laws import PLAIN, laws_for, said
 from advisor.gap.unnamed.leftover import Leftover
 
 _CERTAIN = 30.0
@@ -26,8 +26,8 @@ _WORTH_A_FIT = 0.2
 _LIKELIER = 10.0
 """... and by how much it must beat all that was named together."""
 _LEAVES = 0.3
-"""Share of a channel's power that a gyro leaves at most, if it feels acceleration: an attitude that leans
-looks alike, but for that."""
+"""Share of some channel's power that a plain law leaves at most: an attitude that leans looks much like a
+gyro that feels acceleration, and a propeller that beats a little like a surface that stops."""
 _SEVERAL = 2
 """Names that together imitate a law."""
 _BESIDE = 0.5
@@ -60,7 +60,7 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     if len(stages) > 1 and _is_another_matter(problem, stages, bent, independent):
         return None
     left = bent.held_out.mean_square / held.mean_square
-    if law.effect == PULLED and np.min(left) > _LEAVES:
+    if law.effect in PLAIN and np.min(left) > _LEAVES:
         return None
     block = law.block
     rivals = {BLOCK_OF[j.effect]: _share(j, bent) for j in reversed(stages[0].considered)}
