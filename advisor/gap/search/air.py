@@ -40,6 +40,8 @@ _OF_POWER = 0.1
 _LATE, _OF_AIR_LATE = "accelerometer_skew", 0.05
 """The first of these shares for accelerometers that seem late, plain or not: gusts meet a vane before they
 meet the wing, and its lift takes time, which no model here knows."""
+_LATE_SIGMAS = 5.0
+"""Standard deviations that they must be late by in moving air: those that are late by 9 ms have 13."""
 _OF_GUST = 0.05
 """The same beside a gust: in its manoeuvre a bump of any shape passes for anything."""
 
@@ -76,6 +78,8 @@ class Air:
         if self.gust:
             return effect.gain < _OF_GUST * self.gain
         late = effect.effect == _LATE
+        if late and effect.sigmas < _LATE_SIGMAS:
+            return True
         of_air = _OF_AIR_LATE if late else _OF_AIR
         little = effect.gain < of_air * self.gain and effect.removed < _OF_POWER * self.power
         return little and (late or not effect.is_plain)
