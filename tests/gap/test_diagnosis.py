@@ -132,7 +132,7 @@ def test_numbers_that_are_off_by_a_few_per_cent_each_are_told_where_they_leave_a
 
 
 def test_an_arm_that_the_file_leaves_open_comes_first_where_next_to_nothing_else_is_there():
-    flown = fly(Setup(switches={"acc_arm": 1.5, "cl_a2": -3.0}, noise=0.005, seed=10))
+    flown = fly(Setup(maneuvers=6, switches={"acc_arm": 1.5, "cl_a2": -3.0}, noise=0.005, seed=10))
     found = diagnose(flown, Aircraft(model=MODEL))
     assert found.causes[0].effect == "accelerometer_offset"
 
