@@ -17,7 +17,7 @@ from advisor.gap.unnamed.swing import swings_the_aircraft
 from advisor.gap.unnamed.tone import line_of, ringing_hz, tone_in
 from tests.gap.generator import Setup, fly
 
-STANDS_OUT = 3.0
+STANDS_OUT = 3.8
 """The contrast from which on a line counts."""
 
 

@@ -79,7 +79,7 @@ def test_a_gyro_that_feels_the_acceleration_is_unknown_in_the_gyro(setup, felt):
 
 
 @pytest.mark.parametrize(("setup", "lowest", "highest"), [
-    (Setup(maneuvers=6, seed=40), -0.045, 0.5),
+    (Setup(seed=40), -0.045, 0.5),
     (Setup(maneuvers=6, seed=40), -0.05, 0.035),
     (HARD, -0.5, 0.03),
 ])  # fmt: skip

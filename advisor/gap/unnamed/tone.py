@@ -24,8 +24,8 @@ _SWINGS = 5.0
 """Periods that a record must hold: slower motion is a drift, or the aircraft's own."""
 _LINE = 3.0
 """Half the width of a line, over the inverse of a record's length (Hann's window and a little damping)."""
-_ABOVE = 3.0
-"""Power of the line, over the white noise's and over the highest elsewhere."""
+_ABOVE = 3.8
+"""Power of the line, over the white noise's and over the highest elsewhere: a damped motion reaches 3.4."""
 _POINTS = 4096
 """Of the spectrum, at least."""
 
