@@ -83,17 +83,16 @@ def swings_the_aircraft(problem: Problem, first: Fitted, last: Fitted) -> Leftov
 def _is_set_off(problem: Problem, last: Fitted, noise: FloatArray, block: str) -> bool:
     """Whether a disturbance is next to nothing before the first step."""
     size = probe_blocks(problem, last, noise, [block])[0].size
+    courses = disturbance_courses(problem, last, noise, block, [size])[0].knots
     before, after = [], []
-    for flight, course in zip(
-        problem.flights.flights,
-        disturbance_courses(problem, last, noise, block, [size])[0].knots,
-        strict=True,
-    ):
+    for flight, course in zip(problem.flights.flights, courses, strict=True):
         began = KNOTS_S * np.arange(1.0, len(course) + 1.0) >= flight.first_step_s
         before.append(course[~began])
         after.append(course[began])
-    still, loud = (float(np.mean(np.concatenate(part) ** 2)) for part in (before, after))
-    return still < _SET_OFF * loud
+    still, loud = np.concatenate(before), np.concatenate(after)
+    if not len(still) or not len(loud):
+        return False
+    return float(np.mean(still**2)) < _SET_OFF * float(np.mean(loud**2))
 
 
 def _said(tone: Tone, set_off: bool) -> str:
