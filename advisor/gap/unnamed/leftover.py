@@ -23,7 +23,7 @@ from advisor.gap.unnamed.jumps import jumping_sensor
 from advisor.gap.unnamed.origin import stick_or_motion
 from advisor.gap.unnamed.unrest import unrest
 
-_LEAST_GAIN = 100.0
+LEAST_GAIN = 100.0
 """Log likelihood a disturbance must bring ..."""
 _LEAST_SHARE = 0.2
 """... and share of what is left that it must take up: less is the roughness of any model."""
@@ -35,9 +35,9 @@ _FAINT_OF_GAP = 0.25
 """... by this much: then no name came near what is there."""
 _RESTLESS = 2.0
 """Power while the stick moves over that in quiet, from which on it is no noise."""
-_LEAST_OF_GAP = 0.1
+LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
-_OF_PEAK = 0.01
+OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that."""
 _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
@@ -102,14 +102,14 @@ def left_over(
     telling = np.isin(np.arange(len(problem.channels)), problem.flights.telling)
     beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - instruments_of(problem) ** 2, 0.0))
     peaks = problem.flights.peaks
-    telling &= beyond > max(_OF_PEAK, _of_the_command(problem, last)) * peaks
+    telling &= beyond > max(OF_PEAK, _of_the_command(problem, last)) * peaks
     if not np.any(telling):
         return None
     loud = telling & (rms_of(problem, last.left) > DOUBT * tolerance)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     faint = best.explained < _LEAST_SHARE
     least_share = _MOVING_SHARE if moving_air else _FAINT_SHARE
-    disturbed = best.gain >= _LEAST_GAIN and best.explained >= least_share and bool(np.any(loud))
+    disturbed = best.gain >= LEAST_GAIN and best.explained >= least_share and bool(np.any(loud))
     # What a low-pass leaves of noise is like no noise with a memory: there only the stick can tell.
     disturbed = disturbed and not problem.flights.alpha_is_smoothed
     if not disturbed and np.max(louder) < _RESTLESS:
@@ -117,7 +117,7 @@ def left_over(
     plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
-    least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else _LEAST_OF_GAP
+    least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else LEAST_OF_GAP
     if unexplained < least * taken and not plain:
         return None
     block = _block(problem, last, instruments_of(problem), probes)
@@ -154,7 +154,7 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
         return None
     powers = (rms_of(problem, last.left) / noise) ** 2
     taken = float(np.sum((rms_of(problem, first.left) / noise) ** 2 - powers))
-    if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
+    if best.explained * float(np.sum(powers)) < LEAST_OF_GAP * taken:
         return None
     if best.block in SENSOR_CHANNELS and problem.flights.alpha_is_smoothed:
         # What a low-pass leaves of an instrument's noise is no disturbance of it: there the stick must tell.

@@ -12,18 +12,20 @@ from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import KNOTS_S, SENSOR_CHANNELS, disturbance_courses, probe_blocks
 from advisor.gap.unnamed.clock import is_of_the_clock
-from advisor.gap.unnamed.leftover import Leftover, instruments_of, noise_of, ranking_of
+from advisor.gap.unnamed.leftover import (
+    LEAST_GAIN,
+    LEAST_OF_GAP,
+    OF_PEAK,
+    Leftover,
+    instruments_of,
+    noise_of,
+    ranking_of,
+)
 from advisor.gap.unnamed.origin import ALIKE
 from advisor.gap.unnamed.tone import Tone, tone_in
 
-_LEAST_GAIN = 100.0
-"""Log likelihood a swing must bring ..."""
-_LEAST_OF_GAP = 0.1
-"""... and what of it, beside what the named effects took up: less is an effect's shape."""
-_OF_PEAK = 0.01
-"""Share of a channel's peak that a sensor's swing must be ..."""
 _OF_PEAK_SWINGING = 0.005
-"""... and one of the aircraft: no error of a model looks like that."""
+"""Share of a channel's peak that a swing of the aircraft must be: no error of a model looks like that."""
 _VISIBLE = 0.05
 """Power of a swing, beside the instruments' noise, from which on there is something to explain."""
 _SET_OFF = 0.25
@@ -40,17 +42,17 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArra
     """What swings of itself, where it is more than an instrument's noise. Arguments as in ``left_over``."""
     noise, instruments = noise_of(problem), np.maximum(instruments_of(problem), 1e-12)
     tone = tone_in(problem, last, noise)
-    if tone is None or tone.probes[0].gain < _LEAST_GAIN or tone.probes[0].block == "air":
+    if tone is None or tone.probes[0].gain < LEAST_GAIN or tone.probes[0].block == "air":
         return None
     best = tone.probes[0]
-    least = _OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
+    least = OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
     if not np.any(tone.power > np.maximum(least * problem.flights.peaks, tolerance) ** 2):
         return None
     if float(np.mean(tone.power / instruments**2)) < _VISIBLE:
         return None
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
-    if best.explained * float(np.sum(powers)) < _LEAST_OF_GAP * taken:
+    if best.explained * float(np.sum(powers)) < LEAST_OF_GAP * taken:
         return None
     if best.block in SENSOR_CHANNELS and is_of_the_clock(problem, last, SENSOR_CHANNELS[best.block]):
         # What comes too early or too late swings with the motion, not by itself.
