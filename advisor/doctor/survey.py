@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from advisor.flight.attitude import Attitudes
 from advisor.flight.channels import stamps
 from advisor.flight.clocks import BootClock
 from advisor.flight.messages import Columns, FloatArray
@@ -13,6 +14,7 @@ from advisor.flight.messages import Columns, FloatArray
 # The field whose change shows that a message brings news and not the last value again.
 _TELLING = {
     "ATTITUDE": ("pitchspeed",),
+    "ATTITUDE_QUATERNION": ("pitchspeed",),
     "AOA_SSA": ("AOA",),
     "VFR_HUD": ("airspeed",),
     "RAW_IMU": ("xacc", "yacc", "zacc"),
@@ -101,6 +103,7 @@ class Survey:
 
     def __init__(self, system: int, component: int) -> None:
         self._who = (system, component)
+        self._attitudes = Attitudes()
         self._clock = BootClock()
         self._master_s = np.nan
         self._senders: dict[str, _Sender] = {}
@@ -109,7 +112,7 @@ class Survey:
     def feed(self, columns: Sequence[Columns]) -> None:
         """Take messages in order of arrival."""
         mine = [part for part in columns if (part.system, part.component) == self._who]
-        attitude = next((part for part in mine if part.name == "ATTITUDE"), None)
+        attitude = next((part for part in self._attitudes.of(mine) if part.name == "ATTITUDE"), None)
         orders, clock, boots = self._advance(attitude)
         for part in mine:
             if part.name in _EVENTS:

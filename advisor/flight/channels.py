@@ -69,6 +69,7 @@ READINGS = (
 
 _STAMPS = {
     "ATTITUDE": _BOOT_MS,
+    "ATTITUDE_QUATERNION": _BOOT_MS,
     "AOA_SSA": _USEC,
     "RAW_IMU": _USEC,
     "SCALED_IMU": _BOOT_MS,

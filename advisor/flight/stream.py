@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft import Aircraft
+from advisor.flight.attitude import Attitudes
 from advisor.flight.boots import Master, by_boot
 from advisor.flight.channels import (
     SLOWEST_FLIGHT_M_S,
@@ -66,6 +67,7 @@ class FlightStream:
     def __init__(self, aircraft: Aircraft, target_system: int | None = None) -> None:
         self._aircraft = aircraft
         self._who = Identity(aircraft.elevator, target_system)
+        self._attitudes = Attitudes()
         self._clock = BootClock()
         self._tracks = Tracks(aircraft.alpha.source)
         self._start_boot()
@@ -150,7 +152,7 @@ class FlightStream:
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
         """Take messages that have arrived; what became known by them, in order."""
         events: list[FlightEvent] = []
-        for piece in pieces(columns):
+        for piece in pieces(self._attitudes.of(columns)):
             events += self._feed_piece(piece)
         return events
 

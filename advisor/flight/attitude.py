@@ -1,0 +1,68 @@
+"""ATTITUDE_QUATERNION read as the ATTITUDE that a vehicle does not send."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.flight.messages import Columns
+
+_QUATERNION = ("q1", "q2", "q3", "q4")
+
+
+class Attitudes:
+    """Sees to it that attitude and rates come as ATTITUDE, whichever message carries them.
+
+    Of a component that sends both messages the quaternions count until its first ATTITUDE:
+    the order of arrival decides, so batches of any size end alike.
+    """
+
+    def __init__(self) -> None:
+        self._senders: set[tuple[int, int]] = set()
+        """Systems and components that have sent an ATTITUDE."""
+
+    def of(self, columns: Sequence[Columns]) -> Sequence[Columns]:
+        """The columns, with ATTITUDE from every quaternion that arrived before any ATTITUDE."""
+        sent = {_sender(c): c for c in columns if c.name == "ATTITUDE" and len(c)}
+        stand_ins: dict[tuple[int, int], Columns] = {}
+        for c in columns:
+            sender = _sender(c)
+            if c.name != "ATTITUDE_QUATERNION" or sender in self._senders:
+                continue
+            rows = int(np.searchsorted(c.order, sent[sender].order[0])) if sender in sent else len(c)
+            if rows:
+                early = _as_attitude(c, rows)
+                stand_ins[sender] = _joined(early, sent[sender]) if sender in sent else early
+        self._senders.update(sent)
+        if not stand_ins:
+            return columns
+        others = [c for c in columns if c.name != "ATTITUDE" or _sender(c) not in stand_ins]
+        return [*stand_ins.values(), *others]
+
+
+def _sender(c: Columns) -> tuple[int, int]:
+    return c.system, c.component
+
+
+def _as_attitude(c: Columns, rows: int) -> Columns:
+    """The first rows as ATTITUDE; w, x, y, z of ``q1`` to ``q4`` turn north-east-down into body axes."""
+    fields = {name: values[:rows] for name, values in c.fields.items()}
+    w, x, y, z = (np.asarray(fields[name], dtype=np.float64) for name in _QUATERNION)
+    angles = {
+        "roll": np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+        "pitch": np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)),
+        "yaw": np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+    }
+    kept = {name: values for name, values in fields.items() if name not in (*_QUATERNION, "repr_offset_q")}
+    return Columns("ATTITUDE", c.system, c.component, c.order[:rows], c.arrival_s[:rows], kept | angles)
+
+
+def _joined(first: Columns, then: Columns) -> Columns:
+    """Two batches of one type, one after the other."""
+    return Columns(
+        then.name,
+        then.system,
+        then.component,
+        np.concatenate([first.order, then.order]),
+        np.concatenate([first.arrival_s, then.arrival_s]),
+        {name: np.concatenate([first.fields[name], values]) for name, values in then.fields.items()},
+    )
