@@ -12,8 +12,8 @@ HARD = {"gust_std": 0.1, "coloured": 0.5, "jitter": 0.003, "speed_change": 0.03}
 @pytest.mark.parametrize(
     ("effect", "change", "at_s", "conditions"),
     [
-        ("cg_shift", {"cg_step": -0.25}, 2.5, {}),
-        ("mass_change", {"mass_step": 0.12}, 5.0, HARD),
+        pytest.param("cg_shift", {"cg_step": -0.25}, 2.5, {}, marks=pytest.mark.study),
+        pytest.param("mass_change", {"mass_step": 0.12}, 5.0, HARD, marks=pytest.mark.study),
         ("mass_change", {"mass_step": -0.15}, 1.5, {}),
     ],
 )

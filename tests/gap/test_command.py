@@ -45,7 +45,7 @@ def test_a_servo_that_moves_no_faster_is_no_later_for_a_command_that_was_held(tm
     assert cause.parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.03)
 
 
-@pytest.mark.parametrize("early_s", [0.012, 0.016])
+@pytest.mark.parametrize("early_s", [0.012, pytest.param(0.016, marks=pytest.mark.study)])
 def test_a_pitch_rate_that_is_early_beside_a_held_command_makes_nothing_else_late(tmp_path, early_s):
     skewed = f"effects: {{pitch_rate_skew: {{skew_s: {-early_s}}}}}\n"
     quiet = UAV.replace("uav", "light").replace("0.15", "0.05")

@@ -35,7 +35,7 @@ def test_a_clock_that_runs_off_is_unknown_in_the_time_stamps(setup, channel, blo
     assert found.where.block == block
 
 
-@pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), HARD])
+@pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), pytest.param(HARD, marks=pytest.mark.study)])
 def test_a_vane_that_grows_slower_is_unknown_in_the_vane(setup):
     found = diagnose(through_a_vane(setup, np.linspace(0.001, 0.08, 8)), Aircraft())
     assert found.verdict == "unknown"

@@ -149,7 +149,11 @@ def wandering(channel, share, memory_s, others=0.0):
 
 @pytest.mark.parametrize(
     ("channel", "block"),
-    [("q", "pitch_rate_sensor"), ("alpha", "alpha_sensor"), ("theta", "attitude_sensor")],
+    [
+        ("q", "pitch_rate_sensor"),
+        pytest.param("alpha", "alpha_sensor", marks=pytest.mark.study),
+        ("theta", "attitude_sensor"),
+    ],
 )
 def test_an_instrument_that_wanders_alone_is_unknown_and_no_noise(channel, block):
     found = diagnose(wandering(channel, 0.12, 1.5), Aircraft())

@@ -44,7 +44,9 @@ def test_where_a_named_instrument_is_off_no_other_is_suspected():
     assert [c.effect for c in found.causes if c.present] == ["pitch_rate_scale"]
 
 
-@pytest.mark.parametrize("setup", [HARD, Setup(seed=6, coloured=0.5, jitter=0.004)])
+@pytest.mark.parametrize(
+    "setup", [HARD, pytest.param(Setup(seed=6, coloured=0.5, jitter=0.004), marks=pytest.mark.study)]
+)
 def test_an_air_speed_that_is_off_is_not_blamed_on_the_aircraft_and_may_be_the_accelerometer(setup):
     found = diagnose(scaled(setup, "airspeed", 1.08), Aircraft())
     assert found.verdict == "unknown"
@@ -53,7 +55,7 @@ def test_an_air_speed_that_is_off_is_not_blamed_on_the_aircraft_and_may_be_the_a
 
 @pytest.mark.parametrize(("channel", "reading", "block"), [
     ("alpha", lambda y: np.minimum(y, np.median(y) + 0.04), "alpha_sensor"),
-    ("a_z", lambda y: np.maximum(y, -14.0), "accelerometer"),
+    pytest.param("a_z", lambda y: np.maximum(y, -14.0), "accelerometer", marks=pytest.mark.study),
     ("a_z", lambda y: y + 0.02 * (y + 9.8) ** 2, "accelerometer"),
 ])  # fmt: skip
 def test_a_bent_reading_is_no_sum_of_bent_forces_even_in_moving_air(channel, reading, block):
@@ -80,7 +82,7 @@ def test_a_gyro_that_feels_the_acceleration_is_unknown_in_the_gyro(setup, felt):
 
 @pytest.mark.parametrize(("setup", "lowest", "highest"), [
     (Setup(seed=40), -0.045, 0.5),
-    (Setup(maneuvers=6, seed=40), -0.05, 0.035),
+    pytest.param(Setup(maneuvers=6, seed=40), -0.05, 0.035, marks=pytest.mark.study),
     (HARD, -0.5, 0.03),
 ])  # fmt: skip
 def test_a_surface_that_stops_before_the_command_is_no_bent_moment(setup, lowest, highest):
@@ -90,7 +92,9 @@ def test_a_surface_that_stops_before_the_command_is_no_bent_moment(setup, lowest
     assert f"{np.degrees(highest if highest < 0.4 else -lowest):.1f}" in note
 
 
-@pytest.mark.parametrize(("setup", "hz"), [(Setup(maneuvers=5, seed=42), 4.0), (HARD, 2.5)])
+@pytest.mark.parametrize(
+    ("setup", "hz"), [(Setup(maneuvers=5, seed=42), 4.0), pytest.param(HARD, 2.5, marks=pytest.mark.study)]
+)
 def test_a_servo_that_overshoots_is_no_delay_with_a_structure_that_bends(setup, hz):
     found = diagnose(fly(replace(setup, switches={"ring_hz": hz, "ring_zeta": 0.2})), Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "input")
@@ -104,7 +108,15 @@ def test_a_servo_that_is_well_damped_keeps_its_name(switches):
     assert found.causes[0].effect in ("actuator_lag", "transport_delay")
 
 
-@pytest.mark.parametrize("switches", [{"cl_a2": -9.0}, {"cl_a3": -120.0}, {"cm_a2": 4.0}, {"kink_at": 0.12}])
+@pytest.mark.parametrize(
+    "switches",
+    [
+        {"cl_a2": -9.0},
+        pytest.param({"cl_a3": -120.0}, marks=pytest.mark.study),
+        {"cm_a2": 4.0},
+        pytest.param({"kink_at": 0.12}, marks=pytest.mark.study),
+    ],
+)
 def test_a_force_or_a_moment_that_bends_is_no_instruments_fault(switches):
     found = diagnose(fly(replace(HARD, switches=switches)), Aircraft())
     assert found.verdict == "effect"
@@ -122,7 +134,9 @@ def test_what_is_wrong_beside_a_reading_out_of_proportion_keeps_its_name():
     ({"q_square": -0.06}, "not the same up and down, or fast and slow"),
     ({"cm_aq": -90.0}, "changes with the angle of attack"),
 ])  # fmt: skip
-@pytest.mark.parametrize("setup", [HARD, Setup(seed=8)], ids=["hard", "clean"])
+@pytest.mark.parametrize(
+    "setup", [HARD, pytest.param(Setup(seed=8), marks=pytest.mark.study)], ids=["hard", "clean"]
+)
 def test_damping_that_bends_is_no_sum_of_bent_moments(setup, switches, says):
     found = diagnose(fly(replace(setup, switches=switches)), Aircraft())
     assert found.verdict == "unknown"
