@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 
+from advisor.flight.alpha_offset import UNKNOWN, AlphaOffset, mean_offset, offset_of, speed_at, weighted
 from advisor.flight.coloured import coloured_covariance
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
@@ -27,11 +28,6 @@ CORRUPTED_BY_LAG = ("Z_delta_e", "Z_q", "Z_alpha", "M_q")
 its own rate, and the rate of α enters the moment equation as a change of M_q."""
 SMALLEST_LAG_S = 0.004
 SMALLEST_SCALE = 0.01
-SMALLEST_BIAS_RAD = np.radians(0.1)
-_BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
-"""The beginning of a record; share of itself that an offset may lack there, in the mean of all manoeuvres;
-and how many times their scatter that takes."""
-_NO_BIAS = (float("nan"), float("nan"), float("nan"))
 
 Finding = Literal["consistent", "late", "early", "scaled", "inconsistent", "not possible"]
 
@@ -50,23 +46,14 @@ class KinematicCheck:
     scale: float = float("nan")
     """Scale error k: the channel reads (1 + k)·α."""
     scale_std: float = float("nan")
-    bias_rad: float = float("nan")
-    """Mean of α minus (θ − flight-path angle); NaN without a climb rate."""
-    bias_std_rad: float = float("nan")
-    bias_change_rad: float = float("nan")
-    """How much more it is over the record than in its first second; 0 within three times what manoeuvres
-    scatter by. An instrument's offset is there from the first; air that begins to sink is not."""
+    offset: AlphaOffset = UNKNOWN
+    """What α is off on average."""
     drift_rad_s: float = float("nan")
     """Rate at which reconstruction and α part: bias of pitch rate and accelerometers together."""
     rms_rad: float = float("nan")
     """What is left between the two when lag, scale and drift are allowed for."""
     explained: float = float("nan")
     """Share of the variance of α that the reconstruction explains."""
-
-    @property
-    def bias_stays(self) -> bool:
-        """Whether nothing says that the offset was not there from the beginning."""
-        return not abs(self.bias_change_rad) >= _STAYS * abs(self.bias_rad)
 
     @property
     def possible(self) -> bool:
@@ -95,24 +82,21 @@ def check_alpha(
     """
     found = maneuver.channels
     missing = [name for name in NEEDED if name not in found or len(found[name]) < 20]
-    if _speed_at(np.zeros(1), maneuver, airspeed_m_s) is None:
+    if speed_at(np.zeros(1), maneuver, airspeed_m_s) is None:
         missing.append("airspeed")
     if missing:
         listed = ", ".join(missing)
         said = f"alpha cannot be checked against the motion: no {listed} in this log."
         # What alpha is off on average takes the attitude and the climb rate only.
-        offset = _bias(maneuver, airspeed_m_s) if missing == ["a_z"] else _NO_BIAS
-        return KinematicCheck(
-            "not possible", said, tuple(missing),
-            bias_rad=offset[0], bias_std_rad=offset[1], bias_change_rad=offset[2],
-        )  # fmt: skip
+        offset = offset_of(maneuver, airspeed_m_s) if missing == ["a_z"] else UNKNOWN
+        return KinematicCheck("not possible", said, tuple(missing), offset=offset)
     t_alpha, alpha = renewed(found["alpha"].t, found["alpha"].y)
     t = found["q"].t
 
     def at(name: str) -> FloatArray:
         return np.interp(t, found[name].t, found[name].y)
 
-    speed = _speed_at(t, maneuver, airspeed_m_s)
+    speed = speed_at(t, maneuver, airspeed_m_s)
     assert speed is not None
     if np.min(speed) < 1.0 or len(t_alpha) < 12:
         return KinematicCheck("not possible", "alpha cannot be checked against the motion: no usable speed.")
@@ -130,15 +114,7 @@ def check_alpha(
     )
     rebuilt = integrated(t, rate)
     commanded = _followers(t, at("elevator")) if "elevator" in found else None
-    return _compare(t, rebuilt, rate, commanded, t_alpha, alpha, _bias(maneuver, airspeed_m_s))
-
-
-def _speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> FloatArray | None:
-    """Shape (n,): the logged air speed, else the one given; None without either."""
-    logged = maneuver.channels.get("airspeed")
-    if logged is not None and len(logged) > 1:
-        return np.interp(t, logged.t, logged.y)
-    return None if otherwise is None else np.full(len(t), otherwise)
+    return _compare(t, rebuilt, rate, commanded, t_alpha, alpha, offset_of(maneuver, airspeed_m_s))
 
 
 def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
@@ -153,26 +129,6 @@ def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
     return found
 
 
-def _bias(maneuver: Maneuver, airspeed_m_s: float | None) -> tuple[float, float, float]:
-    """Mean of α − (θ − γ), its error, and its change, from the climb rate; NaN without one."""
-    found = maneuver.channels
-    if "climb_rate" not in found or len(found["climb_rate"]) < 4:
-        return _NO_BIAS
-    climb = found["climb_rate"]
-
-    def at(name: str) -> FloatArray:
-        return np.interp(climb.t, found[name].t, found[name].y)
-
-    speed = _speed_at(climb.t, maneuver, airspeed_m_s)
-    assert speed is not None
-    speed = np.maximum(speed, 1.0)
-    apart = at("alpha") - (at("theta") - np.arcsin(np.clip(climb.y / speed, -0.9, 0.9)))
-    # The climb rate is slow and smoothed: count one independent reading a second.
-    independent = max(2.0, climb.t[-1] - climb.t[0])
-    change = float(np.mean(apart) - np.mean(apart[climb.t <= climb.t[0] + _BEGIN_S]))
-    return float(np.mean(apart)), float(np.std(apart) / np.sqrt(independent)), change
-
-
 def _compare(
     t: FloatArray,
     rebuilt: FloatArray,
@@ -180,7 +136,7 @@ def _compare(
     commanded: FloatArray | None,
     t_alpha: FloatArray,
     alpha: FloatArray,
-    bias: tuple[float, float, float],
+    offset: AlphaOffset,
 ) -> KinematicCheck:
     """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b.
 
@@ -219,7 +175,7 @@ def _compare(
     explained = 1.0 - cost / float(np.sum((y - slow @ np.linalg.lstsq(slow, y, rcond=None)[0]) ** 2))
     finding, sentence = _judge(fitted[0], std[0], fitted[1] - 1.0, std[1], explained)
     return KinematicCheck(
-        finding, sentence, (), float(fitted[0]), float(std[0]), float(fitted[1] - 1.0), float(std[1]), *bias,
+        finding, sentence, (), float(fitted[0]), float(std[0]), float(fitted[1] - 1.0), float(std[1]), offset,
         float(fitted[3] / max(np.ptp(tm), 1e-9)), float(np.sqrt(cost / len(y))), explained,
     )  # fmt: skip
 
@@ -266,33 +222,17 @@ def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:
 
     The scatter between manoeuvres widens the error where it exceeds what each claims.
     """
-    biased = [c for c in checks if np.isfinite(c.bias_rad)]
-    bias = _NO_BIAS
-    if biased:
-        stds = [c.bias_std_rad for c in biased]
-        changes = np.array([c.bias_change_rad for c in biased])
-        scatter = np.std(changes) / np.sqrt(max(len(changes) - 1, 1))
-        change = float(np.mean(changes))
-        plain = len(changes) > 1 and abs(change) > _SCATTERS * scatter
-        bias = (*_weighted([c.bias_rad for c in biased], stds), change if plain else 0.0)
+    offset = mean_offset([c.offset for c in checks])
     usable = [c for c in checks if c.possible and np.isfinite(c.lag_std_s) and c.lag_std_s > 0.0]
     if not usable:
         first = checks[0] if checks else KinematicCheck("not possible", "No manoeuvre to check alpha on.")
-        return replace(first, bias_rad=bias[0], bias_std_rad=bias[1], bias_change_rad=bias[2])
-    lag, lag_std = _weighted([c.lag_s for c in usable], [c.lag_std_s for c in usable])
-    scale, scale_std = _weighted([c.scale for c in usable], [c.scale_std for c in usable])
+        return replace(first, offset=offset)
+    lag, lag_std = weighted([c.lag_s for c in usable], [c.lag_std_s for c in usable])
+    scale, scale_std = weighted([c.scale for c in usable], [c.scale_std for c in usable])
     explained = float(np.median([c.explained for c in usable]))
     finding, sentence = _judge(lag, lag_std, scale, scale_std, explained)
     drift = float(np.mean([c.drift_rad_s for c in usable]))
     rms = float(np.sqrt(np.mean([c.rms_rad**2 for c in usable])))
     return KinematicCheck(
-        finding, sentence, (), lag, lag_std, scale, scale_std, *bias, drift, rms, explained
+        finding, sentence, (), lag, lag_std, scale, scale_std, offset, drift, rms, explained
     )  # fmt: skip
-
-
-def _weighted(values: Sequence[float], stds: Sequence[float]) -> tuple[float, float]:
-    y, s = np.array(values), np.maximum(np.array(stds), 1e-12)
-    w = 1.0 / s**2
-    mean = float(np.sum(w * y) / np.sum(w))
-    chi2 = float(np.sum(w * (y - mean) ** 2)) / max(len(y) - 1, 1)
-    return mean, float(np.sqrt(max(chi2, 1.0) / np.sum(w)))

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.aircraft import Aircraft
-from advisor.flight.kinematics import SMALLEST_BIAS_RAD, KinematicCheck, check_alpha, combine
+from advisor.flight.alpha_offset import SMALLEST_BIAS_RAD
+from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.explain import explain
@@ -81,10 +82,10 @@ def _explained(
     flown = [_without_dead_pitot(m) for m in maneuvers if m.number in numbers]
     kinematics = combine([check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown])
     progress("fitting the simulator's model", 0.1)
-    least = max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * kinematics.bias_std_rad)
-    if kinematics.bias_stays and abs(kinematics.bias_rad) > least:
+    least = max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * kinematics.offset.std_rad)
+    if kinematics.offset.stays and abs(kinematics.offset.rad) > least:
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
-        flights = prepare([_without_offset(m, kinematics.bias_rad) for m in maneuvers], aircraft)
+        flights = prepare([_without_offset(m, kinematics.offset.rad) for m in maneuvers], aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
     return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown), kinematics
 

@@ -54,7 +54,7 @@ def gap_document(
         "alpha_check": {
             "finding": d.kinematics.finding, "text": d.kinematics.sentence, "lag_s": d.kinematics.lag_s,
             "lag_std_s": d.kinematics.lag_std_s, "scale": d.kinematics.scale,
-            "bias_rad": d.kinematics.bias_rad,
+            "bias_rad": d.kinematics.offset.rad,
         },
         "yardsticks": {
             c: {"before": _yardsticks(a), "after": _yardsticks(b)} for c, (a, b) in d.yardsticks.items()

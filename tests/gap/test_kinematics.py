@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.flight.alpha_offset import AlphaOffset
 from advisor.flight.coloured import coloured_covariance
 from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
 from advisor.gap.diagnose import diagnose
@@ -48,13 +49,13 @@ def test_a_scale_error_is_not_taken_for_a_lag():
 
 
 def test_the_climb_rate_shows_a_constant_offset():
-    assert checked(alpha_bias=0.01).bias_rad == pytest.approx(0.01, abs=0.001)
+    assert checked(alpha_bias=0.01).offset.rad == pytest.approx(0.01, abs=0.001)
 
 
 @pytest.mark.parametrize(("offset", "named"), [(0.004, False), (0.009, True)])
 def test_an_offset_below_what_any_zero_is_set_to_gets_no_name(offset, named):
     found = alpha_bias_cause(
-        KinematicCheck("consistent", "", bias_rad=offset, bias_std_rad=1e-4), [], sparse_estimate(), 0.0
+        KinematicCheck("consistent", "", offset=AlphaOffset(offset, 1e-4)), [], sparse_estimate(), 0.0
     )
     assert (found is not None) == named
 
@@ -85,7 +86,7 @@ def test_a_constant_offset_shows_without_an_accelerometer_too():
     ]
     found = combine([check_alpha(m) for m in bare])
     assert found.finding == "not possible"
-    assert found.bias_rad == pytest.approx(0.01, abs=0.001)
+    assert found.offset.rad == pytest.approx(0.01, abs=0.001)
     named = diagnose(bare, Aircraft())
     assert [c.effect for c in named.causes if c.present] == ["alpha_bias"]
 
@@ -139,9 +140,9 @@ def test_air_that_begins_to_sink_is_no_offset_of_the_angle_of_attack():
         for course, shift in ((offset, np.full(len(alpha), -0.03)), (sunk, -0.03 * began)):
             course.append(replace(m, channels={**m.channels, "alpha": replace(alpha, y=alpha.y + shift)}))
     constant, begun = (combine([check_alpha(m) for m in course]) for course in (offset, sunk))
-    assert constant.bias_stays
-    assert constant.bias_rad == pytest.approx(-0.03, abs=0.003)
-    assert not begun.bias_stays
+    assert constant.offset.stays
+    assert constant.offset.rad == pytest.approx(-0.03, abs=0.003)
+    assert not begun.offset.stays
 
 
 def blown(maneuver, gradient):

@@ -154,17 +154,17 @@ def alpha_bias_cause(
     A scale error shifts the trim, too; only what the named one leaves over is an offset. ``left`` is the gap
     of the last model: what the motion alone shows takes nothing off it.
     """
-    if not np.isfinite(check.bias_rad) or not check.bias_stays or "alpha" not in problem.channels:
+    if not np.isfinite(check.offset.rad) or not check.offset.stays or "alpha" not in problem.channels:
         return None
-    least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * check.bias_std_rad)
+    least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * check.offset.std_rad)
     trim = float(np.mean([flight.alpha_trim for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
     # The trim was read with the offset taken out already: what a scale makes of it is no offset.
     scaled = scale * trim
-    if abs(check.bias_rad) < least or abs(check.bias_rad - scaled) < max(least, _SCALED_BY * abs(scaled)):
+    if abs(check.offset.rad) < least or abs(check.offset.rad - scaled) < max(least, _SCALED_BY * abs(scaled)):
         return None
     return Cause(
-        "alpha_bias", "alpha_sensor", 0.9, {"bias_rad": Value(check.bias_rad, check.bias_std_rad)},
+        "alpha_bias", "alpha_sensor", 0.9, {"bias_rad": Value(check.offset.rad, check.offset.std_rad)},
         ("an offset of the attitude's zero", "steady up- or downwash"),
         "level the attitude reference on the ground; fly in still air", left, True,
     )  # fmt: skip

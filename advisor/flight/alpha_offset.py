@@ -1,0 +1,90 @@
+"""What an angle of attack is off on average, told by attitude and climb rate alone."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+
+SMALLEST_BIAS_RAD = np.radians(0.1)
+_BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
+"""The beginning of a record; share of itself that an offset may lack there, in the mean of all manoeuvres;
+and how many times their scatter that takes."""
+
+
+@dataclass(frozen=True, slots=True)
+class AlphaOffset:
+    """Mean of α minus (θ − flight-path angle). NaN where it could not be told."""
+
+    rad: float = float("nan")
+    std_rad: float = float("nan")
+    change_rad: float = float("nan")
+    """How much more it is over the record than in its first second; 0 within three times what manoeuvres
+    scatter by. An instrument's offset is there from the first; air that begins to sink is not."""
+
+    @property
+    def stays(self) -> bool:
+        """Whether nothing says that it was not there from the beginning."""
+        return not abs(self.change_rad) >= _STAYS * abs(self.rad)
+
+
+UNKNOWN = AlphaOffset()
+
+
+def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
+    """Mean of α − (θ − γ), its error, and its change, from the climb rate; NaN without one.
+
+    Parameters
+    ----------
+    maneuver
+        With channels ``alpha`` and ``theta``.
+    airspeed_m_s
+        Speed to use when the log has none.
+    """
+    found = maneuver.channels
+    if "climb_rate" not in found or len(found["climb_rate"]) < 4:
+        return UNKNOWN
+    climb = found["climb_rate"]
+
+    def at(name: str) -> FloatArray:
+        return np.interp(climb.t, found[name].t, found[name].y)
+
+    speed = speed_at(climb.t, maneuver, airspeed_m_s)
+    assert speed is not None
+    speed = np.maximum(speed, 1.0)
+    apart = at("alpha") - (at("theta") - np.arcsin(np.clip(climb.y / speed, -0.9, 0.9)))
+    # The climb rate is slow and smoothed: count one independent reading a second.
+    independent = max(2.0, climb.t[-1] - climb.t[0])
+    change = float(np.mean(apart) - np.mean(apart[climb.t <= climb.t[0] + _BEGIN_S]))
+    return AlphaOffset(float(np.mean(apart)), float(np.std(apart) / np.sqrt(independent)), change)
+
+
+def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
+    """One offset for the aircraft from those of its manoeuvres; unknown ones do not count."""
+    told = [o for o in offsets if np.isfinite(o.rad)]
+    if not told:
+        return UNKNOWN
+    changes = np.array([o.change_rad for o in told])
+    scatter = np.std(changes) / np.sqrt(max(len(changes) - 1, 1))
+    change = float(np.mean(changes))
+    plain = len(changes) > 1 and abs(change) > _SCATTERS * scatter
+    return AlphaOffset(*weighted([o.rad for o in told], [o.std_rad for o in told]), change if plain else 0.0)
+
+
+def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> FloatArray | None:
+    """Shape (n,): the logged air speed, else the one given; None without either."""
+    logged = maneuver.channels.get("airspeed")
+    if logged is not None and len(logged) > 1:
+        return np.interp(t, logged.t, logged.y)
+    return None if otherwise is None else np.full(len(t), otherwise)
+
+
+def weighted(values: Sequence[float], stds: Sequence[float]) -> tuple[float, float]:
+    """Mean of values by their errors, and its own: wider where they scatter more than each claims."""
+    y, s = np.array(values), np.maximum(np.array(stds), 1e-12)
+    w = 1.0 / s**2
+    mean = float(np.sum(w * y) / np.sum(w))
+    chi2 = float(np.sum(w * (y - mean) ** 2)) / max(len(y) - 1, 1)
+    return mean, float(np.sqrt(max(chi2, 1.0) / np.sum(w)))
