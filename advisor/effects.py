@@ -9,7 +9,7 @@ LEAST: Mapping[str, Mapping[str, float]] = {
     "actuator_lag": {"lag_s": 0.0, "damping": 0.0},
     "actuator_rate_limit": {"rate_rad_s": 0.0},
     "actuator_backlash": {"half_width_rad": 0.0},
-    "actuator_deadband": {"half_width_rad": 0.0, "neutral_rad": _ANY},
+    "actuator_deadband": {"half_width_rad": 0.0, "neutral_rad": _ANY, "about_trim": 0.0},
     "transport_delay": {"delay_s": 0.0},
     "elevator_nonlinearity": {"M_delta2": _ANY, "M_delta3": _ANY},
     "nonlinear_pitching_moment": {"M_alpha2": _ANY, "M_alpha3": _ANY},

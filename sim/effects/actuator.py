@@ -1,5 +1,10 @@
 """What keeps a surface from following its command: speed, play, friction."""
 
+import math
+
+_TRIMMED_S = 2.0
+"""A command that has rested for so long is a trim: few steps of a test input last that long."""
+
 
 class RateLimit:
     """The surface moves at most so fast."""
@@ -37,17 +42,33 @@ class Backlash:
 
 
 class Deadband:
-    """Commands near neutral move nothing; beyond, the surface follows short of the band."""
+    """Commands near neutral move nothing; beyond, the surface follows short of the band.
 
-    def __init__(self, half_width_rad: float, neutral_rad: float) -> None:
+    Parameters
+    ----------
+    half_width_rad, neutral_rad
+        The band.
+    above_trim_rad
+        Given: the band moves with the trim, and lies that far above wherever the command rests.
+    """
+
+    def __init__(
+        self, half_width_rad: float, neutral_rad: float, above_trim_rad: float | None = None
+    ) -> None:
         self.half_width = half_width_rad
         self.neutral = neutral_rad
+        self._above_trim = above_trim_rad
+        self._last, self._resting_s = math.nan, 0.0
 
     def reset(self, value: float) -> None:
         """There is no memory to reset."""
 
     def step(self, value: float, dt: float) -> float:
         """Return the deflection for ``value``."""
+        self._resting_s = self._resting_s + dt if value == self._last else 0.0
+        self._last = value
+        if self._above_trim is not None and self._resting_s > _TRIMMED_S:
+            self.neutral = value + self._above_trim
         off = value - self.neutral
         beyond = max(abs(off) - self.half_width, 0.0)
         return self.neutral + (beyond if off > 0 else -beyond)

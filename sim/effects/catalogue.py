@@ -42,8 +42,10 @@ def _backlash(kit: Kit, sizes: Sizes) -> None:
 
 
 def _deadband(kit: Kit, sizes: Sizes) -> None:
+    above = sizes["neutral_rad"]
+    moves = sizes["about_trim"] > 0.0
     kit.fittings.mechanisms.append(
-        Deadband(sizes["half_width_rad"], kit.trim.elevator + sizes.get("neutral_rad", 0.0))
+        Deadband(sizes["half_width_rad"], kit.trim.elevator + above, above if moves else None)
     )
 
 
@@ -143,7 +145,9 @@ CATALOGUE: dict[str, Kind] = {
     "actuator_lag": Kind("input", {"lag_s": 0.06, "damping": 0.0}, _lag),
     "actuator_rate_limit": Kind("input", {"rate_rad_s": 0.7}, _rate_limit),
     "actuator_backlash": Kind("input", {"half_width_rad": 0.007}, _backlash),
-    "actuator_deadband": Kind("input", {"half_width_rad": 0.007, "neutral_rad": 0.0}, _deadband),
+    "actuator_deadband": Kind(
+        "input", {"half_width_rad": 0.007, "neutral_rad": 0.0, "about_trim": 0.0}, _deadband
+    ),
     "transport_delay": Kind("input", {"delay_s": 0.06}, _delay),
     "elevator_nonlinearity": Kind(
         "moment_equation",

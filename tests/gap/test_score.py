@@ -138,3 +138,21 @@ def test_what_is_kept_out_is_predicted_alike_by_two_names_of_one_motion():
     # The accelerometer and the attitude see the two arms differ a little where the speed moves.
     angle_and_rate = slice(0, 2)
     assert errors[0][angle_and_rate] == pytest.approx(errors[1][angle_and_rate], rel=1e-3)
+
+
+def test_where_an_effect_is_stays_where_only_manoeuvres_kept_out_tell_of_it():
+    flights = prepare(fly(Setup(maneuvers=6, switches={"deadband": 0.012}, seed=64)), Aircraft())
+    problem, plain = fit_baseline(flights, Aircraft())
+    variant = next(v for v in variants_for(flights) if v.effect == "actuator_deadband")
+    fitted = fit(problem, plain.point.with_effect(variant, (0.012, 0.0)), plain.noise, 25)
+    # As if the band lay above the trim, which the first and the fourth manoeuvre alone can tell.
+    shared = fitted.point.shared.copy()
+    shared[-1] = 0.01
+    told = list(fitted.linear)
+    for i in (1, 2, 4, 5):
+        told[i] = replace(told[i], shared=told[i].shared * (np.arange(len(shared)) < len(shared) - 1))
+    above = replace(fitted, point=fitted.point.moved(shared, fitted.point.own), linear=tuple(told))
+    size = replace(variant, places=())
+    as_size = replace(above, point=replace(above.point, effects=(*above.point.effects[:-1], size)))
+    kept_out, to_nothing = (hold_out(problem, f).by_maneuver[[0, 3]] for f in (above, as_size))
+    assert np.sum(kept_out / fitted.noise**2) < 0.1 * np.sum(to_nothing / fitted.noise**2)

@@ -51,6 +51,14 @@ def test_a_speed_that_an_engine_changes_in_level_flight_is_all_work():
     assert energy == pytest.approx(speed, rel=1e-3)
 
 
+def test_a_manoeuvre_flown_in_a_climb_makes_no_work_of_the_others():
+    level = flights_with(lambda t: np.full_like(t, 22.0), lambda t: np.full_like(t, 80.0))
+    climbed = flights_with(lambda t: np.full_like(t, 22.0), lambda t: 80.0 + 3.0 * t)
+    one = replace(level, flights=(*level.flights[:2], climbed.flights[2]))
+    assert swings(climbed)[1] > 0.05
+    assert swings(one)[1] < 1e-3
+
+
 def test_work_is_what_an_engine_does_and_not_what_drag_takes():
     glided = prepare(fly(Setup(maneuvers=6, heights_m=HEIGHTS, seed=8)), Aircraft())
     assert work(glided) < 0.3 * swings(glided)[0]

@@ -1,5 +1,7 @@
 """From the command to the surface: solved piece by piece, it is what small steps make of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from advisor.gap.simulator.surface import surface
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario
+from tests.gap.generator import Setup, fly
 
 H, SMALL, DURATION = 0.005, 2e-5, 0.8
 
@@ -69,6 +72,20 @@ def test_a_surface_moves_from_its_trim_as_far_as_its_stops_and_no_further(held):
     assert found == pytest.approx(stopped, abs=2e-4)
     assert np.max(found) <= 0.03 + 1e-12
     assert np.min(found) >= -0.05 - 1e-12
+
+
+def test_a_dead_band_that_moves_with_the_trim_is_one_as_well():
+    rested_at = (0.0, 0.03, -0.02, 0.01, -0.03, 0.02)
+    flown = []
+    for maneuver, above in zip(fly(Setup(maneuvers=6, switches={"deadband": 0.012})), rested_at, strict=True):
+        command = maneuver.channels["elevator"]
+        shifted = replace(command, y=command.y + above)
+        flown.append(replace(maneuver, channels={**maneuver.channels, "elevator": shifted}))
+    found = diagnose(flown, Aircraft())
+    (cause,) = [c for c in found.causes if c.present]
+    assert cause.effect == "actuator_deadband"
+    assert cause.parameters["half_width_rad"].value == pytest.approx(0.012, rel=0.05)
+    assert "around its trim" in found.sentence
 
 
 def test_a_servo_at_its_limit_is_no_later_for_steps_that_lie_anywhere_between_two_stamps(tmp_path):

@@ -232,6 +232,14 @@ def test_a_deadband_lies_around_neutral():
     )
 
 
+def test_a_deadband_may_move_with_the_trim():
+    band = Deadband(0.01, 0.0, above_trim_rad=0.005)
+    while band.neutral == 0.0:
+        band.step(0.04, 0.1)
+    # Later steps are shorter than a trim is held.
+    assert [band.step(value, 0.1) for value in (0.04, 0.056, 0.02)] == pytest.approx([0.045, 0.046, 0.03])
+
+
 def test_turbulence_has_the_strength_asked_for():
     scenario = replace(
         PLAIN, maneuvers=(Maneuver("none", free_s=200.0),), effects={"turbulence": {"sigma_w_m_s": 0.5}}

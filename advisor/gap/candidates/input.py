@@ -52,6 +52,12 @@ def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
     p[:, INDEX["neutral_rad"]] = np.median(trims) + values[1] - trims
 
 
+def _deadband_about_trim(p: FloatArray, values: Values, _: Flights) -> None:
+    """A band that moves with the trim: about wherever the command rested before each manoeuvre."""
+    p[:, INDEX["half_deadband_rad"]] += values[0]
+    p[:, INDEX["neutral_rad"]] = values[1]
+
+
 def _limited_from_midway(p: FloatArray, values: Values, flights: Flights) -> None:
     """A step between two stamps, wherever it was, happened midway on average: from then on the servo runs.
 
@@ -76,8 +82,32 @@ _RATE_LIMIT = Variant(
 )
 
 
-def variants() -> list[Variant]:
+_DEADBAND = Variant(
+    "actuator_deadband",
+    BLOCK,
+    ("half_width_rad", "neutral_rad"),
+    ((0.004, 0.0), (0.015, 0.0), (0.01, 0.006), (0.01, -0.006)),
+    (2e-4, 2e-4),
+    ((0.0, 0.1), (-0.1, 0.1)),
+    _SMALL_ANGLE,
+    apply_with=_deadband,
+    places=("neutral_rad",),
+)
+_DEADBAND_ABOUT_TRIM = replace(
+    _DEADBAND,
+    starts=((0.004, 0.0), (0.015, 0.0)),
+    apply_with=_deadband_about_trim,
+    fixed={"about_trim": 1.0},
+)
+
+
+_TRIMS_APART_RAD = 0.005
+"""Between manoeuvres, from which on a band that moves with the trim is another than one that does not."""
+
+
+def variants(flights: Flights) -> list[Variant]:
     """Effects of the block, described to first order, and the lag to second order, too."""
+    moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_APART_RAD
     return [
         Variant(
             "transport_delay",
@@ -122,14 +152,6 @@ def variants() -> list[Variant]:
             entries=("half_play_rad",),
             sides=("play_side", tuple(np.linspace(-1.0, 1.0, 9))),
         ),
-        Variant(
-            "actuator_deadband",
-            BLOCK,
-            ("half_width_rad", "neutral_rad"),
-            ((0.004, 0.0), (0.015, 0.0), (0.01, 0.006), (0.01, -0.006)),
-            (2e-4, 2e-4),
-            ((0.0, 0.1), (-0.1, 0.1)),
-            _SMALL_ANGLE,
-            apply_with=_deadband,
-        ),
+        _DEADBAND,
+        *([_DEADBAND_ABOUT_TRIM] if moves else []),
     ]

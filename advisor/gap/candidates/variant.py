@@ -39,6 +39,8 @@ class Variant:
     """Parameters of the aircraft file that are not searched for: the time of a step."""
     one_sided: bool = False
     """Its bounds are physics, not the range of the search: a parameter may well lie there."""
+    places: tuple[str, ...] = ()
+    """Parameters that say where, not how much: at zero they are no "no effect"."""
     spread: tuple[float, ...] = ()
     """Standard deviation about zero that each parameter has beforehand; none: anything goes."""
     always: bool = False

@@ -14,7 +14,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, bounds_of, factor, own_eliminated, rms_of
 from advisor.gap.fitting.linear import Linear
 from advisor.gap.fitting.normal import solved, solved_within
-from advisor.gap.fitting.problem import Problem, row_weights
+from advisor.gap.fitting.problem import Point, Problem, row_weights
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _INDIFFERENT = 3e-4
@@ -61,6 +61,7 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     lower, upper = bounds_of(fitted.point)
     anchor = _ANCHOR * told_beside_others(total_H)
     anchor[:k] = 0.0
+    nothing = _without_effect(fitted.point)
     lefts: list[FloatArray] = [np.empty(0)] * n
     innovations: list[FloatArray] = [np.empty(0)] * n
     # Where a response has kinks, the search refuses what the linear model proposes: it is no part of the fit.
@@ -69,9 +70,13 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     for fold in chosen:
         step = np.zeros(len(total_g))
         if len(fold) < n:
-            # What only the manoeuvres kept out could tell of an effect stays at "no effect".
+            # What only the manoeuvres kept out could tell of an effect stays at "no effect", or where it is.
             H = total_H - np.sum([blocks[i][0] for i in fold], axis=0) + np.diag(anchor)
-            g = total_g - np.sum([blocks[i][1] for i in fold], axis=0) - anchor * fitted.point.shared
+            g = (
+                total_g
+                - np.sum([blocks[i][1] for i in fold], axis=0)
+                - anchor * (fitted.point.shared - nothing)
+            )
             step = solved_within(H, g, least, most, _INDIFFERENT) - refused
             step = np.clip(step, least, most)
         for i in fold:
@@ -79,6 +84,13 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
             innovations[i] = fitted.linear[i].after(step, own)
             lefts[i] = fitted.linear[i].measured.after(step, own)
     return held_out(problem, lefts, innovations)
+
+
+def _without_effect(point: Point) -> FloatArray:
+    """Shared numbers, shape (k,), without the effects; those that say where an effect is stay."""
+    names = [[name in effect.places for name in effect.names] for effect in point.effects]
+    stays = np.concatenate([np.ones(len(DERIVATIVES), dtype=bool), *(np.array(n, dtype=bool) for n in names)])
+    return np.where(stays, point.shared, 0.0)
 
 
 def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, witnesses: Collection[int]) -> HeldOut:

@@ -30,9 +30,7 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     The choice is made with a delay and a lag in the model, else a held command would pass for a
     delay of half a sample, or a delay for a held command.
     """
-    delay, lag = (
-        next(v for v in input.variants() if v.effect == name) for name in ("transport_delay", "actuator_lag")
-    )
+    delay, lag, *_ = input.variants(linear.flights)
     best = min(Screen(linear, fitted).quick_fits((delay, lag)), key=lambda s: s.cost, default=None)
     if best is None:
         return linear, fitted

@@ -96,7 +96,10 @@ def speed_is_a_cause(
 
 
 def swings(flights: Flights) -> tuple[float, float]:
-    """How much the speed swings within a manoeuvre, and √(V² + 2 g h), both relative to the mean speed."""
+    """How much the speed swings within a manoeuvre, and √(V² + 2 g h), both relative to the mean speed.
+
+    Medians over the manoeuvres: one that climbs or sinks all the while is no change of speed.
+    """
     speeds, energies = [], []
     for flight in flights.flights:
         speed, height = flight.slow[SPEED], flight.slow[HEIGHT]
@@ -104,7 +107,7 @@ def swings(flights: Flights) -> tuple[float, float]:
         speeds.append(float(np.std(speed)))
         energies.append(float(np.std(np.sqrt(np.maximum(speed**2 + 2.0 * GRAVITY_M_S2 * climbed, 0.0)))))
     mean = float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))
-    return float(np.mean(speeds)) / mean, float(np.mean(energies)) / mean
+    return float(np.median(speeds)) / mean, float(np.median(energies)) / mean
 
 
 def work(flights: Flights) -> float | None:

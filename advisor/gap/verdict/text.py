@@ -13,6 +13,8 @@ _WHAT = {
     "actuator_rate_limit": "The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
     "actuator_backlash": "The real elevator has play of {half_width_rad_deg:.2f} deg to either side",
     "actuator_deadband": "The real elevator ignores the first {half_width_rad_deg:.2f} deg around neutral",
+    "actuator_deadband about_trim": "The real elevator ignores the first {half_width_rad_deg:.2f} deg around "
+    "its trim",
     "elevator_nonlinearity": "The real elevator's moment is not proportional to its deflection",
     "nonlinear_pitching_moment": "The real pitching moment curves with angle of attack",
     "thrust_moment": "Thrust pitches the real aircraft",
