@@ -170,6 +170,12 @@ def test_a_wandering_centre_of_gravity_gives_every_force_the_same_further_arm():
     assert changes / forces == pytest.approx(np.full(3, changes[0] / forces[0]))
 
 
+def test_noise_with_a_memory_in_every_instrument_is_no_disturbance_of_one_of_them():
+    noisy = fly(Setup(maneuvers=6, coloured=0.8, noise=0.02, seed=302))
+    problem, plain = fit_baseline(prepare(noisy, Aircraft()), Aircraft())
+    assert other_than_air(problem, plain, plain) is None
+
+
 def test_moving_air_is_believed_only_where_no_other_place_describes_the_residual_far_better():
     gusty = fly(Setup(maneuvers=6, gust_std=0.5, seed=3))
     problem, plain = fit_baseline(prepare(gusty, Aircraft()), Aircraft())

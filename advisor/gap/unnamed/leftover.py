@@ -45,6 +45,8 @@ _TURNS = ("input", "moment_equation")
 """Blocks whose disturbance turns the aircraft, as air does that the tail meets later than the wing."""
 _BETTER_THAN_AIR = 1.1
 """What another block must take up of a residual, beside what the air does that moves."""
+_OF_A_SENSOR = 0.4
+"""Share that an instrument must take up there: noise with a memory, in all of them alike, gives one a third."""
 
 
 @dataclass(frozen=True)
@@ -156,8 +158,9 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
     taken = float(np.sum((rms_of(problem, first.left) / noise) ** 2 - powers))
     if best.explained * float(np.sum(powers)) < LEAST_OF_GAP * taken:
         return None
-    if best.block in SENSOR_CHANNELS and problem.flights.alpha_is_smoothed:
-        # What a low-pass leaves of an instrument's noise is no disturbance of it: there the stick must tell.
+    noisy = problem.flights.alpha_is_smoothed or best.explained < _OF_A_SENSOR
+    if best.block in SENSOR_CHANNELS and noisy:
+        # An instrument's noise, or what a low-pass leaves of it, is no disturbance: there the stick must tell.
         c = problem.channels.index(SENSOR_CHANNELS[best.block])
         active, quiet = unrest(problem, last.left)
         if active[c] < _RESTLESS * quiet[c]:
