@@ -106,6 +106,7 @@ class Campaign:
             settling=settled.estimate if settled else None,
             enough=settled.enough if settled else None,
             estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
+            elevator_notes=stream.elevator_notes,
             notices=tuple(self._notices),
         )
 

@@ -49,5 +49,7 @@ class CampaignState:
     """Set when further free response would add nothing: the pilot may recover."""
     estimate_from: tuple[int, ...] = ()
     """Numbers of the manoeuvres that ``model`` is made from."""
+    elevator_notes: tuple[str, ...] = ()
+    """What is assumed of the elevator's scale and sense, in sentences."""
     notices: tuple[str, ...] = ()
     """Sentences for the event log, oldest first."""

@@ -1,7 +1,7 @@
 """From logs to a diagnosis: every manoeuvre once, then ``advisor.gap``."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +19,20 @@ _PAUSE_S = 60.0
 """Between the last manoeuvre of one log and the first of the next, which no clock has measured."""
 
 
-def maneuvers_of(
-    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None
-) -> tuple[list[Maneuver], int]:
-    """Every manoeuvre of all logs once, numbered through and on one clock, and how many came again.
+@dataclass(frozen=True)
+class Flown:
+    """What logs hold for a diagnosis."""
+
+    maneuvers: list[Maneuver]
+    """Every manoeuvre once, numbered through and on one clock."""
+    again: int
+    """How many came a second time."""
+    notes: tuple[str, ...]
+    """What was assumed of the elevator."""
+
+
+def maneuvers_of(logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None) -> Flown:
+    """Read the manoeuvres of all logs.
 
     The clock begins as the first log's, and runs on where another log or the vehicle begins anew.
 
@@ -31,14 +41,17 @@ def maneuvers_of(
     UnusableInputError
         A log cannot be read or cannot serve.
     """
-    recorded = _recorded(logs, aircraft, target_system)
+    recorded, notes = _recorded(logs, aircraft, target_system)
     maneuvers = _on_one_clock(_each_once(recorded))
-    return maneuvers, len(recorded) - len(maneuvers)
+    return Flown(maneuvers, len(recorded) - len(maneuvers), notes)
 
 
-def _recorded(logs: Sequence[Path], aircraft: Aircraft, target_system: int | None) -> list[Maneuver]:
-    """What the logs hold, log by log."""
+def _recorded(
+    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None
+) -> tuple[list[Maneuver], tuple[str, ...]]:
+    """What the logs hold, log by log, and what was assumed to read it."""
     found: list[Maneuver] = []
+    notes: list[str] = []
     for log in logs:
         stream = FlightStream(aircraft, target_system)
         events = [event for columns in open_log(log) for event in stream.feed(columns)]
@@ -47,7 +60,8 @@ def _recorded(logs: Sequence[Path], aircraft: Aircraft, target_system: int | Non
         if found_wrong:
             raise UnusableInputError.of(found_wrong)
         found += [e.maneuver for e in events if isinstance(e, ManeuverFlown)]
-    return found
+        notes += stream.elevator_notes
+    return found, tuple(dict.fromkeys(notes))
 
 
 def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
@@ -90,10 +104,11 @@ def diagnose_logs(
 ) -> Diagnosis:
     """Read logs and diagnose their gap."""
     progress("reading", 0.0)
-    maneuvers, again = maneuvers_of(logs, aircraft, target_system)
-    found = diagnose(maneuvers, aircraft, holdout, progress)
-    if not again:
-        return found
-    every = len(maneuvers) + again
-    note = f"{again} of {every} manoeuvres came twice, as from the same log or a copy: they count once."
-    return replace(found, notes=(note, *found.notes))
+    flown = maneuvers_of(logs, aircraft, target_system)
+    found = diagnose(flown.maneuvers, aircraft, holdout, progress)
+    notes = list(flown.notes)
+    if flown.again:
+        every = len(flown.maneuvers) + flown.again
+        twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
+        notes.insert(0, f"{twice}: they count once.")
+    return replace(found, notes=(*notes, *found.notes)) if notes else found

@@ -39,6 +39,7 @@ from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.pieces import pieces
 from advisor.flight.record import UNITS, Channel
 from advisor.flight.segmentation import LEAD_IN_S
+from advisor.flight.sense import SAID, Sense
 from advisor.flight.shape import is_3211
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
@@ -68,6 +69,7 @@ class FlightStream:
         self._aircraft = aircraft
         self._who = Identity(aircraft.elevator, target_system)
         self._attitudes = Attitudes()
+        self._sense = Sense()
         self._clock = BootClock()
         self._tracks = Tracks(aircraft.alpha.source)
         self._start_boot()
@@ -110,6 +112,12 @@ class FlightStream:
     def elevator(self) -> Surface | Problem:
         """The elevator's outputs and scale, or why there is none."""
         return self._who.elevator
+
+    @property
+    def elevator_notes(self) -> tuple[str, ...]:
+        """What is assumed of the elevator's scale and sense, in sentences."""
+        scale = self.elevator.said if isinstance(self.elevator, Surface) else ""
+        return tuple(said for said in (scale, SAID if self._sense.backwards else "") if said)
 
     @property
     def now_s(self) -> float:
@@ -272,7 +280,10 @@ class FlightStream:
             return []
         self.maneuvers += 1
         self._note_rates()
-        return [ManeuverFlown(maneuver)]
+        found: list[Notice] = []
+        if self._aircraft.elevator.calibration is None:
+            maneuver, found = self._sense.right(maneuver)
+        return [*found, ManeuverFlown(maneuver)]
 
     def _cut(self, span: Span, number: int, up_to_order: int | None) -> Maneuver:
         channels = {}

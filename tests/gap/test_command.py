@@ -26,7 +26,7 @@ maneuvers: ["3211", "rev", doublet, "rev"]
 def test_a_command_is_read_as_it_was_flown(tmp_path, flown):
     (tmp_path / "uav.yaml").write_text(f"{UAV}input: {flown}\n")
     record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
-    maneuvers = maneuvers_of([tmp_path / "uav.tlog"], Aircraft())[0]
+    maneuvers = maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers
     problem, _ = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
     assert problem.held == (flown == "held")
 
@@ -36,7 +36,7 @@ def test_a_servo_that_moves_no_faster_is_no_later_for_a_command_that_was_held(tm
     limited = f"{UAV}input: {flown}\neffects: {{actuator_rate_limit: {{rate_rad_s: 0.7}}}}\n"
     (tmp_path / "uav.yaml").write_text(limited)
     record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
-    found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft())[0], Aircraft())
+    found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers, Aircraft())
     (cause,) = [c for c in found.causes if c.present]
     assert any("answer 10 ms late: the two look the same" in note for note in found.notes) == (
         flown == "held"
@@ -51,7 +51,7 @@ def test_a_pitch_rate_that_is_early_beside_a_held_command_makes_nothing_else_lat
     quiet = UAV.replace("uav", "light").replace("0.15", "0.05")
     (tmp_path / "light.yaml").write_text(f"{quiet}input: held\n{skewed}")
     record(flight_of(read_scenario(tmp_path / "light.yaml")), tmp_path / "light.tlog")
-    found = diagnose(maneuvers_of([tmp_path / "light.tlog"], Aircraft())[0], Aircraft())
+    found = diagnose(maneuvers_of([tmp_path / "light.tlog"], Aircraft()).maneuvers, Aircraft())
     (cause,) = [c for c in found.causes if c.present]
     assert cause.effect == "pitch_rate_skew"
     assert cause.parameters["skew_s"].value == pytest.approx(-early_s, abs=0.002)
@@ -75,7 +75,7 @@ def test_a_held_command_of_which_steps_were_lost_is_still_held(tmp_path):
     (tmp_path / "uav.yaml").write_text(f"{UAV}input: held\n")
     record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
     received = []
-    for maneuver in maneuvers_of([tmp_path / "uav.tlog"], Aircraft())[0]:
+    for maneuver in maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers:
         command = maneuver.channels["elevator"].y
         # The message with the new value is lost in every third step, the one after it has it.
         steps = np.flatnonzero(np.abs(np.diff(command)) > 0.01) + 1

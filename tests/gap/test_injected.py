@@ -17,7 +17,7 @@ SERVO = Elevator(calibration=((1000.0, 25.0), (1500.0, 0.0), (2000.0, -25.0)), l
 
 @cache
 def flown():
-    return maneuvers_of([LOG], Aircraft(elevator=SERVO))[0]
+    return maneuvers_of([LOG], Aircraft(elevator=SERVO)).maneuvers
 
 
 def diagnosed(channel, change):

@@ -97,7 +97,7 @@ def test_a_servo_at_its_limit_is_no_later_for_steps_that_lie_anywhere_between_tw
     )
     (tmp_path / "uav.yaml").write_text(limited)
     record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
-    found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft())[0], Aircraft())
+    found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers, Aircraft())
     (cause,) = [c for c in found.causes if c.present]
     assert cause.effect == "actuator_rate_limit"
     assert cause.parameters["rate_rad_s"].value == pytest.approx(1.2, rel=0.03)

@@ -101,7 +101,7 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
 
     monkeypatch.setattr(reading, "diagnose", noted)
     log = recorded("uav", 1.0, maneuvers=TWO)
-    once = reading.maneuvers_of([log], Aircraft())[0]
+    once = reading.maneuvers_of([log], Aircraft()).maneuvers
     found = reading.diagnose_logs([log, log], Aircraft())
     assert [m.number for m in judged] == [m.number for m in once]
     assert found.notes[0].startswith(f"{len(once)} of {2 * len(once)} manoeuvres came twice")
@@ -109,8 +109,8 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
 
 def test_two_flights_of_the_same_plan_both_count():
     flights = [recorded("uav", 1.0, seed, TWO) for seed in (11, 12)]
-    once = reading.maneuvers_of(flights[:1], Aircraft())[0]
-    both = reading.maneuvers_of(flights, Aircraft())[0]
+    once = reading.maneuvers_of(flights[:1], Aircraft()).maneuvers
+    both = reading.maneuvers_of(flights, Aircraft()).maneuvers
     assert len(both) == 2 * len(once)
     # A second log begins its clock anew; here it runs on, so that what drifts does so in order of flying.
     starts = [m.span.start_s for m in both]

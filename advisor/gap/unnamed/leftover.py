@@ -46,7 +46,7 @@ _TURNS = ("input", "moment_equation")
 _BETTER_THAN_AIR = 1.1
 """What another block must take up of a residual, beside what the air does that moves."""
 _OF_A_SENSOR = 0.4
-"""Share that an instrument must take up there: noise with a memory, in all of them alike, gives one a third."""
+"""Share that an instrument must take up there: noise with a memory in all of them gives a third at most."""
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | 
         return None
     noisy = problem.flights.alpha_is_smoothed or best.explained < _OF_A_SENSOR
     if best.block in SENSOR_CHANNELS and noisy:
-        # An instrument's noise, or what a low-pass leaves of it, is no disturbance: there the stick must tell.
+        # Its noise, or what a low-pass leaves of that, is no disturbance of it: there the stick must tell.
         c = problem.channels.index(SENSOR_CHANNELS[best.block])
         active, quiet = unrest(problem, last.left)
         if active[c] < _RESTLESS * quiet[c]:
