@@ -10,16 +10,14 @@ from advisor.flight.messages import FloatArray
 from advisor.flight.motion import integrated
 
 _SURELY = 10.0
-"""Standard errors of M_δe, as if the noise were white, from which on its sign is beyond doubt."""
-_OTHER: dict[InputKind, InputKind] = {
-    "3-2-1-1": "reverse 3-2-1-1",
-    "reverse 3-2-1-1": "3-2-1-1",
-}
-
+"""Standard errors of M_δe, as if the noise were white, from which on its sign is beyond doubt ..."""
+_EXPLAINED = 0.7
+"""... if the regression explains that much of the pitch rate."""
+_OTHER: dict[InputKind, InputKind] = {"3-2-1-1": "reverse 3-2-1-1", "reverse 3-2-1-1": "3-2-1-1"}
 
 SAID = (
-    "The nose went the other way than SERVOn_REVERSED says of the elevator: its deflections count with the "
-    "other sign. Give elevator.calibration if that is wrong, as for a canard."
+    "The nose went the other way than the elevator's output suggests (SERVOn_REVERSED): its deflections "
+    "count with the other sign. Give elevator.calibration if that is wrong, as for a canard."
 )
 
 
@@ -73,4 +71,5 @@ def answers_backwards(maneuver: Maneuver) -> bool | None:
     left: FloatArray = q - (X / scale) @ found
     variance = float(left @ left) / (len(q) - len(found))
     std = np.sqrt(variance * np.linalg.pinv((X / scale).T @ (X / scale))[0, 0])
-    return bool(found[0] > 0.0) if abs(found[0]) > _SURELY * std else None
+    sure = abs(found[0]) > _SURELY * std and np.var(left) < (1.0 - _EXPLAINED) * np.var(q)
+    return bool(found[0] > 0.0) if sure else None
