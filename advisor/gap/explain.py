@@ -30,7 +30,13 @@ from advisor.gap.unnamed.leftover import (
     left_over,
     other_than_air,
 )
-from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, only_numbers, remainder
+from advisor.gap.unnamed.remainder import (
+    is_all_named,
+    is_of_no_use,
+    only_numbers,
+    only_resemble,
+    remainder,
+)
 from advisor.gap.unnamed.swing import swinging, swings_the_aircraft
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
@@ -70,6 +76,10 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     floor = _floor(problem, stages[-1], tolerance)
     leftover = law or drifting(problem, stages)
     leftover = leftover or _without_a_name(problem, stages, air, tolerance, floor)
+    if leftover is None and air is not None and only_resemble(stages):
+        stages = reduced_to(problem, stages, [])
+        air, floor = moving_air(problem, stages[0].fitted), _floor(problem, stages[0], tolerance)
+        leftover = _without_a_name(problem, stages, air, tolerance, floor)
     file_model = _file_model(problem, stages[0].fitted)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, floor)

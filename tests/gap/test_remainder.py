@@ -9,12 +9,21 @@ from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.search.score import addition
 from advisor.gap.search.waterfall import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.unnamed.remainder import is_all_named, is_of_no_use, only_numbers, remainder
+from advisor.gap.unnamed.remainder import (
+    is_all_named,
+    is_of_no_use,
+    only_numbers,
+    only_resemble,
+    remainder,
+    removed_beyond_air,
+)
 from tests.gap.generator import Setup, fly
 
 
@@ -61,6 +70,22 @@ def test_where_nothing_was_named_there_is_nothing_to_doubt(gyro):
     problem, plain = gyro
     stage = Stage(plain, hold_out(problem, plain), (), None)
     assert remainder(problem, [stage], np.sqrt(stage.held_out.mean_square) / 10.0) is None
+
+
+@pytest.mark.parametrize(("effect", "right"), [("pitch_rate_scale", True), ("actuator_lag", False)])
+def test_in_moving_air_names_must_take_away_most_of_what_the_air_does_not_explain(gyro, effect, right):
+    problem, _ = gyro
+    (first, last), _ = named_beside(gyro, effect)
+    independent = worth(problem, last.fitted.innovations)
+    added = addition(problem, first.fitted, first.held_out, last.fitted, effect, independent)
+    stages = [replace(first, added=added), last]
+    removed = removed_beyond_air(stages)
+    assert removed is not None
+    assert (removed > 0.9) == right
+    assert only_resemble(stages) != right
+    # What brings the file's derivatives back is named for that.
+    assert not only_resemble([replace(first, added=replace(added, belief=20.0)), last])
+    assert not only_resemble([first])
 
 
 def test_a_name_must_take_some_of_the_gap_away_that_the_aircraft_file_leaves(gyro):

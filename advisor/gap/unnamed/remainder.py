@@ -10,6 +10,7 @@ from advisor.gap.fitting.measure import gap_of, whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE
+from advisor.gap.search.merit import LEAST_BELIEF
 from advisor.gap.search.waterfall import Stage
 from advisor.gap.unnamed.leftover import Leftover, placed
 
@@ -18,6 +19,8 @@ _MOST = 0.5
 _SEEN = 0.2
 """... this gap: an effect that is not in the catalogue leaves more beside its likeness."""
 
+_BESIDE_THE_AIR = 0.5
+"""Share that right names take away at least of what the air does not explain."""
 _USE = 0.1
 """Share of the gap that names must take away."""
 _OF_THE_NUMBERS = 0.01
@@ -35,6 +38,28 @@ def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> L
     if len(stages) < 2 or after < max(_SEEN, _MOST * before):
         return None
     return placed(problem, stages[0].fitted)
+
+
+def removed_beyond_air(stages: Sequence[Stage]) -> float | None:
+    """Share of what the air does not explain that the named effects take away, on manoeuvres kept out.
+
+    Measured in the innovations, which are freed of the air. None where it explains everything.
+    """
+    noise = stages[-1].fitted.noise ** 2
+    was, now = (float(np.mean(s.held_out.innovations / noise)) - 1.0 for s in (stages[0], stages[-1]))
+    return 1.0 - now / was if was > 1e-9 else None
+
+
+def only_resemble(stages: Sequence[Stage]) -> bool:
+    """Whether names in moving air leave most of what it does not explain: its shape, or something else.
+
+    What brings derivatives back to the aircraft file's need not take away anything.
+    """
+    named = [s.added for s in stages if s.added is not None]
+    if not named or max(judged.belief for judged in named) >= LEAST_BELIEF:
+        return False
+    removed = removed_beyond_air(stages)
+    return removed is not None and removed < _BESIDE_THE_AIR
 
 
 def is_all_named(stages: Sequence[Stage], floor: FloatArray) -> bool:

@@ -16,6 +16,7 @@ from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
 from advisor.gap.search.waterfall import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.unnamed.remainder import removed_beyond_air
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.yardsticks import yardsticks
 from advisor.gravity import GRAVITY_M_S2
@@ -75,9 +76,8 @@ def _by_numbers(e: Evidence) -> float | None:
 
 def _by_effects(e: Evidence) -> float | None:
     """Shrink of the innovations, per cent; see ``Shrink``."""
-    noise = e.stages[-1].fitted.noise ** 2
-    was, now = (float(np.mean(s.held_out.innovations / noise)) - 1.0 for s in (e.stages[0], e.stages[-1]))
-    return float(np.clip(100.0 * (1.0 - now / was), 0.0, 100.0)) if was > 1e-9 else None
+    removed = removed_beyond_air(e.stages)
+    return None if removed is None else float(np.clip(100.0 * removed, 0.0, 100.0))
 
 
 def waterfall_of(
