@@ -27,7 +27,7 @@ def through_a_vane(setup, lags_s):
     return [fly(replace(setup, switches={"vane_lag": lag}))[i] for i, lag in enumerate(lags_s)]
 
 
-@pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), HARD])
+@pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), pytest.param(HARD, marks=pytest.mark.study)])
 @pytest.mark.parametrize(("channel", "block"), [("alpha", "timing"), ("a_z", "timing")])
 def test_a_clock_that_runs_off_is_unknown_in_the_time_stamps(setup, channel, block):
     found = diagnose(late_by(fly(setup), channel, np.linspace(0.0, 0.06, 8)), Aircraft())
@@ -43,7 +43,9 @@ def test_a_vane_that_grows_slower_is_unknown_in_the_vane(setup):
     assert any("not the same throughout" in note for note in found.notes)
 
 
-@pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=62), replace(HARD, seed=63)])
+@pytest.mark.parametrize(
+    "setup", [Setup(maneuvers=8, seed=62), pytest.param(replace(HARD, seed=63), marks=pytest.mark.study)]
+)
 def test_a_lag_that_is_a_third_longer_in_the_end_keeps_its_name(setup):
     found = diagnose(through_a_vane(setup, np.linspace(0.04, 0.053, 8)), Aircraft())
     assert found.verdict == "effect"
