@@ -5,7 +5,6 @@ messages were batched: a live link, message by message, and a log, whole, end in
 events. Memory is bounded by two minutes of channels.
 """
 
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -15,7 +14,6 @@ from advisor.aircraft import Aircraft
 from advisor.flight.attitude import Attitudes
 from advisor.flight.boots import Master, by_boot
 from advisor.flight.channels import (
-    SLOWEST_FLIGHT_M_S,
     Decoded,
     derived_alpha,
     named_value,
@@ -24,23 +22,22 @@ from advisor.flight.channels import (
     surface_angle,
 )
 from advisor.flight.clocks import BootClock
+from advisor.flight.cutting import Cutting
 from advisor.flight.elevator_watch import ElevatorWatch
 from advisor.flight.events import (
     FlightEvent,
     ManeuverFlown,
     ManeuverStarted,
     ModeChanged,
-    Notice,
     Rebooted,
 )
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.pieces import pieces
-from advisor.flight.record import UNITS, Channel
+from advisor.flight.record import Channel
 from advisor.flight.segmentation import LEAD_IN_S
-from advisor.flight.sense import SAID, Sense
-from advisor.flight.shape import is_3211
+from advisor.flight.sense import SAID
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus, Tracks
@@ -69,25 +66,22 @@ class FlightStream:
         self._aircraft = aircraft
         self._who = Identity(aircraft.elevator, target_system)
         self._attitudes = Attitudes()
-        self._sense = Sense()
         self._clock = BootClock()
         self._tracks = Tracks(aircraft.alpha.source)
+        self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.calibration is not None)
         self._start_boot()
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
-        self.maneuvers = 0
-        """How many manoeuvres have been found."""
         self.seen: set[str] = set()
         """Names of the messages the vehicle has sent."""
         self._best: dict[str, ChannelStatus] = {}
         self._earlier_s = 0.0
-        self._autopilots: Counter[str] = Counter()
 
     def _start_boot(self) -> None:
         self._tracks.clear()
         self._watch = ElevatorWatch()
         self._elevator_source: str | None = None
-        self._modes = [(-np.inf, self._who.mode)]
+        self._cutting.begin(self._who.mode)
         self._first_s = np.nan
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
@@ -104,6 +98,11 @@ class FlightStream:
         return self._who.other_systems
 
     @property
+    def maneuvers(self) -> int:
+        """How many manoeuvres have been found."""
+        return self._cutting.maneuvers
+
+    @property
     def mode(self) -> str:
         """Flight mode of the newest heartbeat."""
         return self._who.mode
@@ -117,7 +116,7 @@ class FlightStream:
     def elevator_notes(self) -> tuple[str, ...]:
         """What is assumed of the elevator's scale and sense, in sentences."""
         scale = self.elevator.said if isinstance(self.elevator, Surface) else ""
-        return tuple(said for said in (scale, SAID if self._sense.backwards else "") if said)
+        return tuple(said for said in (scale, SAID if self._cutting.is_backwards else "") if said)
 
     @property
     def now_s(self) -> float:
@@ -141,8 +140,9 @@ class FlightStream:
     def problems(self) -> list[Problem]:
         """Why this stream cannot be used, as far as it has been heard; empty when it can."""
         self._note_rates()
+        flown = self._cutting
         return problems(
-            self.vehicle, self.other_systems, self.elevator, self._best, self.maneuvers, self._autopilots
+            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.autopilots
         )
 
     def recent(self, name: str, seconds: float) -> Channel | None:
@@ -155,7 +155,7 @@ class FlightStream:
         if onset is None or not now > onset:
             return None
         span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
-        return self._cut(span, self.maneuvers + 1, None)
+        return self._cutting.so_far(span, self.boot)
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
         """Take messages that have arrived; what became known by them, in order."""
@@ -194,9 +194,9 @@ class FlightStream:
                 self._watch.mode_changed(earliest_s, order)
                 # Who takes over and flies an input at once did so before the heartbeat that tells of it.
                 closed = closes_pitch_loop(self._who.mode)
-                self._modes.append((self._master_s if closed else earliest_s, self._who.mode))
+                self._cutting.change(self._who.mode, self._master_s if closed else earliest_s)
             else:
-                self._modes = [(-np.inf, self._who.mode)]
+                self._cutting.begin(self._who.mode)
         mine = [c for c in piece if c.system == vehicle.system]
         self.seen.update(c.name for c in mine)
         for part, master in by_boot(mine, vehicle.component, self._clock, self.boot):
@@ -266,35 +266,10 @@ class FlightStream:
         return events
 
     def _flown(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
-        maneuver = self._cut(span, self.maneuvers + 1, up_to_order)
-        airspeed = maneuver.channels.get("airspeed")
-        if airspeed is not None and 0.0 < float(np.median(airspeed.y)) < SLOWEST_FLIGHT_M_S:
-            return [
-                Notice(
-                    "on_ground", f"Elevator input at {span.start_s:.1f} s ignored: the aircraft does not fly."
-                )
-            ]
-        if closes_pitch_loop(maneuver.mode) and not is_3211(span.kind):
-            # In such a mode steps are the autopilot's own, unless their timing shows a test input.
-            self._autopilots[maneuver.mode] += 1
-            return []
-        self.maneuvers += 1
-        self._note_rates()
-        found: list[Notice] = []
-        if self._aircraft.elevator.calibration is None:
-            maneuver, found = self._sense.right(maneuver)
-        return [*found, ManeuverFlown(maneuver)]
-
-    def _cut(self, span: Span, number: int, up_to_order: int | None) -> Maneuver:
-        channels = {}
-        for name in UNITS:
-            channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
-            if channel is not None:
-                channels[name] = replace(
-                    channel, provenance=self._who.provenance(channel.source, channel.provenance)
-                )
-        mode = next(mode for since, mode in reversed(self._modes) if since <= span.start_s)
-        return Maneuver(number, self.boot, span, channels, mode)
+        events = self._cutting.flown(span, self.boot, up_to_order)
+        if any(isinstance(event, ManeuverFlown) for event in events):
+            self._note_rates()
+        return events
 
 
 def _last_finite(values: FloatArray) -> FloatArray:

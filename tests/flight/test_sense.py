@@ -1,6 +1,7 @@
 """Where no calibration says which way the elevator moves, the aircraft's answer does."""
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from advisor.aircraft import Aircraft, Elevator
 from advisor.diagnosis import maneuvers_of
 from advisor.flight.events import ManeuverFlown, Notice
+from advisor.flight.pieces import between
 from advisor.flight.sense import SAID, Sense, answers_backwards, turned
 from advisor.flight.stream import FlightStream
 from advisor.mavlink.logs import open_log
@@ -17,16 +19,20 @@ from tests.gap.generator import Setup, fly
 LOG = Path(__file__).parents[2] / "logs" / "bundled-demo.tlog"
 
 
+def read(reversed_is=None):
+    """Batches of the log, as if SERVO2_REVERSED had been another."""
+    batches = list(open_log(LOG))
+    for c in (c for batch in batches for c in batch if c.name == "PARAM_VALUE"):
+        names = np.array([raw.rstrip(b"\0") for raw in c.fields["param_id"].tolist()])
+        if reversed_is is not None:
+            c.fields["param_value"][names == b"SERVO2_REVERSED"] = reversed_is
+    return batches
+
+
 def flown(aircraft, reversed_is=None):
-    """Manoeuvres and notices of the log, as if SERVO2_REVERSED had been another."""
-    stream, events = FlightStream(aircraft), []
-    for batch in open_log(LOG):
-        for c in batch:
-            if c.name == "PARAM_VALUE" and reversed_is is not None:
-                names = np.array([raw.rstrip(b"\0") for raw in c.fields["param_id"].tolist()])
-                c.fields["param_value"][names == b"SERVO2_REVERSED"] = reversed_is
-        events += stream.feed(batch)
-    events += stream.finish()
+    """The stream, its manoeuvres and the codes of its notices."""
+    stream = FlightStream(aircraft)
+    events = [event for batch in read(reversed_is) for event in stream.feed(batch)] + stream.finish()
     return (
         stream,
         [e.maneuver for e in events if isinstance(e, ManeuverFlown)],
@@ -43,6 +49,23 @@ def test_an_output_whose_sense_is_told_wrong_gives_the_same_manoeuvres_and_says_
     assert notices.count("elevator_backwards") == 1
     assert SAID in wrong.elevator_notes
     assert SAID not in right.elevator_notes
+
+
+def test_what_is_being_flown_is_turned_as_soon_as_the_sense_is_known():
+    seen = []
+    for reversed_is in (1.0, 0.0):
+        stream, (batch, *_) = FlightStream(Aircraft()), read(reversed_is)
+        edges = np.linspace(0, max(int(c.order[-1]) for c in batch) + 1, 80).astype(int)
+        parts = []
+        for first, past in pairwise(edges.tolist()):
+            stream.feed(between(batch, first, past))
+            flying = stream.so_far()
+            if flying is not None and stream.maneuvers:
+                parts.append(flying.channels["elevator"].y)
+        seen.append(parts)
+    assert len(seen[0]) == len(seen[1]) > 3
+    for mine, other in zip(*seen, strict=True):
+        np.testing.assert_array_equal(mine, other)
 
 
 def test_a_calibration_is_believed_whatever_the_aircraft_does():
