@@ -1,12 +1,16 @@
 """A simulator that has an effect already is judged with it: what is found is what is missing beyond it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.effects import LEAST
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, together, with_known
 from advisor.gap.diagnose import diagnose
+from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from tests.gap.generator import Setup, fly
@@ -52,8 +56,33 @@ def test_numbers_of_the_file_become_the_simulations_own(late):
         "mode_rad_s": 10.0 * np.pi, "mode_damping": 0.1, "mode_rate_gain": 0.3, "mode_gain": 0.05,
         "slowness_s_rad": 2.0, "lag_s": 0.04, "lag_damping": 0.7, "alpha_scale": 0.1,
     }  # fmt: skip
-    assert {name: numbers[INDEX[name]] for name in expected} == pytest.approx(expected)
-    assert np.count_nonzero(numbers) == len(expected)
+    assert len(numbers) == len(flights)
+    for row in numbers:
+        assert {name: row[INDEX[name]] for name in expected} == pytest.approx(expected)
+        assert np.count_nonzero(row) == len(expected)
+
+
+@pytest.mark.parametrize("effect", LEAST)
+def test_a_file_may_have_any_effect_of_the_catalogue(effect):
+    flown = fly(Setup(maneuvers=3, heights_m=(5.0, 9.0, 7.0), thrust_amplitude=1.0, speed_change=0.1))
+    moved = [
+        replace(
+            m, channels={**m.channels, "elevator": replace(c := m.channels["elevator"], y=c.y + 0.01 * k)}
+        )
+        for k, m in enumerate(flown)
+    ]
+    flights = prepare(moved, Aircraft())
+    effects = {effect: dict.fromkeys(LEAST[effect], 0.02)}
+    problem = Problem(flights, with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights)))
+    assert np.all(np.isfinite(problem.driving(Point(np.zeros(6), np.zeros((3, 4))))))
+
+
+def test_a_dead_band_that_the_file_has_is_no_gap():
+    flown = fly(Setup(maneuvers=6, switches={"deadband": 0.012}, seed=7))
+    found = diagnose(
+        flown, Aircraft(effects={"actuator_deadband": {"half_width_rad": 0.012, "neutral_rad": 0.0}})
+    )
+    assert found.verdict == "none"
 
 
 def test_what_is_found_beyond_a_number_of_the_file_is_added_to_it():

@@ -23,15 +23,15 @@ _OF_ITS_FLIGHT = frozenset({"cg_shift", "mass_change", "icing", "turbulence", "g
 def with_known(
     base: FloatArray, effects: Effects, flights: Flights, variants: Sequence[Variant]
 ) -> FloatArray:
-    """Shape (entries,): the simulation's numbers with the file's effects in them."""
-    row = base[None, :].copy()
+    """Shape (manoeuvres, entries): the simulation's numbers, ``base`` (entries,), with the file's effects."""
+    numbers = np.tile(base, (len(flights), 1))
     for effect, parameters in effects.items():
         if effect in _OF_ITS_FLIGHT:
             continue
         meant = [v for v in variants if v.effect == effect and _says(v, parameters)]
         for variant in sorted(meant, key=lambda v: (-len(v.fixed), -len(v.names)))[:1]:
-            variant.apply(row, _values(variant, parameters), flights)
-    return np.asarray(row[0])
+            variant.apply(numbers, _values(variant, parameters), flights)
+    return numbers
 
 
 def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]:

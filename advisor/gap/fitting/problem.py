@@ -72,7 +72,7 @@ class Problem:
 
     flights: Flights
     base: FloatArray
-    """Shape (entries,): what the aircraft file already has in it."""
+    """Shape (entries,), or (manoeuvres, entries) where those differ: what the aircraft file has already."""
     held: bool = False
     """Command held between stamps instead of linear."""
     instruments: FloatArray | None = None
@@ -126,7 +126,7 @@ class Problem:
 
     def driving(self, point: Point) -> FloatArray:
         """Shape (manoeuvres, entries): the numbers each manoeuvre is simulated with."""
-        p = np.tile(self.base, (len(self.flights), 1))
+        p = np.array(np.broadcast_to(self.base, (len(self.flights), self.base.shape[-1])))
         p[:, : len(DERIVATIVES)] = point.derivatives
         p[:, len(DERIVATIVES) : len(DERIVATIVES) + len(NUISANCES)] = point.own
         for effect, values in zip(point.effects, point.values, strict=True):
