@@ -68,6 +68,27 @@ def _limited_from_midway(p: FloatArray, values: Values, flights: Flights) -> Non
     p[:, INDEX["delay_s"]] += 0.5 * float(np.median(intervals))
 
 
+DELAY = Variant(
+    "transport_delay",
+    BLOCK,
+    ("delay_s",),
+    ((0.005,), (0.03,), (0.1,)),
+    (1e-3,),
+    ((0.0, 0.5),),
+    0.004,
+    apply_with=_delay,
+)
+LAG = Variant(
+    "actuator_lag",
+    BLOCK,
+    ("lag_s",),
+    ((0.02,), (0.1,)),
+    (1e-3,),
+    ((0.0, 1.0),),
+    0.004,
+    entries=("lag_s",),
+)
+
 # Searched as slowness 1/ρ: zero is "no limit", and the cost is smooth there.
 _RATE_LIMIT = Variant(
     "actuator_rate_limit",
@@ -80,8 +101,6 @@ _RATE_LIMIT = Variant(
     entries=("slowness_s_rad",),
     inverted=True,
 )
-
-
 _DEADBAND = Variant(
     "actuator_deadband",
     BLOCK,
@@ -99,8 +118,6 @@ _DEADBAND_ABOUT_TRIM = replace(
     apply_with=_deadband_about_trim,
     fixed={"about_trim": 1.0},
 )
-
-
 _TRIMS_APART_RAD = 0.005
 """Between manoeuvres, from which on a band that moves with the trim is another than one that does not."""
 
@@ -109,26 +126,8 @@ def variants(flights: Flights) -> list[Variant]:
     """Effects of the block, described to first order, and the lag to second order, too."""
     moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_APART_RAD
     return [
-        Variant(
-            "transport_delay",
-            BLOCK,
-            ("delay_s",),
-            ((0.005,), (0.03,), (0.1,)),
-            (1e-3,),
-            ((0.0, 0.5),),
-            0.004,
-            apply_with=_delay,
-        ),
-        Variant(
-            "actuator_lag",
-            BLOCK,
-            ("lag_s",),
-            ((0.02,), (0.1,)),
-            (1e-3,),
-            ((0.0, 1.0),),
-            0.004,
-            entries=("lag_s",),
-        ),
+        DELAY,
+        LAG,
         Variant(
             "actuator_lag",
             BLOCK,

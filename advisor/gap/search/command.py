@@ -30,11 +30,12 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     The choice is made with a delay and a lag in the model, else a held command would pass for a
     delay of half a sample, or a delay for a held command.
     """
-    delay, lag, *_ = input.variants(linear.flights)
-    best = min(Screen(linear, fitted).quick_fits((delay, lag)), key=lambda s: s.cost, default=None)
+    best = min(
+        Screen(linear, fitted).quick_fits((input.DELAY, input.LAG)), key=lambda s: s.cost, default=None
+    )
     if best is None:
         return linear, fitted
-    other = lag if best.variant is delay else delay
+    other = input.LAG if best.variant is input.DELAY else input.DELAY
     held, plainly_held = read_as_held(linear, fitted)
     plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
     price = 2.0 * float(np.log(np.sum(counts(linear))))
