@@ -37,6 +37,8 @@ from advisor.gap.unnamed.remainder import (
     only_resemble,
     remainder,
 )
+from advisor.gap.unnamed.slosh import sloshing
+from advisor.gap.unnamed.steps import stepping
 from advisor.gap.unnamed.swing import swinging, swings_the_aircraft
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
@@ -74,12 +76,13 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     tolerance = tolerance_of(problem.flights)
     stages = as_measured(problem, stages)
     floor = _floor(problem, stages[-1], tolerance)
-    leftover = law or drifting(problem, stages)
+    leftover = law or drifting(problem, stages) or stepping(problem, stages[-1].fitted)
     leftover = leftover or _without_a_name(problem, stages, air, tolerance, floor)
     if leftover is None and air is not None and only_resemble(stages):
         stages = reduced_to(problem, stages, [])
         air, floor = moving_air(problem, stages[0].fitted), _floor(problem, stages[0], tolerance)
         leftover = _without_a_name(problem, stages, air, tolerance, floor)
+    leftover = leftover or sloshing(problem, stages[-1].fitted)
     file_model = _file_model(problem, stages[0].fitted)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, floor)

@@ -102,7 +102,7 @@ def variants(flights: Flights) -> list[Variant]:
             ("M_alpha_dot",),
             ((0.0,),),
             (0.02,),
-            ((-20.0, 0.0),),
+            ((-20.0, 20.0),),
             0.0,
             entries=("M_alpha_dot",),
             twin=_without_rate_of_alpha,

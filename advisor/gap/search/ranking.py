@@ -140,4 +140,8 @@ def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) 
         same = sum(c.variant.effect == other.variant.effect for other in chosen)
         if worth_it and promise(c) + c.belief >= least and same < (2 if gross else 1):
             chosen.append(c)
-    return chosen[: _GROSS_FITS if gross else _FITS]
+    chosen = chosen[: _GROSS_FITS if gross else _FITS]
+    # A twin of wrong numbers is as far from the plain model as they are: there the screening's sensitivities
+    # are another model's, and say little of how well it fits.
+    twins = [c for c in candidates if c.variant.twin is not None and c.belief >= LEAST_BELIEF]
+    return [*chosen, *(c for c in twins if c not in chosen)]

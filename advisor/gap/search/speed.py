@@ -1,9 +1,10 @@
 """The change of air speed: what ignoring it costs, and when it is the cause of a gap.
 
 The air speed swings in every flight, for a manoeuvre exchanges it for height. A simulator that is given the
-measured speed knows that; so it is a cause only where work was done on the aircraft, by an engine or
-by wind along the path, and its energy V²/2 + g h moved as much as its speed. Where accelerations were
-measured they must show that work, too, beyond what drag takes. Where it moved by little, they must have been
+measured speed knows that; so it is a cause only where work was done on the aircraft that nobody asked for,
+by a thrust that swings while the throttle rests: accelerations along the path show it. Where these or the
+throttle were not logged, the energy V²/2 + g h must have moved as much as the speed, and accelerations that
+were measured must show that work, too, beyond what drag takes. Where it moved by little, they must have been
 measured, and the air must be still.
 """
 
@@ -20,7 +21,8 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import SPEED_CHANGE, Flights
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.air import Air
-from advisor.gap.simulator.layout import HEIGHT, SPEED, THRUST
+from advisor.gap.search.work import felt_along, mean_speed, unasked, work
+from advisor.gap.simulator.layout import HEIGHT, SPEED
 from advisor.gravity import GRAVITY_M_S2
 
 _COSTS = 0.05
@@ -35,6 +37,14 @@ _PLAIN_WORK = 0.03
 """What the accelerations must show of it at most: thrust that swings for long passes for drag in part."""
 _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
+_UNASKED = 0.0056 * GRAVITY_M_S2
+"""Thrust that nobody asked for, m/s²: what drag and engines do beyond simple laws stays below it ..."""
+_UNASKED_WORK = 0.001
+"""... as does the speed that it makes within a manoeuvre, relative ..."""
+_UNASKED_SWING = 0.008
+"""... if the speed swings by more than this, relative ..."""
+_UNASKED_GUSTS = 2.0
+"""... and than this many times the air's own motion."""
 _GUSTS = 4.0
 """... and both, or energy and what the accelerations show, exceed this many times the air's own motion: an
 air speed indicator reads that, too."""
@@ -84,6 +94,8 @@ def speed_is_a_cause(
         return speed_costs(constant, last, floor) > _COSTS
     if constant is None or "height" not in problem.flights.has or (air is not None and air.gust):
         return False
+    if "throttle" in problem.flights.has and felt_along(problem.flights):
+        return speed_is_unasked(problem, constant, last, floor, air)
     speed, energy = swings(problem.flights)
     gusts = 0.0 if air is None else air.angle_std
     least = max(_EXCHANGED * speed, _LITTLE_WORK)
@@ -93,6 +105,22 @@ def speed_is_a_cause(
     # An air speed indicator reads gusts; accelerometers along the path do not.
     felt_more = min(max(speed, felt or 0.0), energy) > _GUSTS * gusts
     return worked and plain and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE
+
+
+def speed_is_unasked(
+    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: Air | None
+) -> bool:
+    """Whether a thrust that neither throttle nor drag accounts for swings the speed, and it matters."""
+    flights = problem.flights
+    if constant is None or not flights.speed_measured or (air is not None and air.gust):
+        return False
+    if not {"throttle", "height"} <= flights.has or speed_costs(constant, last, floor) < _IS_CAUSE:
+        return False
+    found = unasked(flights)
+    if found is None or found[0] < _UNASKED or found[1] < _UNASKED_WORK:
+        return False
+    gusts = 0.0 if air is None else air.angle_std
+    return swings(flights)[0] > max(_UNASKED_SWING, _UNASKED_GUSTS * gusts)
 
 
 def swings(flights: Flights) -> tuple[float, float]:
@@ -106,30 +134,5 @@ def swings(flights: Flights) -> tuple[float, float]:
         climbed = height - np.mean(height)
         speeds.append(float(np.std(speed)))
         energies.append(float(np.std(np.sqrt(np.maximum(speed**2 + 2.0 * GRAVITY_M_S2 * climbed, 0.0)))))
-    mean = float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))
+    mean = mean_speed(flights)
     return float(np.median(speeds)) / mean, float(np.median(energies)) / mean
-
-
-def work(flights: Flights) -> float | None:
-    """How much work beyond drag's would make the speed swing within a manoeuvre, relative to the mean speed.
-
-    What the accelerations show along the path is freed of what goes with V² and with lift squared over V²
-    (the two parts of a parabolic polar) in all manoeuvres alike, and integrated. None where they were not
-    measured.
-    """
-    if "a_x" not in flights.has or not {"alpha", "a_z"} <= set(flights.channels):
-        return None
-    along, drag = [], []
-    for flight in flights.flights:
-        speed, a_z = flight.slow[SPEED], flight.outputs["a_z"]
-        lift = np.interp((np.arange(flight.n) + 0.5) * flight.h, a_z.t, a_z.y)
-        along.append(GRAVITY_M_S2 * flight.slow[THRUST])
-        drag.append(np.column_stack([np.ones(flight.n), speed**2, (lift / speed) ** 2]))
-    X = np.vstack(drag)
-    scale = np.max(np.abs(X), axis=0)
-    parts = np.linalg.lstsq(X / scale, np.concatenate(along), rcond=None)[0] / scale
-    gained = [
-        np.std(np.cumsum(felt - taken @ parts) * flight.h)
-        for flight, felt, taken in zip(flights.flights, along, drag, strict=True)
-    ]
-    return float(np.mean(gained) / np.mean([np.mean(f.slow[SPEED]) for f in flights.flights]))

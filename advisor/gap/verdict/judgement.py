@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.kinematics import KinematicCheck
-from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.measure import whole_gap
+from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE, Cause, Value, Verdict
-from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause
+from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, speed_is_unasked
 from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.kept_out import without_air
@@ -73,11 +74,11 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
     outweighs = _speed_outweighs(e, max(beyond, removed))
     told = (named or bias or late or wrong_values) and not outweighs
-    if speed is not None and not told:
-        # Noise that the air makes hides nothing from a simulator that knows the air's motion.
-        still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
-        worked = speed_is_a_cause(problem, e.constant_speed, last, still, e.air)
-        apart = (speed, *apart) if worked else apart
+    # Noise that the air makes hides nothing from a simulator that knows the air's motion.
+    still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
+    judge_speed = speed_is_unasked if told else speed_is_a_cause
+    if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
+        apart = (speed, *apart)
     unexplained = e.leftover.share if e.leftover is not None else 0.0
     causes = tuple(
         with_doubt(cause, problem) for cause in causes_of(stages, floor, unexplained, problem.channels)
@@ -103,7 +104,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
         causes = tuple(replace(c, probability=_REFUTED * c.probability) for c in causes)
     before = e.file_model if e.file_model is not None else first
     if e.constant_speed is not None and speed in apart:
-        before = e.constant_speed
+        before = _at_constant_speed(problem, before, e.constant_speed, last)
     return Judgement(verdict, causes, apart, speed, bias, before, wrong_values)
 
 
@@ -112,6 +113,12 @@ def _beyond_fitted_numbers(e: Evidence) -> float:
     if e.file_model is None:
         return 0.0
     return float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2))
+
+
+def _at_constant_speed(problem: Problem, before: HeldOut, constant: HeldOut, last: HeldOut) -> HeldOut:
+    """What a simulator leaves that knows neither the named effects nor the air speed: both errors."""
+    errors = zip(before.left, constant.left, last.left, strict=True)
+    return held_out(problem, [plain + still - left for plain, still, left in errors])
 
 
 def _speed_outweighs(e: Evidence, others: float) -> bool:

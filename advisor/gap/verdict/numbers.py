@@ -89,15 +89,19 @@ def waterfall_of(
 ) -> tuple[tuple[str, float], ...]:
     """Effect and gap after adding it, in order.
 
-    A simulator that is given the measured speed has its change already: ``start`` is what that one leaves.
+    Every stage is given the air speed. Where its change is no cause, so is the simulator, and ``start`` is
+    what it leaves.
     """
     steps: list[tuple[str, float]] = []
-    if speed is not None and speed not in extra:
-        steps.append((speed.effect, start))
+    if speed is not None:
+        given = whole_gap(stages[0].held_out.mean_square, floor) if speed in extra else start
+        steps.append((speed.effect, given))
     for stage, following in pairwise(stages):
         assert stage.added is not None
         steps.append((stage.added.effect, whole_gap(following.held_out.mean_square, floor)))
     for cause in extra:
+        if cause is speed:
+            continue
         steps.append((cause.effect, min(cause.gap_after, steps[-1][1] if steps else start)))
     return tuple(steps)
 

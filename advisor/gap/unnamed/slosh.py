@@ -1,0 +1,107 @@
+"""Something that hangs in the aircraft and swings when it pitches: fuel, a load on a sling, a loose battery.
+
+A mass on a spring, hardly damped, is pulled by the pitch acceleration that is known, and its moment on the
+aircraft, in phase with its place and with its speed, has a response that is known, too. So little of it is
+needed to be seen that moving air, wrong numbers or a low-order filter take up the rest of it unnoticed.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import fft
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted, factor
+from advisor.gap.fitting.linear import pulse_response
+from advisor.gap.fitting.normal import solved
+from advisor.gap.fitting.problem import Problem, row_weights
+from advisor.gap.noise.probes import DYNAMIC
+from advisor.gap.records.flights import Flight
+from advisor.gap.simulator.layout import OUTPUTS
+from advisor.gap.unnamed.leftover import Leftover, instruments_of, noise_of
+
+_HZ = np.geomspace(0.7, 3.0, 14)
+"""Frequencies that are tried; a tank of a metre or two and a sling of some metres lie between."""
+_DAMPING = 0.05
+"""Damping ratio that is tried: wide enough that no frequency between two of these is missed ..."""
+_DAMPINGS = (0.02, 0.05, 0.1)
+"""... and those tried where something was found."""
+_GAIN = 45.0
+"""Log likelihood that it must bring: what models leave of other things brings 20."""
+_VISIBLE = 0.03
+"""Power of its response, beside the instruments' noise, from which on there is something to explain."""
+
+
+def sloshing(problem: Problem, last: Fitted) -> Leftover | None:
+    """A mass that the pitching sets swinging, with a note that says how fast; None without one."""
+    noise = noise_of(problem)
+    coarse = _gains(problem, last, noise, [(hz, _DAMPING) for hz in _HZ])
+    hz = max(coarse, key=lambda trial: trial[0])[2]
+    if not _HZ[0] < hz < _HZ[-1]:
+        return None
+    between = float(_HZ[1] / _HZ[0])
+    near = hz * between ** np.array([-0.67, -0.33, 0.0, 0.33, 0.67])
+    fine = _gains(problem, last, noise, [(float(f), z) for f in near for z in _DAMPINGS])
+    gain, share, hz, visible = max(fine, key=lambda trial: trial[0])
+    if gain < _GAIN or visible < _VISIBLE:
+        return None
+    note = (
+        f"Once set off, it swings, {hz:.2g} times a second: a mass that hangs in the aircraft, as fuel does."
+    )
+    return Leftover("moment_equation", share, (("moment_equation", 1.0),), note=note)
+
+
+def _gains(
+    problem: Problem, last: Fitted, noise: FloatArray, tried: Sequence[tuple[float, float]]
+) -> list[tuple[float, float, float, float]]:
+    """For each frequency and damping ratio: log likelihood, share explained, the frequency, and power.
+
+    All shared numbers of the model and each manoeuvre's own are free beside it. The power is that of the
+    response over that of the instruments' noise.
+    """
+    p = problem.driving(last.point)
+    shared = last.linear[0].shared.shape[1]
+    columns = 2 * len(tried)
+    gram = np.zeros((shared + columns + 1,) * 2)
+    squares, count = np.zeros((columns, columns)), 0
+    per_row = 1.0 / np.maximum(instruments_of(problem), 1e-12)
+    for i, flight in enumerate(problem.flights.flights):
+        seen = problem.read_grids(flight, _responses(problem, flight, p[i], tried), p[i])
+        w, linear = row_weights(problem, i, 1.0 / noise)[:, None], last.linear[i]
+        free = np.column_stack([linear.shared, problem.innovations(i, seen), last.innovations[i]]) * w
+        A = linear.own * w
+        AF = A.T @ free
+        gram = gram + free.T @ free - AF.T @ solved(factor(A, linear.prior), AF)
+        loud = seen * row_weights(problem, i, per_row)[:, None]
+        squares, count = squares + loud.T @ loud, count + len(seen)
+    pull, _ = problem.pull(last.point)
+    model, across = gram[:shared, :shared] + np.diag(pull), gram[:shared, shared:]
+    # Numbers of which this flight says nothing stay put.
+    size = np.sqrt(np.maximum(np.diag(model), 1e-300))
+    model, across = model / np.outer(size, size) + 1e-9 * np.eye(shared), across / size[:, None]
+    rest = gram[shared:, shared:] - across.T @ np.linalg.solve(model, across)
+    found = []
+    for number, (hz, _) in enumerate(tried):
+        pair = slice(2 * number, 2 * number + 2)
+        sizes = np.linalg.lstsq(rest[pair, pair], rest[pair, -1], rcond=1e-10)[0]
+        gain = 0.5 * float(sizes @ rest[pair, -1])
+        power = float(sizes @ squares[pair, pair] @ sizes) / count
+        found.append((gain, min(2.0 * gain / float(rest[-1, -1]), 1.0), hz, power))
+    return found
+
+
+def _responses(
+    problem: Problem, flight: Flight, p: FloatArray, tried: Sequence[tuple[float, float]]
+) -> list[FloatArray]:
+    """Two series on the grid for each mass: the response to a moment with its place, and with its speed."""
+    q = problem.fly(flight, p)[OUTPUTS.index("q")]
+    pulled = np.gradient(q, flight.h)
+    points = fft.next_fast_len(2 * len(q), real=True)
+    pulse = pulse_response(problem, flight, p, DYNAMIC["moment_equation"])
+    turned = fft.rfft(pulse, points) * fft.rfft(pulled, points) * flight.h**2
+    t = np.arange(len(q)) * flight.h
+    swung: list[FloatArray] = []
+    for hz, damping in tried:
+        ringing = np.exp((1j * np.sqrt(1.0 - damping**2) - damping) * 2.0 * np.pi * hz * t)
+        swung += [ringing.imag, ringing.real]
+    return [fft.irfft(turned * fft.rfft(course, points), points)[:, : len(q)] for course in swung]
