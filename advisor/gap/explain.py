@@ -82,7 +82,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         stages = reduced_to(problem, stages, [])
         air, floor = moving_air(problem, stages[0].fitted), _floor(problem, stages[0], tolerance)
         leftover = _without_a_name(problem, stages, air, tolerance, floor)
-    leftover = leftover or sloshing(problem, stages[-1].fitted)
+    if leftover is None and not (air is not None and air.gust):
+        leftover = sloshing(problem, stages[-1].fitted)
     file_model = _file_model(problem, stages[0].fitted)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, floor)

@@ -206,7 +206,11 @@ class Setup:
     engine_lag_s: float = 0.0
     """Of the thrust behind the throttle."""
     surge: float = 0.0
-    """Thrust that comes and goes at 0.6 Hz of itself, relative; no throttle shows it."""
+    """Thrust that comes and goes of itself, relative; no throttle shows it ..."""
+    surge_hz: float = 0.6
+    """... so many times a second."""
+    logs_throttle: bool = False
+    """Also where nobody moves it."""
     heights_m: tuple[float, ...] = ()
     """Height of each manoeuvre above ground, in turn, and logged; none: far above it."""
     gust_std: float = 0.0
@@ -283,7 +287,7 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
         wave = throttle_wave(setup, i, t, start)
         if setup.engine_lag_s:
             wave = _soften(wave, setup.engine_lag_s)
-        wave = wave + setup.surge * np.sin(2 * np.pi * 0.6 * t + i)
+        wave = wave + setup.surge * np.sin(2 * np.pi * setup.surge_hz * t + i)
         gust = _dryden(rng, n, setup.gust_std, body[4])
         if setup.gust_pulse and i % 3 == 1:
             at = start + rng.uniform(0.5, 5.0)
@@ -372,7 +376,7 @@ def _measure(setup, rng, i, t, command, out, start) -> Maneuver:
     if setup.heights_m:
         height = setup.heights_m[i % len(setup.heights_m)] + np.cumsum(out[6]) * H
         add("height", height, 10.0, 0.02)
-    if setup.thrust_amplitude:
+    if setup.thrust_amplitude or setup.logs_throttle:
         add("throttle", 0.4 * (1 + throttle_wave(setup, i, t, start)), rate, 0.0)
     span = Span(boot, boot + start, boot + start + 2.4, boot + t[-1] - 0.2, "3-2-1-1", (), "quiet")
     return Maneuver(i + 1, 0, span, channels, "MANUAL")

@@ -15,7 +15,8 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.merit import LEAST_GAIN
 from advisor.gap.search.ranking import judge
 from advisor.gap.search.screen import Screen
-from advisor.gap.search.speed import swings, work
+from advisor.gap.search.speed import swings
+from advisor.gap.search.work import unasked, work
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THRUST
 from advisor.gravity import GRAVITY_M_S2
 from tests.gap.generator import UAV, Setup, fly
@@ -75,10 +76,37 @@ def test_manoeuvres_flown_at_different_speeds_are_no_cause_where_the_speed_is_me
     assert found.waterfall == (("airspeed_variation", found.gap.before),)
 
 
-def test_an_engine_that_drives_the_speed_up_and_down_makes_it_the_cause():
-    setup = Setup(maneuvers=6, thrust_amplitude=4.0, heights_m=HEIGHTS, seed=202)
-    found = diagnose(fly(setup), Aircraft())
+def throttled(**thrust):
+    return fly(Setup(maneuvers=6, logs_throttle=True, heights_m=HEIGHTS, seed=202, **thrust))
+
+
+def test_an_engine_that_drives_the_speed_up_and_down_of_itself_makes_it_the_cause():
+    found = diagnose(throttled(surge=0.8, surge_hz=0.1), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
+    [(effect, left)] = found.waterfall
+    assert effect == "airspeed_variation"
+    assert left < 0.05 < found.gap.before
+
+
+@pytest.mark.parametrize("engine_lag_s", [0.0, 0.6])
+def test_a_speed_that_follows_the_throttle_is_no_cause(engine_lag_s):
+    found = diagnose(throttled(thrust_amplitude=0.8, engine_lag_s=engine_lag_s), Aircraft())
+    assert found.verdict == "none"
+
+
+def test_thrust_that_nobody_asked_for_is_what_neither_the_throttle_nor_drag_explains():
+    asked = unasked(prepare(throttled(thrust_amplitude=0.8, engine_lag_s=0.6), Aircraft()))
+    surging = prepare(throttled(surge=0.8, surge_hz=0.1), Aircraft())
+    assert unasked(surging)[0] > 5.0 * asked[0]
+    assert unasked(replace(surging, has=surging.has - {"a_x"})) is None
+
+
+def test_beside_a_named_effect_the_gap_is_what_a_simulator_leaves_that_knows_neither():
+    found = diagnose(throttled(surge=0.8, surge_hz=0.1, q_scale=0.08), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["pitch_rate_scale", "airspeed_variation"]
+    assert [effect for effect, _ in found.waterfall] == ["airspeed_variation", "pitch_rate_scale"]
+    left = [found.gap.before, *(after for _, after in found.waterfall)]
+    assert left == sorted(left, reverse=True)
 
 
 def test_forces_that_do_not_grow_with_the_speed_squared_are_named_with_their_power():

@@ -86,6 +86,15 @@ def test_fuel_that_the_stick_sets_swinging_is_a_moment_and_no_servo_that_hunts()
     assert any("Once set off, it swings" in note for note in found.notes)
 
 
+@pytest.mark.parametrize("gust_std", [0.0, 0.1])
+def test_a_little_fuel_is_known_by_what_pitching_does_to_it(gust_std):
+    """So little that a noise with a memory, or moving air, describes most of it."""
+    sloshing = fly(Setup(maneuvers=6, switches={"slosh": 0.008}, gust_std=gust_std, seed=39))
+    found = diagnose(sloshing, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "moment_equation")
+    assert any("Once set off, it swings, 0.9" in note for note in found.notes)
+
+
 def test_what_swung_before_the_stick_moved_was_not_set_off_by_it():
     found = diagnose(fly(Setup(maneuvers=6, switches={"beat": 0.01, "beat_hz": 0.9}, seed=42)), Aircraft())
     assert found.verdict == "unknown"

@@ -22,6 +22,7 @@ from advisor.gap.unnamed.leftover import (
     ranking_of,
 )
 from advisor.gap.unnamed.origin import ALIKE
+from advisor.gap.unnamed.slosh import sloshing
 from advisor.gap.unnamed.tone import Tone, tone_in
 
 _OF_PEAK_SWINGING = 0.005
@@ -32,6 +33,8 @@ _SET_OFF = 0.25
 """Power before the stick moves, over that after, below which it was the stick that set something swinging."""
 _SLOW_HZ, _NEARLY = 3.0, 0.9
 """No servo rings on for seconds below that; and share of the best gain that the moment must have then."""
+_MOSTLY = 0.7
+"""Share of the swing that a mass which pitching sets off must explain: then that is what it is."""
 _SAME_LINE = 0.1
 """How near to a named structure's frequency a swing is its own, relative ..."""
 _PLAINLY = 20.0
@@ -57,6 +60,11 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArra
     if best.block in SENSOR_CHANNELS and is_of_the_clock(problem, last, SENSOR_CHANNELS[best.block]):
         # What comes too early or too late swings with the motion, not by itself.
         return Leftover("timing", best.explained, ranking_of(tone.probes, "timing"))
+    if best.block in ALIKE and tone.hz < _SLOW_HZ:
+        hanging = sloshing(problem, last)
+        if hanging is not None and hanging.share > _MOSTLY * best.explained:
+            ranking = ranking_of(tone.probes, hanging.block)
+            return Leftover(hanging.block, best.explained, ranking, tone.power, hanging.note)
     set_off = best.block in ALIKE and _is_set_off(problem, last, noise, best.block)
     moment = next(p.gain for p in tone.probes if p.block == "moment_equation")
     a_mass = set_off and tone.hz < _SLOW_HZ and moment >= _NEARLY * best.gain

@@ -1,0 +1,43 @@
+"""An instrument that reads in steps is at fault, though in quiet it rests on one of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.diagnose import diagnose
+from advisor.gap.records.prepare import prepare
+from tests.gap.generator import Setup, fly
+
+
+def rounded(flown, channel, step, noise=0.0, seed=0):
+    """The same with one channel rounded to a step, and noise added after that."""
+    rng = np.random.default_rng(seed)
+
+    def read(c):
+        steps = step * np.round(c.y / step)
+        return replace(c, y=steps + noise * rng.standard_normal(len(c.y)))
+
+    return [replace(m, channels={**m.channels, channel: read(m.channels[channel])}) for m in flown]
+
+
+@pytest.mark.parametrize(
+    ("channel", "block", "step", "noise"),
+    [("q", "pitch_rate_sensor", 0.025, 0.002), ("alpha", "alpha_sensor", 0.006, 0.0005)],
+)
+def test_an_instrument_that_reads_in_steps_is_unknown_and_its_step_is_said(channel, block, step, noise):
+    flown = rounded(fly(Setup(maneuvers=6, noise=0.005, seed=71)), channel, step, noise)
+    found = diagnose(flown, Aircraft())
+    assert found.verdict == "unknown"
+    assert found.where.block == block
+    [said] = [note for note in found.notes if "steps of" in note]
+    percent = float(said.split("steps of ")[1].split(" %")[0])
+    flights = prepare(flown, Aircraft())
+    peak = flights.peaks[flights.channels.index(channel)]
+    assert percent == pytest.approx(100.0 * step / peak, rel=0.05)
+
+
+def test_steps_as_fine_as_a_messages_resolution_are_none():
+    flown = fly(Setup(maneuvers=6, noise=0.005, seed=71))
+    assert diagnose(rounded(flown, "q", 0.001), Aircraft()).verdict == "none"
