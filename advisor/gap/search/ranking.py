@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.belief import log_belief
 from advisor.gap.fitting.fit import Fitted, fit
@@ -27,6 +29,10 @@ _LACKING = 0.5
 """Share of what the best explains that a candidate may lack and still be followed to its end."""
 _GROSS = 300.0
 """Log likelihood promised by the best from which on the right model is far from where the screening looks."""
+_LEFT = 2.0
+"""How many times an instrument's white noise the best must leave, if its other starts are to be tried ..."""
+_SEVERAL = 2
+"""... and how many it must have to have more than one optimum."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
 """Full fits then, and the share of the best promise that earns one."""
@@ -70,11 +76,29 @@ def judge(
     for one in evened(problem, judged):
         best.setdefault(one.effect, one)
     first, *rest = best.values()
+    if first.gain > _GROSS and np.any(first.held_out.mean_square > (_LEFT * problem.flights.white) ** 2):
+        alike = [c.variant for c in candidates if c.variant.effect == first.effect]
+        fits = _restarted(problem, before, first.fitted, alike)
+        again = [addition(problem, before, held_before, f, first.effect, independent) for f in fits]
+        first = max((first, *again), key=lambda judged: judged.gain)
     if first.fitted.iterations == _ITERATIONS:
         # Far from the plain model the search is long; only what comes out first is followed to its end.
         ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)
         first = addition(problem, before, held_before, ended, first.effect, independent)
     return [first, *rest]
+
+
+def _restarted(problem: Problem, before: Fitted, best: Fitted, variants: Sequence[Variant]) -> list[Fitted]:
+    """Full fits from every start: of a kink, a screening with the plain model sees little."""
+    fits: list[Fitted] = []
+    for variant in variants:
+        if len(variant.starts) < _SEVERAL or variant.sides is not None:
+            continue
+        for start in variant.starts:
+            point = before.point.with_effect(variant, start)
+            lost = _no_rival(before, [best, *fits])
+            fits.append(fit(problem, point, before.noise, _TO_THE_END, 0.5, beaten_by=lost))
+    return fits
 
 
 def _no_rival(before: Fitted, fits: Sequence[Fitted]) -> float:

@@ -28,6 +28,9 @@ _DAMPINGS = (0.02, 0.05, 0.1)
 """... and those tried where something was found."""
 _GAIN = 45.0
 """Log likelihood that it must bring: what models leave of other things brings 20."""
+_WIDTH, _ABOVE = 3, 4.0
+"""Steps of frequency to either side that a resonance shows in, and by how much it exceeds all others: moving
+air brings as much by chance here and there."""
 _VISIBLE = 0.03
 """Power of its response, beside the instruments' noise, from which on there is something to explain."""
 
@@ -36,9 +39,12 @@ def sloshing(problem: Problem, last: Fitted) -> Leftover | None:
     """A mass that the pitching sets swinging, with a note that says how fast; None without one."""
     noise = noise_of(problem)
     coarse = _gains(problem, last, noise, [(hz, _DAMPING) for hz in _HZ])
-    hz = max(coarse, key=lambda trial: trial[0])[2]
-    if not _HZ[0] < hz < _HZ[-1]:
+    gains = [trial[0] for trial in coarse]
+    at = int(np.argmax(gains))
+    off = gains[: max(at - _WIDTH, 0)] + gains[at + _WIDTH + 1 :]
+    if at in (0, len(gains) - 1) or gains[at] < _ABOVE * max(off):
         return None
+    hz = float(_HZ[at])
     between = float(_HZ[1] / _HZ[0])
     near = hz * between ** np.array([-0.67, -0.33, 0.0, 0.33, 0.67])
     fine = _gains(problem, last, noise, [(float(f), z) for f in near for z in _DAMPINGS])
