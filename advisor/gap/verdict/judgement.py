@@ -27,7 +27,10 @@ _REFUTED, _RIVAL = 0.05, 0.2
 """What an alternative keeps of its probability beside an answer that makes it needless, and beside a mere
 companion of what was named."""
 _BEHIND = 0.08
-"""The same of everything behind an offset that makes the larger part of the gap."""
+"""The same of everything behind what makes the larger part of the gap, an offset or wrong numbers."""
+_MOSTLY = 0.98
+"""Share of the gap that wrong numbers make, from which on they are the answer whatever is there besides: what
+leaves the file right, and is imitated by other numbers, is imitated by nine tenths at most."""
 _HALF = 0.5
 """The same of all that was named where something without a name is there besides."""
 _AIR_DOUBT = 0.25
@@ -91,9 +94,11 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     if speed is not None and speed in apart and outweighs:
         causes = _put_first(causes, speed)
     verdict: Verdict = "none"
+    # An aircraft may bend a little besides: what makes the gap is the answer.
+    mostly = wrong_values and beyond > _MOSTLY * (beyond + max(removed, 0.0))
     if unknown:
         verdict = "unknown"
-    elif wrong_values and not (named or bias or late or speed in apart):
+    elif wrong_values and (mostly or not named) and not (bias or late or speed in apart):
         # Moving air may be there besides: it comes with the day, wrong numbers stay.
         verdict = "parameters"
     elif any(c.present for c in causes):
@@ -101,7 +106,8 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     if unknown:
         causes = tuple(replace(c, probability=_HALF * c.probability) for c in causes)
     if verdict in ("none", "parameters"):
-        causes = tuple(replace(c, probability=_REFUTED * c.probability) for c in causes)
+        keeps = _BEHIND if named else _REFUTED
+        causes = tuple(replace(c, probability=keeps * c.probability) for c in causes)
     before = e.file_model if e.file_model is not None else first
     if e.constant_speed is not None and speed in apart:
         before = _at_constant_speed(problem, before, e.constant_speed, last)

@@ -118,7 +118,11 @@ def sentence_of(
     if verdict == "parameters":
         if shrink is not None and shrink.beyond_air_percent is not None:
             removed = f"{shrink.beyond_air_percent:.0f} % of the gap, and the air makes the rest"
-        return f"The simulator has the right structure and wrong numbers: the fitted eight remove {removed}."
+        of_the_numbers = f"wrong numbers: the fitted eight remove {removed}"
+        if shrink is not None and shrink.by_numbers_percent is not None and present:
+            besides = ", ".join(spelled(c.effect) for c in present)
+            return f"The simulator has {of_the_numbers}; little is left to {besides}."
+        return f"The simulator has the right structure and {of_the_numbers}."
     if verdict == "unknown":
         tried = next((c for c in causes if c.probability > 0.02), None)
         near = f"; nearest, but not enough: {spelled(tried.effect)}" if tried is not None else ""
