@@ -55,14 +55,14 @@ SWITCHES = {
     "speed_power": 0.0, "power_from": 22.0, "beat": 0.0, "beat_hz": 1.3,
     "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0, "change_t": 1e9, "cg_after": 0.0, "mass_after": 0.0,
     "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9, "stop_low": -9.0, "stop_high": 9.0,
-    "ring_hz": 0.0, "ring_zeta": 0.2,
+    "ring_hz": 0.0, "ring_zeta": 0.2, "stall_at": 9.0, "stall_sharpness": 40.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
  MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST, RINGHZ,
- RINGZETA) = range(len(SWITCHES))  # fmt: skip
+ RINGZETA, STALLAT, STALLS) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -125,9 +125,11 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
         thrust = trim_thrust * (1.0 + thrust_wave[k])
         # The tail stands in the propeller's wash: thrust over the disk adds to its dynamic pressure.
         wash = 1.0 + sw[WASH] * (thrust / trim_thrust * (speed / V) ** 2 - 1.0)
+        # Kirchhoff's flow: the part of the wing along which it is attached.
+        attached = 0.5 * (1.0 - np.tanh(sw[STALLS] * (ae - sw[STALLAT])))
         cl = (
             cl0
-            + cla * (1.0 - ice) * (1.0 + near) * ae
+            + cla * (1.0 - ice) * (1.0 + near) * ae * (0.5 * (1.0 + np.sqrt(attached))) ** 2
             + sw[CLA2] * (da * da - d0 * d0)
             + sw[CLA3] * (da**3 - d0**3)
             + clq * q * chord / (2 * V)
