@@ -71,6 +71,19 @@ def test_a_file_without_the_terms_at_zero_angles_has_wrong_numbers_all_the_same(
     assert diagnose(flown, wrong).verdict == "parameters"
 
 
+def test_wrong_numbers_that_make_nearly_all_of_a_gap_are_the_answer_though_a_moment_bends_a_little(sound):
+    _, right = sound
+    model = {name: value.value for name, value in right.model.items()}
+    wrong = Aircraft(model={**model, "M_alpha": 0.6 * model["M_alpha"], "M_q": 1.3 * model["M_q"]})
+    found = diagnose(fly(Setup(maneuvers=6, switches={"cm_a2": 0.8}, seed=5)), wrong)
+    assert [c.effect for c in found.causes if c.present] == ["nonlinear_pitching_moment"]
+    assert found.verdict == "parameters"
+    assert "wrong numbers" in found.sentence
+    assert "nonlinear pitching moment" in found.sentence
+    assert found.causes[0].probability < 0.1
+    assert found.shrink.by_numbers_percent > 98.0
+
+
 def test_beside_something_unknown_what_was_named_stays_with_half_its_probability():
     setup = Setup(maneuvers=6, switches={"delay": 0.06, "beat": 0.004}, seed=21)
     found = diagnose(fly(setup), Aircraft())

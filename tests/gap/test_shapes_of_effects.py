@@ -9,7 +9,7 @@ from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
-from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
+from tests.gap.generator import LIGHT_AIRCRAFT, Airframe, Setup, fly
 
 
 @pytest.mark.parametrize(("kink_rad", "seed"), [(0.07, 11), (0.10, 12)])
@@ -18,6 +18,20 @@ def test_flow_that_separates_within_a_degree_or_two_is_lift_that_curves_and_no_g
     assert found.verdict == "effect"
     assert found.causes[0].effect == "nonlinear_lift"
     assert found.shrink.percent > 90.0
+
+
+@pytest.mark.parametrize(
+    ("stall_rad", "gust_std", "seed"),
+    [(0.08, 0.0, 11), pytest.param(0.075, 0.1, 12, marks=pytest.mark.study)],
+)
+def test_a_wing_that_stalls_deeply_is_known_though_a_screening_sees_little_of_the_kink(
+    stall_rad, gust_std, seed
+):
+    pulled = Airframe(amplitude_deg=5.0)
+    setup = Setup(pulled, {"stall_at": stall_rad}, maneuvers=6, gust_std=gust_std, seed=seed)
+    found = diagnose(fly(setup), Aircraft())
+    assert (found.verdict, found.causes[0].effect) == ("effect", "nonlinear_lift")
+    assert found.causes[0].parameters["stall_rad"].value == pytest.approx(stall_rad, abs=0.02)
 
 
 def test_a_lift_slope_that_grows_near_the_ground_is_the_ground():

@@ -123,10 +123,14 @@ def still_file():
     return Aircraft(model={name: still.model[name].value for name in PARAMETERS})
 
 
-def test_the_files_derivatives_tell_a_moment_of_the_angles_rate_from_three_other_derivatives(still_file):
+@pytest.mark.parametrize("cm_alphadot", [-8.0, -25.0, 6.0])
+def test_the_files_derivatives_tell_a_moment_of_the_angles_rate_from_three_other_derivatives(
+    still_file, cm_alphadot
+):
     """In still air at constant speed the two are the same motion."""
-    found = diagnose(fly(Setup(maneuvers=6, switches={"cm_alphadot": -8.0}, seed=25)), still_file)
-    assert found.causes[0].effect == "alpha_dot"
+    found = diagnose(fly(Setup(maneuvers=6, switches={"cm_alphadot": cm_alphadot}, seed=25)), still_file)
+    assert (found.verdict, found.causes[0].effect) == ("effect", "alpha_dot")
+    assert found.causes[0].parameters["M_alpha_dot"].value * cm_alphadot > 0.0
 
 
 @pytest.mark.parametrize("which", [*range(6), slice(None)])
