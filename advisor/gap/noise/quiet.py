@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, rms_of
+from advisor.gap.fitting.fit import Fitted, rms_of, solve_blocks
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.linear import as_measured
 from advisor.gap.fitting.problem import Point, Problem, row_weights
@@ -98,12 +98,23 @@ def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool
     """
     noise = np.array([float(np.hypot(still.white[c], still.coloured[c]))
                       for c in (CHANNELS.index(name) for name in problem.channels)])  # fmt: skip
-    power = np.mean(mean_squares(problem, fitted.left) / noise**2, axis=1)
+    power = np.mean(mean_squares(problem, _begun_anew(problem, fitted, noise)) / noise**2, axis=1)
     louder = power / np.percentile(power, 25.0)
     likelier = {int(i): _likelier(problem, fitted, int(i), noise) for i in np.flatnonzero(louder > _FAINT)}
     gusty = {i for i, by in likelier.items() if by > (_MARGIN if louder[i] > _LONE else _FAINT_MARGIN)}
     suspects = {i for i in likelier if louder[i] > _LONE} if first_look and gusty else set()
     return {i: replace(still, gust=ANY_GUST) for i in sorted(gusty | suspects)}
+
+
+def _begun_anew(problem: Problem, fitted: Fitted, noise: FloatArray) -> list[FloatArray]:
+    """Per manoeuvre, stacked channels: what is left with its own numbers as the instruments have them.
+
+    To a filter that allows for any gust an initial state is worth nothing: it may be anywhere after a fit.
+    """
+    problem, fitted = unfiltered(problem, fitted)
+    owns = solve_blocks(problem, fitted.linear, 1.0 / noise, fitted.point).free
+    still = np.zeros(len(fitted.point.shared))
+    return [block.after(still, own) for block, own in zip(fitted.linear, owns, strict=True)]
 
 
 def _likelier(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> float:
