@@ -41,10 +41,12 @@ _UNASKED = 0.0056 * GRAVITY_M_S2
 """Thrust that nobody asked for, m/s²: what drag and engines do beyond simple laws stays below it ..."""
 _UNASKED_WORK = 0.001
 """... as does the speed that it makes within a manoeuvre, relative ..."""
-_UNASKED_SWING = 0.008
+_UNASKED_SWING = 0.007
 """... if the speed swings by more than this, relative ..."""
-_UNASKED_GUSTS = 2.0
-"""... and than this many times the air's own motion."""
+_UNASKED_GUSTS = 1.5
+"""... and than this many times the air's own motion ..."""
+_UNASKED_COSTS = 0.3
+"""... and a simulator at constant speed leaves this much: the cause is plain."""
 _GUSTS = 4.0
 """... and both, or energy and what the accelerations show, exceed this many times the air's own motion: an
 air speed indicator reads that, too."""
@@ -114,7 +116,7 @@ def speed_is_unasked(
     flights = problem.flights
     if constant is None or not flights.speed_measured or (air is not None and air.gust):
         return False
-    if not {"throttle", "height"} <= flights.has or speed_costs(constant, last, floor) < _IS_CAUSE:
+    if not {"throttle", "height"} <= flights.has or speed_costs(constant, last, floor) < _UNASKED_COSTS:
         return False
     found = unasked(flights)
     if found is None or found[0] < _UNASKED or found[1] < _UNASKED_WORK:
