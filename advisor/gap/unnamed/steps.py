@@ -27,7 +27,7 @@ _DEPTH = 0.4
 def stepping(problem: Problem, last: Fitted) -> Leftover | None:
     """The instrument that reads in steps, with a note that says how coarse; None where none does."""
     found = [(_steps(problem, last, c), c) for c in problem.flights.telling]
-    (gain, step, power), c = max(found, key=lambda pair: pair[0][0])
+    (gain, step, power), c = max(found, key=lambda pair: pair[0][0], default=((0.0, 0.0, 0.0), 0))
     if gain < _GAIN:
         return None
     block = next(b for b, channel in SENSOR_CHANNELS.items() if channel == problem.channels[c])
