@@ -51,6 +51,9 @@ def _steps(problem: Problem, last: Fitted, channel: int) -> tuple[float, float, 
     error = np.concatenate([e - np.mean(e) for e in errors])
     at_all = max(float(error @ error), 1e-300)
     best = (0.0, 0.0, 0.0)
+    if at_all < len(error) * (0.5 * OF_PEAK * peak) ** 2:
+        # Half of the finest step's own error, and less: other numbers take up a part of it.
+        return best
     for step in peak * np.geomspace(_FINEST, _COARSEST, _TRIED):
         phase = 2.0 * np.pi * model / step
         waves = np.column_stack([np.cos(phase), np.sin(phase)])
