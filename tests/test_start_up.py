@@ -25,6 +25,13 @@ def test_help_imports_no_heavy_library(arguments: list[str]) -> None:
     assert not imported.intersection(HEAVY)
 
 
+@pytest.mark.parametrize("module", ["advisor.diagnosis", "advisor.oem.estimator"])
+def test_numbers_wait_for_no_library_that_takes_longer_to_import_than_its_use(module: str) -> None:
+    imported = modules_after(f"import {module}")
+    assert "scipy.linalg" in imported
+    assert not imported.intersection({"scipy.signal", "scipy.stats", "scipy.interpolate"})
+
+
 def test_every_command_has_help_with_an_example() -> None:
     from click.testing import CliRunner
 

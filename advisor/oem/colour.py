@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 from scipy.optimize import minimize
-from scipy.signal import lfilter
 
 from advisor.flight.messages import FloatArray
+from advisor.oem.recursion import accumulated
 from advisor.oem.whitening import schedule, whiten
 
 MEMORIES = (-0.4, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.993)
@@ -124,7 +124,7 @@ def product(rows: FloatArray, colour: Colour) -> FloatArray:
     square = rows.T @ rows
     if colour.memory == 0.0:
         return colour.variance * square
-    forward = rows.T @ lfilter([1.0], [1.0, -colour.memory], rows, axis=0)
+    forward = rows.T @ accumulated(rows, colour.memory)
     total: FloatArray = colour.variance * (forward + forward.T - square + colour.white_share * square)
     return total
 

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.signal import lfilter
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.records.prepare import smooth
 from advisor.gap.simulator.layout import SPEED, THROTTLE, THRUST
 from advisor.gravity import GRAVITY_M_S2
+from advisor.oem.recursion import accumulated
 
 _ENGINES_S = (0.4, 1.5)
 """Lags of engines; those between are nearly mixtures of the two."""
@@ -72,11 +72,9 @@ def _lift(flight: Flight) -> FloatArray:
 
 def _throttle(flight: Flight) -> list[FloatArray]:
     """Each of shape (n,): the throttle, and what engines make of it that follow late."""
-    asked, followed = flight.slow[THROTTLE], []
-    for lag_s in _ENGINES_S:
-        keeps = float(np.exp(-flight.h / lag_s))
-        followed.append(np.asarray(lfilter([1.0 - keeps], [1.0, -keeps], asked)))
-    return [asked, *followed]
+    asked = flight.slow[THROTTLE]
+    keeps = [float(np.exp(-flight.h / lag_s)) for lag_s in _ENGINES_S]
+    return [asked, *(asked[0] + (1.0 - k) * accumulated(asked - asked[0], k) for k in keeps)]
 
 
 def _drag(flights: Flights) -> list[FloatArray]:

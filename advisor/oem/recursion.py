@@ -1,0 +1,17 @@
+"""What a first-order memory makes of samples: y_k = φ·y_(k-1) + x_k.
+
+A system of equations with two diagonals, solved as one: ``scipy.signal`` would do it, too, but takes
+half a second to import, a tenth of what a diagnosis may take.
+"""
+
+import numpy as np
+from scipy.linalg import solve_banded
+
+from advisor.flight.messages import FloatArray
+
+
+def accumulated(samples: FloatArray, memory: float) -> FloatArray:
+    """y, of the shape of ``samples`` (n,) or (n, k), along its first axis; nothing came before."""
+    diagonals = np.ones((2, len(samples)))
+    diagonals[1] = -memory
+    return np.asarray(solve_banded((1, 0), diagonals, samples, check_finite=False))
