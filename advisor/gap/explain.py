@@ -21,7 +21,8 @@ from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.search.air import Air, moving_air
 from advisor.gap.search.command import is_likelier_held, may_be_held, read_as_held
 from advisor.gap.search.speed import at_constant_speed
-from advisor.gap.search.waterfall import Progress, Stage, as_measured, build_up, reduced_to
+from advisor.gap.search.stage import Stage
+from advisor.gap.search.waterfall import Progress, as_measured, build_up, reduced_to
 from advisor.gap.unnamed.drift import drifting
 from advisor.gap.unnamed.leftover import (
     Leftover,

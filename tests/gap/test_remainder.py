@@ -14,7 +14,7 @@ from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.score import addition
-from advisor.gap.search.waterfall import Stage
+from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.unnamed.remainder import (
     is_all_named,

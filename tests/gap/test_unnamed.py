@@ -116,6 +116,13 @@ def test_two_effects_are_both_named_the_larger_one_first():
     assert present == ["transport_delay", "alpha_scale"]
 
 
+def test_three_streams_that_are_late_alike_are_a_late_command_and_one_stream_that_is_early():
+    late = Setup(maneuvers=6, noise=0.005, switches={"delay": 0.06}, skew={"alpha": -0.06}, seed=40)
+    found = diagnose(fly(late), Aircraft())
+    present = [c.effect for c in found.causes if c.present]
+    assert present == ["transport_delay", "alpha_skew"]
+
+
 @pytest.fixture(scope="module")
 def still_file():
     """An aircraft file whose derivatives are right."""

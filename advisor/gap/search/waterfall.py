@@ -1,50 +1,30 @@
 """One effect after another, until nothing more helps on manoeuvres kept out of the fit."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted, fit
-from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.holdout import hold_out, measured_in
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import shared_std, worth
-from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN, Judged
+from advisor.gap.search.companions import one_early, other_companion
+from advisor.gap.search.merit import LEAST_BELIEF, Judged
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
+from advisor.gap.search.stage import Stage, only, rebuilt
 
 MOST_EFFECTS = 3
 """More names in one flight are hardly ever right."""
-_NEAR = 0.5
-"""Share of the best candidate's gain from which on another one is a rival."""
 _CERTAIN = 100.0
 """Log likelihood from which on an effect too small for a name is worth a look at what shows beside it."""
-_CLEARLY = 20.0
-"""Cost by which another companion must beat the one that was found first."""
 _OPEN = 0.1
 """What counts of an effect that is something to measure rather; see ``_rank_of``."""
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share done, 0 to 1."""
-
-
-@dataclass(frozen=True)
-class Stage:
-    """The model at one stage, and what was thought of adding to it."""
-
-    fitted: Fitted
-    held_out: HeldOut
-    considered: tuple[Judged, ...]
-    """Candidates for the next addition, best first."""
-    added: Judged | None
-    """What was added to this stage's model to reach the next one."""
-
-    @property
-    def rivals(self) -> frozenset[str]:
-        """Effects that gained at least half as much as the best."""
-        best = self.considered[0].gain if self.considered else 0.0
-        return frozenset(judged.effect for judged in self.considered if judged.gain > _NEAR * best)
 
 
 def build_up(
@@ -64,7 +44,9 @@ def build_up(
         if added is None:
             break
         fitted, held = added.fitted, added.held_out
-    return in_full(problem, settled(problem, _other_companion(problem, stages, variants)))
+    for better in (other_companion, one_early):
+        stages = better(problem, stages, variants)
+    return in_full(problem, settled(problem, stages))
 
 
 def _leading_on(
@@ -115,41 +97,6 @@ def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:
     return [s if s.added is None else replace(s, added=restated(s.added)) for s in stages]
 
 
-def _other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
-    """With two effects in the model, is the first still the best companion of the second?
-
-    A single effect fitted to the sum of two may be neither; once one of them is right the other shows.
-    """
-    if len(stages) != 3:
-        return stages
-    first, second = stages[0].added, stages[1].added
-    if first is None or second is None:
-        return stages
-    alone = _only(problem, second.fitted, [second.effect])
-    held = hold_out(problem, alone)
-    companions = judge(problem, alone, held, candidates_for(problem, alone, variants))
-    best = next((j for j in companions if j.worth_naming), None)
-    same = next((j for j in companions if j.effect == first.effect), None)
-    if best is None or best.effect == first.effect or not _clearly_better(best, same, second):
-        return stages
-    independent = worth(problem, best.fitted.innovations)
-    only_second = addition(problem, stages[0].fitted, stages[0].held_out, alone, second.effect, independent)
-    after = judge(problem, best.fitted, best.held_out, candidates_for(problem, best.fitted, variants))
-    return [
-        # Its rivals were those beside the first, which the companion has replaced.
-        Stage(stages[0].fitted, stages[0].held_out, stages[1].considered, only_second),
-        Stage(alone, held, tuple(companions), best),
-        Stage(best.fitted, best.held_out, tuple(after), None),
-    ]
-
-
-def _clearly_better(best: Judged, same: Judged | None, second: Judged) -> bool:
-    """Whether a companion beats the first effect beside the second: by what it brings, or by its fit."""
-    if same is not None:
-        return best.gain > same.gain + LEAST_GAIN
-    return best.fitted.cost < second.fitted.cost - _CLEARLY
-
-
 def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
     """Effects in the order of what the full model loses without each; those it does not miss are dropped.
 
@@ -161,7 +108,7 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
     names = list(considered)
     while len(names) > 1:
         independent = worth(problem, full.innovations)
-        without = {name: _only(problem, full, [n for n in names if n != name]) for name in names}
+        without = {name: only(problem, full, [n for n in names if n != name]) for name in names}
         missed = {
             name: addition(problem, fewer, hold_out(problem, fewer), full, name, independent)
             for name, fewer in without.items()
@@ -176,7 +123,7 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
         return stages
     if len(names) == 1 and not _stands_alone(problem, stages[0], full, names[0]):
         return [replace(stages[0], added=None)]
-    return _rebuilt(problem, stages[0], names, full, considered, stages[-1].considered)
+    return rebuilt(problem, stages[0], names, full, considered, stages[-1].considered)
 
 
 def _stands_alone(problem: Problem, first: Stage, full: Fitted, name: str) -> bool:
@@ -199,30 +146,5 @@ def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) 
     considered = {s.added.effect: s.considered for s in stages if s.added is not None}
     if list(names) == list(considered):
         return list(stages)
-    full = _only(problem, stages[-1].fitted, names)
-    return in_full(problem, _rebuilt(problem, stages[0], names, full, considered, stages[-1].considered))
-
-
-def _rebuilt(
-    problem: Problem,
-    first: Stage,
-    names: Sequence[str],
-    full: Fitted,
-    considered: Mapping[str, tuple[Judged, ...]],
-    last: tuple[Judged, ...],
-) -> list[Stage]:
-    """Stages of the effects in another order."""
-    independent = worth(problem, full.innovations)
-    before, held = first.fitted, first.held_out
-    stages = []
-    for n, name in enumerate(names, 1):
-        fitted = full if n == len(names) else _only(problem, full, names[:n])
-        added = addition(problem, before, held, fitted, name, independent)
-        stages.append(Stage(before, held, considered[name], added))
-        before, held = fitted, added.held_out
-    return [*stages, Stage(before, held, last, None)]
-
-
-def _only(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
-    """The model with some of its effects, fitted."""
-    return fit(problem, full.point.with_only(names), full.noise, iterations=8, tolerance=0.5)
+    full = only(problem, stages[-1].fitted, names)
+    return in_full(problem, rebuilt(problem, stages[0], names, full, considered, stages[-1].considered))

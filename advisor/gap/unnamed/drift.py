@@ -16,7 +16,7 @@ from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.records.flights import Flights
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.score import addition
-from advisor.gap.search.waterfall import Stage
+from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import ENTRIES
 from advisor.gap.unnamed.leftover import Leftover
 

@@ -11,7 +11,7 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.merit import LEAST_BELIEF
-from advisor.gap.search.waterfall import Stage
+from advisor.gap.search.stage import Stage
 from advisor.gap.unnamed.leftover import Leftover, placed
 
 _MOST = 0.5

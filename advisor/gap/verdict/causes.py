@@ -13,8 +13,8 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS, Judged
 from advisor.gap.search.score import TIME_DOUBT_S, TIMES
+from advisor.gap.search.stage import Stage
 from advisor.gap.search.ties import tied_with
-from advisor.gap.search.waterfall import Stage
 
 TEMPERATURE = 3.0
 """Log likelihoods of a model that is itself approximate count for less: divided by this before they

@@ -6,7 +6,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.search.air import Air
-from advisor.gap.search.waterfall import Stage
+from advisor.gap.search.stage import Stage
 from advisor.gap.unnamed.leftover import Leftover
 from advisor.gap.unnamed.true_speed import TrueSpeed
 from advisor.gap.unnamed.weight import Weight

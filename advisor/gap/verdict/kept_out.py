@@ -12,7 +12,7 @@ from advisor.gap.records.flights import Measured
 from advisor.gap.search.air import Air
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.speed import at_constant_speed
-from advisor.gap.search.waterfall import Stage
+from advisor.gap.search.stage import Stage
 from advisor.gap.verdict.evidence import Evidence
 
 

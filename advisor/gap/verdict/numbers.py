@@ -14,7 +14,7 @@ from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interv
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
-from advisor.gap.search.waterfall import Stage
+from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.unnamed.remainder import removed_beyond_air
 from advisor.gap.verdict.evidence import Evidence

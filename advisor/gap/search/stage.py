@@ -1,0 +1,57 @@
+"""One stage of the waterfall: a model, what was thought of adding to it, and what was added."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import worth
+from advisor.gap.search.merit import Judged
+from advisor.gap.search.score import addition
+
+_NEAR = 0.5
+"""Share of the best candidate's gain from which on another one is a rival."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """The model at one stage, and what was thought of adding to it."""
+
+    fitted: Fitted
+    held_out: HeldOut
+    considered: tuple[Judged, ...]
+    """Candidates for the next addition, best first."""
+    added: Judged | None
+    """What was added to this stage's model to reach the next one."""
+
+    @property
+    def rivals(self) -> frozenset[str]:
+        """Effects that gained at least half as much as the best."""
+        best = self.considered[0].gain if self.considered else 0.0
+        return frozenset(judged.effect for judged in self.considered if judged.gain > _NEAR * best)
+
+
+def rebuilt(
+    problem: Problem,
+    first: Stage,
+    names: Sequence[str],
+    full: Fitted,
+    considered: Mapping[str, tuple[Judged, ...]],
+    last: tuple[Judged, ...],
+) -> list[Stage]:
+    """Stages of the effects in another order."""
+    independent = worth(problem, full.innovations)
+    before, held = first.fitted, first.held_out
+    stages = []
+    for n, name in enumerate(names, 1):
+        fitted = full if n == len(names) else only(problem, full, names[:n])
+        added = addition(problem, before, held, fitted, name, independent)
+        stages.append(Stage(before, held, considered[name], added))
+        before, held = fitted, added.held_out
+    return [*stages, Stage(before, held, last, None)]
+
+
+def only(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
+    """The model with some of its effects, fitted."""
+    return fit(problem, full.point.with_only(names), full.noise, iterations=8, tolerance=0.5)
