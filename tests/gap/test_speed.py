@@ -19,6 +19,7 @@ from advisor.gap.search.speed import swings
 from advisor.gap.search.work import unasked, work
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THRUST
 from advisor.gravity import GRAVITY_M_S2
+from advisor.oem.recursion import accumulated
 from tests.gap.generator import UAV, Setup, fly
 
 HEIGHTS = (80.0, 90.0, 85.0)
@@ -97,8 +98,17 @@ def test_a_speed_that_follows_the_throttle_is_no_cause(engine_lag_s):
 def test_thrust_that_nobody_asked_for_is_what_neither_the_throttle_nor_drag_explains():
     asked = unasked(prepare(throttled(thrust_amplitude=0.8, engine_lag_s=0.6), Aircraft()))
     surging = prepare(throttled(surge=0.8, surge_hz=0.1), Aircraft())
-    assert unasked(surging)[0] > 5.0 * asked[0]
+    assert unasked(surging) > 5.0 * asked
     assert unasked(replace(surging, has=surging.has - {"a_x"})) is None
+
+
+def test_noise_of_an_accelerometer_is_no_thrust_though_the_speed_swings():
+    noisy = prepare(throttled(thrust_amplitude=0.8, engine_lag_s=0.6), Aircraft())
+    rng, noise = np.random.default_rng(5), 0.03
+    for flight in noisy.flights:
+        wandering = accumulated(rng.standard_normal(flight.n), np.exp(-flight.h / 0.5))
+        flight.slow[THRUST] += noise * wandering / np.std(wandering)
+    assert unasked(noisy) < 0.1 * noise * GRAVITY_M_S2
 
 
 def test_beside_a_named_effect_the_gap_is_what_a_simulator_leaves_that_knows_neither():

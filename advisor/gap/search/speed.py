@@ -21,8 +21,8 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import SPEED_CHANGE, Flights
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.air import Air
-from advisor.gap.search.work import felt_along, mean_speed, unasked, work
-from advisor.gap.simulator.layout import HEIGHT, SPEED
+from advisor.gap.search.work import energy_speed, felt_along, mean_speed, unasked, work
+from advisor.gap.simulator.layout import SPEED
 from advisor.gravity import GRAVITY_M_S2
 
 _COSTS = 0.05
@@ -37,10 +37,8 @@ _PLAIN_WORK = 0.03
 """What the accelerations must show of it at most: thrust that swings for long passes for drag in part."""
 _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
-_UNASKED = 0.0056 * GRAVITY_M_S2
+_UNASKED = 0.003 * GRAVITY_M_S2
 """Thrust that nobody asked for, m/s²: what drag and engines do beyond simple laws stays below it ..."""
-_UNASKED_WORK = 0.001
-"""... as does the speed that it makes within a manoeuvre, relative ..."""
 _UNASKED_SWING = 0.007
 """... if the speed swings by more than this, relative ..."""
 _UNASKED_GUSTS = 1.5
@@ -116,10 +114,10 @@ def speed_is_unasked(
     flights = problem.flights
     if constant is None or not flights.speed_measured or (air is not None and air.gust):
         return False
-    if not {"throttle", "height"} <= flights.has or speed_costs(constant, last, floor) < _UNASKED_COSTS:
+    if "throttle" not in flights.has or speed_costs(constant, last, floor) < _UNASKED_COSTS:
         return False
-    found = unasked(flights)
-    if found is None or found[0] < _UNASKED or found[1] < _UNASKED_WORK:
+    thrust = unasked(flights)
+    if thrust is None or thrust < _UNASKED:
         return False
     gusts = 0.0 if air is None else air.angle_std
     return swings(flights)[0] > max(_UNASKED_SWING, _UNASKED_GUSTS * gusts)
@@ -132,9 +130,7 @@ def swings(flights: Flights) -> tuple[float, float]:
     """
     speeds, energies = [], []
     for flight in flights.flights:
-        speed, height = flight.slow[SPEED], flight.slow[HEIGHT]
-        climbed = height - np.mean(height)
-        speeds.append(float(np.std(speed)))
-        energies.append(float(np.std(np.sqrt(np.maximum(speed**2 + 2.0 * GRAVITY_M_S2 * climbed, 0.0)))))
+        speeds.append(float(np.std(flight.slow[SPEED])))
+        energies.append(float(np.std(energy_speed(flight))))
     mean = mean_speed(flights)
     return float(np.median(speeds)) / mean, float(np.median(energies)) / mean

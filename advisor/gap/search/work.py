@@ -7,7 +7,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.records.prepare import smooth
-from advisor.gap.simulator.layout import SPEED, THROTTLE, THRUST
+from advisor.gap.simulator.layout import HEIGHT, SPEED, THROTTLE, THRUST
 from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.recursion import accumulated
 
@@ -32,26 +32,40 @@ def work(flights: Flights) -> float | None:
     return float(np.mean(gained)) / mean_speed(flights)
 
 
-def unasked(flights: Flights) -> tuple[float, float] | None:
-    """Thrust that swings though the throttle does not: m/s², and the speed it makes relative to the mean.
+def unasked(flights: Flights) -> float | None:
+    """Thrust that swings though the throttle does not, m/s²: median of standard deviations in a manoeuvre.
 
-    Medians over the manoeuvres of standard deviations within them. What the accelerations show along the path
-    is freed of a constant in each manoeuvre, of drag, of an instrument that leans, and of what follows the
-    throttle, at once or late. None where they were not measured.
+    What the accelerations show along the path is freed of a constant in each manoeuvre, of drag, of an
+    instrument that leans, and of what follows the throttle, at once or late. It counts for the share of the
+    energy's swing that it accounts for: air speed and height were measured by other instruments, and know
+    nothing of an accelerometer's noise. None where accelerations or height were not measured.
     """
-    if not felt_along(flights):
+    if not felt_along(flights) or "height" not in flights.has:
         return None
     columns = []
     for number, (flight, drag) in enumerate(zip(flights.flights, _drag(flights), strict=True)):
         own = np.zeros((flight.n, len(flights)))
         own[:, number] = 1.0
         columns.append(np.column_stack([own, drag, _lift(flight), *_throttle(flight)]))
-    beyond = _beyond(flights, columns)
-    swings_by, gained = [], []
-    for flight, rest in zip(flights.flights, beyond, strict=True):
+    swings_by, explained, swung = [], 0.0, 0.0
+    for flight, rest in zip(flights.flights, _beyond(flights, columns), strict=True):
         swings_by.append(np.std(smooth(rest, _SMOOTHED_S)))
-        gained.append(np.std(np.cumsum(rest) * flight.h))
-    return float(np.median(swings_by)), float(np.median(gained)) / mean_speed(flights)
+        gained, energy = _swing(np.cumsum(rest) * flight.h), _swing(energy_speed(flight))
+        explained += float(gained @ energy)
+        swung += float(energy @ energy)
+    return float(np.median(swings_by)) * explained / max(swung, 1e-300)
+
+
+def energy_speed(flight: Flight) -> FloatArray:
+    """√(V² + 2 g h), shape (n,), m/s, heights from the manoeuvre's mean: the speed without climbs."""
+    climbed = flight.slow[HEIGHT] - np.mean(flight.slow[HEIGHT])
+    return np.asarray(np.sqrt(np.maximum(flight.slow[SPEED] ** 2 + 2.0 * GRAVITY_M_S2 * climbed, 0.0)))
+
+
+def _swing(course: FloatArray) -> FloatArray:
+    """What is left of a course without its mean and its steady change."""
+    t = np.linspace(-1.0, 1.0, len(course))
+    return np.asarray(course - np.polynomial.Polynomial.fit(t, course, 1)(t))
 
 
 def felt_along(flights: Flights) -> bool:

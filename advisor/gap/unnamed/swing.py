@@ -29,6 +29,8 @@ _OF_PEAK_SWINGING = 0.005
 """Share of a channel's peak that a swing of the aircraft must be: no error of a model looks like that."""
 _VISIBLE = 0.05
 """Power of a swing, beside the instruments' noise, from which on there is something to explain."""
+_SHAKEN = 4.0
+"""The same of an accelerometer: an engine shakes each of them, and samples make a slow swing of it."""
 _SET_OFF = 0.25
 """Power before the stick moves, over that after, below which it was the stick that set something swinging."""
 _SLOW_HZ, _NEARLY = 3.0, 0.9
@@ -51,7 +53,8 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArra
     least = OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
     if not np.any(tone.power > np.maximum(least * problem.flights.peaks, tolerance) ** 2):
         return None
-    if float(np.mean(tone.power / instruments**2)) < _VISIBLE:
+    beside = tone.power / instruments**2
+    if float(np.mean(beside)) < _VISIBLE or (_may_be_shaken(tone) and np.max(beside) < _SHAKEN):
         return None
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
@@ -88,6 +91,13 @@ def swings_the_aircraft(problem: Problem, first: Fitted, last: Fitted) -> Leftov
         return None
     ranking = ranking_of(tone.probes, best.block)
     return Leftover(best.block, best.explained, ranking, tone.power, _said(tone, set_off=False))
+
+
+def _may_be_shaken(tone: Tone) -> bool:
+    """Whether a swing is the accelerometer's, or a force's so fast that nothing else feels it."""
+    best = tone.probes[0]
+    accelerometer = next((p.gain for p in tone.probes if p.block == "accelerometer"), 0.0)
+    return best.block in ("accelerometer", "force_equation") and accelerometer > best.gain - LEAST_GAIN
 
 
 def _is_set_off(problem: Problem, last: Fitted, noise: FloatArray, block: str) -> bool:

@@ -28,9 +28,9 @@ _LIKELIER = 10.0
 _LEAVES = 0.3
 """Share of some channel's power that a plain law leaves at most: an attitude that leans looks much like a
 gyro that feels acceleration, and a propeller that beats a little like a surface that stops."""
-_IN_MOST = 0.9
-"""Share of a manoeuvre's power that any law leaves at most in half of them and more: what holds in few is no
-law but a gust, or a fault that comes and goes."""
+_IN_MOST = 0.6
+"""Share of the manoeuvres that any law leaves less of: what holds in fewer is no law but a gust, or a fault
+that comes and goes."""
 _SEVERAL = 2
 """Names that together imitate a law."""
 _BESIDE = 0.5
@@ -56,8 +56,8 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     named = _gain_of_all(problem, stages)
     if not bent.worth_naming or bent.gain < max(_CERTAIN, named + _LIKELIER):
         return None
-    leaves, had = (np.mean(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
-    if np.median(leaves / had) > _IN_MOST:
+    leaves, had = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
+    if np.mean(leaves < had) < _IN_MOST:
         return None
     alike = difference(problem, stages[-1].held_out, bent.held_out) < bent.least
     if alike and sum(s.added is not None for s in stages) < _SEVERAL:
