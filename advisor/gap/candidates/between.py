@@ -121,6 +121,7 @@ def _longer(
         bounds=(*one.bounds, (float(t[0] - span), float(t[-1])), (0.05 * span, 2.0 * span)),
         apply_with=lambda p, v, _: course(p, v[:-2], np.clip((t - v[-2]) / v[-1], 0.0, 1.0)),
         carried=carried,
+        places=("at_s", "over_s"),
     )
     return (gradual,)
 

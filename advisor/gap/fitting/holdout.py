@@ -21,7 +21,8 @@ _INDIFFERENT = 3e-4
 """Directions the data say relatively less about stay put: they change no prediction, but a long step along
 them leaves the range in which the model is linear."""
 _ANCHOR = 1e-3
-"""Weight of "no effect" beside what all manoeuvres say of an effect's parameter."""
+"""Weight of "no effect" beside what all manoeuvres say of an effect's parameter; but not more than that of a
+guess as far off as the parameter is large."""
 _LONE = 0.9
 """Share of the information on a number from which on a single manoeuvre tells of it."""
 
@@ -59,9 +60,9 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     total_H += np.diag(pull)
     total_g += pull * missed
     lower, upper = bounds_of(fitted.point)
-    anchor = _ANCHOR * told_beside_others(total_H)
+    far = fitted.point.shared - _without_effect(fitted.point)
+    anchor = np.minimum(_ANCHOR * told_beside_others(total_H), 1.0 / np.maximum(far**2, 1e-300))
     anchor[:k] = 0.0
-    nothing = _without_effect(fitted.point)
     lefts: list[FloatArray] = [np.empty(0)] * n
     innovations: list[FloatArray] = [np.empty(0)] * n
     # Where a response has kinks, the search refuses what the linear model proposes: it is no part of the fit.
@@ -72,11 +73,7 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
         if len(fold) < n:
             # What only the manoeuvres kept out could tell of an effect stays at "no effect", or where it is.
             H = total_H - np.sum([blocks[i][0] for i in fold], axis=0) + np.diag(anchor)
-            g = (
-                total_g
-                - np.sum([blocks[i][1] for i in fold], axis=0)
-                - anchor * (fitted.point.shared - nothing)
-            )
+            g = total_g - np.sum([blocks[i][1] for i in fold], axis=0) - anchor * far
             step = solved_within(H, g, least, most, _INDIFFERENT) - refused
             step = np.clip(step, least, most)
         for i in fold:
