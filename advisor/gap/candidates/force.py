@@ -35,7 +35,7 @@ def variants(flights: Flights) -> list[Variant]:
             ("share", "lag_s"),
             ((0.1, 0.1), (0.3, 0.4)),
             (0.005, 0.01),
-            ((0.0, 0.95), (0.01, 1.0)),
+            ((0.0, 0.95), (0.01, 3.0)),
             0.01,
             entries=("lift_share", "lift_lag_s"),
         ),

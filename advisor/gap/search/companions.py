@@ -53,7 +53,9 @@ def other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Va
 def _clearly_better(best: Judged, same: Judged | None, second: Judged) -> bool:
     """Whether a companion beats the first effect beside the second: by what it brings, or by its fit."""
     if same is not None:
-        return best.gain > same.gain + LEAST_GAIN
+        # From the second alone a search for the first may end before it comes to where both have been.
+        short = max(0.5 * (same.fitted.cost - second.fitted.cost), 0.0)
+        return best.gain > same.gain + short + LEAST_GAIN
     return best.fitted.cost < second.fitted.cost - _CLEARLY
 
 
