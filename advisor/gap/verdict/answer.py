@@ -46,8 +46,9 @@ def answer(
     before, last = judged.before, stages[-1].held_out
     if judged.bias is not None:
         offset_rad = judged.bias.parameters["bias_rad"].value
-        before = over_maneuvers(problem, with_offset(problem, before, offset_rad), kept)
+        before = with_offset(problem, before, offset_rad)
         problem = as_read(problem, offset_rad)
+    before = over_maneuvers(problem, before, kept)
     if e.air is not None:
         # From here on the air is one of the causes: the floor is what stays without its motion.
         last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, np.sqrt(e.air.left)))
