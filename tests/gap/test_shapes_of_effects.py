@@ -122,3 +122,10 @@ def test_a_servo_that_begins_to_move_gently_is_called_late_by_its_lag_and_no_del
     found = diagnose(fly(Setup(maneuvers=6, switches={"lag": 0.04, "before_lag": 0.04}, seed=14)), Aircraft())
     assert found.causes[0].effect == "actuator_lag"
     assert found.causes[0].parameters["lag_s"].value == pytest.approx(0.08, rel=0.15)
+
+
+def test_a_dead_band_that_takes_most_of_the_command_is_no_elevator_that_bends():
+    found = diagnose(fly(Setup(maneuvers=6, switches={"deadband": 0.035}, noise=0.005, seed=40)), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["actuator_deadband"]
+    half_width = found.causes[0].parameters["half_width_rad"]
+    assert abs(half_width.value - 0.035) < 3.0 * half_width.std

@@ -101,19 +101,29 @@ def test_what_swung_before_the_stick_moved_was_not_set_off_by_it():
     assert any("It swings by itself" in note for note in found.notes)
 
 
-@pytest.mark.parametrize(("channel", "amplitude", "block"), [
-    ("q", 0.01, "pitch_rate_sensor"), ("a_z", 0.4, "accelerometer"), ("theta", 0.006, "attitude_sensor"),
-])  # fmt: skip
-def test_a_sensor_that_shakes_is_unknown_in_that_sensor(channel, amplitude, block):
-    shaken = []
+def shaken(channel, amplitude):
+    """A flight with one channel that swings by itself."""
+    found = []
     for n, maneuver in enumerate(fly(Setup(maneuvers=6, seed=36))):
         y = maneuver.channels[channel]
         swing = amplitude * np.sin(2 * np.pi * 2.2 * (y.t - y.t[0]) + n)
         channels = {**maneuver.channels, channel: replace(y, y=y.y + swing)}
-        shaken.append(replace(maneuver, channels=channels))
-    found = diagnose(shaken, Aircraft())
+        found.append(replace(maneuver, channels=channels))
+    return found
+
+
+@pytest.mark.parametrize(("channel", "amplitude", "block"), [
+    ("q", 0.01, "pitch_rate_sensor"), ("a_z", 0.4, "accelerometer"), ("theta", 0.006, "attitude_sensor"),
+])  # fmt: skip
+def test_a_sensor_that_shakes_is_unknown_in_that_sensor(channel, amplitude, block):
+    found = diagnose(shaken(channel, amplitude), Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == block
+
+
+def test_an_accelerometer_that_an_engine_shakes_no_louder_than_its_noise_is_nothing():
+    found = diagnose(shaken("a_z", 0.15), Aircraft())
+    assert found.verdict == "none"
 
 
 @pytest.mark.parametrize(("swings", "hz", "block"), [

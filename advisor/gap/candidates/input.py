@@ -105,7 +105,7 @@ _DEADBAND = Variant(
     "actuator_deadband",
     BLOCK,
     ("half_width_rad", "neutral_rad"),
-    ((0.004, 0.0), (0.015, 0.0), (0.01, 0.006), (0.01, -0.006)),
+    ((0.004, 0.0), (0.015, 0.0), (0.035, 0.0), (0.01, 0.006), (0.01, -0.006)),
     (2e-4, 2e-4),
     ((0.0, 0.1), (-0.1, 0.1)),
     _SMALL_ANGLE,
@@ -114,7 +114,7 @@ _DEADBAND = Variant(
 )
 _DEADBAND_ABOUT_TRIM = replace(
     _DEADBAND,
-    starts=((0.004, 0.0), (0.015, 0.0)),
+    starts=((0.004, 0.0), (0.015, 0.0), (0.035, 0.0)),
     apply_with=_deadband_about_trim,
     fixed={"about_trim": 1.0},
 )

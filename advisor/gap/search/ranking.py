@@ -33,6 +33,9 @@ _LEFT = 2.0
 """How many times an instrument's white noise the best must leave, if its other starts are to be tried ..."""
 _SEVERAL = 2
 """... and how many it must have to have more than one optimum."""
+_HIDES = frozenset({"actuator_deadband"})
+"""Effects that are tried then, too: where most of the motion is missing, other numbers imitate it so well that
+no screening leads to them."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
 """Full fits then, and the share of the best promise that earns one."""
@@ -77,10 +80,13 @@ def judge(
         best.setdefault(one.effect, one)
     first, *rest = best.values()
     if first.gain > _GROSS and np.any(first.held_out.mean_square > (_LEFT * problem.flights.white) ** 2):
-        alike = [c.variant for c in candidates if c.variant.effect == first.effect]
-        fits = _restarted(problem, before, first.fitted, alike)
-        again = [addition(problem, before, held_before, f, first.effect, independent) for f in fits]
-        first = max((first, *again), key=lambda judged: judged.gain)
+        alike = [c.variant for c in candidates if c.variant.effect in {first.effect, *_HIDES}]
+        again = [
+            addition(problem, before, held_before, f, f.point.effects[-1].effect, independent)
+            for f in _restarted(problem, before, first.fitted, alike)
+        ]
+        found, first = first, max((first, *again), key=lambda judged: judged.gain)
+        rest = [j for j in (found, *rest) if j.effect != first.effect]
     if first.fitted.iterations == _ITERATIONS:
         # Far from the plain model the search is long; only what comes out first is followed to its end.
         ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)
