@@ -1,0 +1,31 @@
+"""What a fit of the others predicts of manoeuvres kept out of it."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.fitting.fit import fit
+from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
+from tests.gap.generator import Setup, fly
+
+
+@pytest.fixture(scope="module")
+def heavier():
+    """Nine manoeuvres, the aircraft heavier from the fifth on, and the plain model fitted to them."""
+    flights = prepare(fly(Setup(maneuvers=9, mass_step=0.25, noise=0.005, seed=3)), Aircraft())
+    return fit_baseline(flights, Aircraft())
+
+
+@pytest.mark.parametrize("break_", [3, 5])
+def test_the_time_of_a_change_stays_where_only_manoeuvres_kept_out_tell_it(heavier, break_):
+    problem, plain = heavier
+    steps = [v for v in variants_for(problem.flights) if v.effect == "mass_change" and "step" in v.names]
+    [gradual] = steps[break_].likewise
+    at_s, over_s = steps[break_].fixed["at_s"], 20.0
+    point = plain.point.with_effect(gradual, (0.2, at_s - 0.5 * over_s, over_s))
+    fitted = fit(problem, point, plain.noise, tolerance=0.5)
+    predicted = hold_out(problem, fitted)
+    assert np.all(predicted.innovations < 3.0 * fitted.noise**2)
