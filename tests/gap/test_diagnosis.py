@@ -58,7 +58,7 @@ def test_a_message_that_is_late_shifts_attitude_and_pitch_rate_together(late_s):
     assert "stamps of attitude and pitch rate" in found.sentence
 
 
-@pytest.mark.parametrize("scale", [0.12, -0.28])
+@pytest.mark.parametrize("scale", [0.12, pytest.param(-0.28, marks=pytest.mark.study)])
 def test_a_scale_error_of_the_vane_is_not_taken_for_an_offset(scale):
     found = diagnose(fly(Setup(maneuvers=6, alpha_scale=scale, seed=5)), Aircraft())
     assert found.causes[0].effect == "alpha_scale"
@@ -99,7 +99,7 @@ def test_what_fitted_numbers_do_does_not_pass_for_the_work_of_the_effect_beside_
     "wrong",
     [
         {"M_alpha": 37.0},
-        {"M_delta_e": 52.0},
+        pytest.param({"M_delta_e": 52.0}, marks=pytest.mark.study),
         pytest.param({"M_delta_e": 0.0}, marks=pytest.mark.study),
         pytest.param({"M_delta_e": -0.9}, marks=pytest.mark.study),
         pytest.param({"M_q": 9.0}, marks=pytest.mark.study),

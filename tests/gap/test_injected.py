@@ -42,9 +42,9 @@ def later(by):
     ("channel", "change", "effect", "parameter", "size"),
     [
         ("elevator", later(-0.06), "transport_delay", "delay_s", 0.06),
-        ("q", scaled(0.85), "pitch_rate_scale", "scale", -0.15),
+        pytest.param("q", scaled(0.85), "pitch_rate_scale", "scale", -0.15, marks=pytest.mark.study),
         ("q", shifted(np.radians(1.2)), "pitch_rate_bias", "bias_rad_s", np.radians(1.2)),
-        ("a_z", later(0.08), "accelerometer_skew", "skew_s", 0.08),
+        pytest.param("a_z", later(0.08), "accelerometer_skew", "skew_s", 0.08, marks=pytest.mark.study),
         ("alpha", later(0.08), "alpha_skew", "skew_s", 0.09),
         ("alpha", shifted(np.radians(1.5)), "alpha_bias", "bias_rad", np.radians(1.5)),
     ],

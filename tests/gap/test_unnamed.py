@@ -130,7 +130,7 @@ def still_file():
     return Aircraft(model={name: still.model[name].value for name in PARAMETERS})
 
 
-@pytest.mark.parametrize("cm_alphadot", [-8.0, -25.0, 6.0])
+@pytest.mark.parametrize("cm_alphadot", [-8.0, pytest.param(-25.0, marks=pytest.mark.study), 6.0])
 def test_the_files_derivatives_tell_a_moment_of_the_angles_rate_from_three_other_derivatives(
     still_file, cm_alphadot
 ):

@@ -101,7 +101,9 @@ def test_a_servo_that_overshoots_is_no_delay_with_a_structure_that_bends(setup, 
     assert any("The surface overshoots its command" in note for note in found.notes)
 
 
-@pytest.mark.parametrize("switches", [{"lag": 0.03, "before_lag": 0.03}, {"delay": 0.04, "lag": 0.04}])
+@pytest.mark.parametrize("switches", [
+    {"lag": 0.03, "before_lag": 0.03}, pytest.param({"delay": 0.04, "lag": 0.04}, marks=pytest.mark.study)
+])  # fmt: skip
 def test_a_servo_that_is_well_damped_keeps_its_name(switches):
     found = diagnose(fly(Setup(maneuvers=5, switches=switches, seed=43)), Aircraft())
     assert found.verdict == "effect"
@@ -131,7 +133,7 @@ def test_what_is_wrong_beside_a_reading_out_of_proportion_keeps_its_name():
 
 @pytest.mark.parametrize(("switches", "says"), [
     ({"q_abs": -0.02}, "not the same up and down"),
-    ({"q_square": -0.06}, "not the same up and down, or fast and slow"),
+    pytest.param({"q_square": -0.06}, "not the same up and down, or fast and slow", marks=pytest.mark.study),
     ({"cm_aq": -90.0}, "changes with the angle of attack"),
 ])  # fmt: skip
 @pytest.mark.parametrize(
