@@ -34,8 +34,8 @@ _LEFT = 2.0
 _SEVERAL = 2
 """... and how many it must have to have more than one optimum."""
 _HIDES = frozenset({"actuator_deadband"})
-"""Effects that are tried then, too: where most of the motion is missing, other numbers imitate it so well that
-no screening leads to them."""
+"""Effects that are tried then, too: where most of the motion is missing, other numbers imitate it so well
+that no screening leads to them."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
 """Full fits then, and the share of the best promise that earns one."""
