@@ -10,10 +10,11 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted, solve_blocks
+from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power

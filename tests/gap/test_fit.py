@@ -10,7 +10,8 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.neighbourhood import Neighbourhood
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import Point, Problem, row_weights
+from advisor.gap.fitting.step import own_eliminated
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.baseline import fit_baseline
@@ -51,6 +52,28 @@ def test_a_search_that_is_out_of_reach_of_another_is_given_up_and_no_other(settl
     assert fit(problem, shifted, fitted.noise, beaten_by=ended.cost).cost == ended.cost
     far = fit(problem, shifted, fitted.noise, beaten_by=fitted.cost - 1e6)
     assert far.iterations == 1
+
+
+def test_products_of_columns_tell_the_squares_that_rows_do(settled):
+    problem, fitted = settled
+    random = np.random.default_rng(3)
+    for flight, block in zip(problem.flights.flights, fitted.linear, strict=True):
+        step, own = random.normal(size=block.shared.shape[1]), random.normal(size=block.own.shape[1])
+        after = block.after(step, own)
+        due = [after[rows] @ after[rows] for rows in problem.rows(flight)]
+        assert block.squares_after(step, own) == pytest.approx(due)
+
+
+def test_own_numbers_are_eliminated_as_least_squares_of_the_rows_would(settled):
+    problem, fitted = settled
+    weights, block = 1.0 / fitted.noise, fitted.linear[0]
+    w = row_weights(problem, 0, weights)
+    rows = np.vstack([block.own * w[:, None], np.diag(np.sqrt(block.prior))])
+    left = np.concatenate([block.left * w, np.zeros(len(block.prior))])
+    least = np.linalg.lstsq(rows, left)[1]
+    inner, follow = own_eliminated(block, weights)
+    assert inner[-1, -1] == pytest.approx(least, rel=1e-6)
+    assert np.sum((left - rows @ follow[:, -1]) ** 2) == pytest.approx(least, rel=1e-6)
 
 
 @pytest.mark.parametrize("effect", ["transport_delay", "actuator_lag", "alpha_skew"])

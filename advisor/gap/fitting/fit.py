@@ -12,12 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.linear import (
-    Linear,
-    linearise,
-)
-from advisor.gap.fitting.normal import factored, solved, solved_within
+from advisor.gap.fitting.linear import Linear, linearise
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
+from advisor.gap.fitting.step import Step, solve_blocks
 from advisor.gap.simulator.layout import NUISANCES
 
 _SETTLED = 0.02
@@ -47,75 +44,6 @@ class Fitted:
     """Shape (k, k): of the shared numbers, own numbers eliminated."""
     linear: tuple[Linear, ...]
     iterations: int
-
-
-def factor(A: FloatArray, prior: FloatArray) -> FloatArray:
-    """Cholesky factor of AᵀA + Λ⁻¹ for one manoeuvre's own columns, weighted."""
-    normal = A.T @ A
-    diagonal = np.diagonal(normal) + prior
-    np.fill_diagonal(normal, diagonal * (1.0 + 1e-10) + 1e-12 * np.mean(diagonal))
-    return factored(normal)
-
-
-@dataclass(frozen=True)
-class Step:
-    """A Gauss-Newton step from where the model was made linear."""
-
-    shared: FloatArray
-    """Shape (k,), within the numbers' bounds."""
-    free: list[FloatArray]
-    """Per manoeuvre, shape (m,): own numbers' solution at the old shared numbers ..."""
-    follow: list[FloatArray]
-    """... and shape (m, k), what they lose per unit of the shared ones."""
-    information: FloatArray
-    """Shape (k, k)."""
-    gradient: FloatArray
-    """Shape (k,): half the decrease of the cost per unit of each shared number."""
-
-    def promised(self, shared: FloatArray) -> float:
-        """Decrease of the cost by a step of the shared numbers, were the model linear."""
-        return float(2.0 * self.gradient @ shared - shared @ self.information @ shared)
-
-    def owns(self, shared: FloatArray) -> list[FloatArray]:
-        """Per manoeuvre the own numbers' solution after some step of the shared ones."""
-        return [free - follow @ shared for free, follow in zip(self.free, self.follow, strict=True)]
-
-    def ahead(self, linear: Sequence[Linear]) -> list[FloatArray]:
-        """Per manoeuvre, the residual that the whole step should leave."""
-        return [b.after(self.shared, own) for b, own in zip(linear, self.owns(self.shared), strict=True)]
-
-
-def own_eliminated(
-    problem: Problem, i: int, block: Linear, weights: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Normal equations of the shared numbers from one manoeuvre, its own eliminated (Schur complement).
-
-    Returns
-    -------
-    Shape (k + 1, k + 1), the residual's as the last row and column; and how the own numbers follow, shape
-    (m, k + 1).
-    """
-    w = row_weights(problem, i, weights)[:, None]
-    A, X = block.own * w, np.column_stack([block.shared, block.left]) * w
-    AX = A.T @ X
-    eliminated = solved(factor(A, block.prior), AX)
-    return np.asarray(X.T @ X - AX.T @ eliminated), eliminated
-
-
-def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray, point: Point) -> Step:
-    """One Gauss-Newton step, own numbers eliminated manoeuvre by manoeuvre."""
-    k = linear[0].shared.shape[1]
-    pull, missed = problem.pull(point)
-    H, g = np.diag(pull), pull * missed
-    free, follow = [], []
-    for i, block in enumerate(linear):
-        inner, eliminated = own_eliminated(problem, i, block, weights)
-        H += inner[:k, :k]
-        g += inner[:k, k]
-        free.append(eliminated[:, k])
-        follow.append(eliminated[:, :k])
-    lower, upper = bounds_of(point)
-    return Step(solved_within(H, g, lower - point.shared, upper - point.shared), free, follow, H, g)
 
 
 def noise_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
@@ -210,22 +138,15 @@ class _Place:
 
 def _settled(problem: Problem, point: Point, linear: tuple[Linear, ...], weights: FloatArray) -> _Place:
     """Weights and own numbers settle together at a fixed linearisation: cheap, no simulation."""
+    samples = np.maximum(counts(problem), 1.0)
     for _ in range(4):
         step = solve_blocks(problem, linear, weights, point)
-        before, weights = weights, 1.0 / noise_of(problem, step.ahead(linear))
+        before, weights = weights, 1.0 / above_floor(problem, np.sqrt(step.squares_ahead(linear) / samples))
         if np.max(np.abs(np.log(weights / before))) < _SETTLED:
             break
     left = tuple(block.left - block.own @ own for block, own in zip(linear, step.free, strict=True))
     cost = cost_of(problem, point, left, step.free, linear)
     return _Place(point, linear, weights, step, left, noise_of(problem, left), cost)
-
-
-def bounds_of(point: Point) -> tuple[FloatArray, FloatArray]:
-    """Lower and upper bounds of the shared numbers."""
-    free = np.full(len(point.derivatives), np.inf)
-    lower = np.concatenate([-free, *[np.array([b[0] for b in e.bounds]) for e in point.effects]])
-    upper = np.concatenate([free, *[np.array([b[1] for b in e.bounds]) for e in point.effects]])
-    return lower, upper
 
 
 def evidence_of(problem: Problem, fitted: Fitted) -> float:

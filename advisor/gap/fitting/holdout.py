@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, bounds_of, factor, own_eliminated, rms_of
-from advisor.gap.fitting.linear import Linear
-from advisor.gap.fitting.normal import solved, solved_within
-from advisor.gap.fitting.problem import Point, Problem, row_weights
+from advisor.gap.fitting.fit import Fitted, rms_of
+from advisor.gap.fitting.normal import solved_within
+from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.step import bounds_of, own_eliminated
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _INDIFFERENT = 3e-4
@@ -52,9 +52,10 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     n = len(problem.flights)
     chosen = folds_of(n) if folds is None else folds
     weights = 1.0 / fitted.noise
-    blocks = [_reduced(problem, i, block, weights) for i, block in enumerate(fitted.linear)]
-    total_H = np.sum([b[0] for b in blocks], axis=0)
-    total_g = np.sum([b[1] for b in blocks], axis=0)
+    blocks = [own_eliminated(block, weights) for block in fitted.linear]
+    inner = np.array([b[0] for b in blocks])
+    information, gradients = inner[:, :-1, :-1], inner[:, :-1, -1]
+    total_H, total_g = np.sum(information, axis=0), np.sum(gradients, axis=0)
     k = len(DERIVATIVES)
     pull, missed = problem.pull(fitted.point)
     total_H += np.diag(pull)
@@ -72,12 +73,12 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
         step = np.zeros(len(total_g))
         if len(fold) < n:
             # What only the manoeuvres kept out could tell of an effect stays at "no effect", or where it is.
-            H = total_H - np.sum([blocks[i][0] for i in fold], axis=0) + np.diag(anchor)
-            g = total_g - np.sum([blocks[i][1] for i in fold], axis=0) - anchor * far
+            H = total_H - np.sum(information[list(fold)], axis=0) + np.diag(anchor)
+            g = total_g - np.sum(gradients[list(fold)], axis=0) - anchor * far
             step = solved_within(H, g, least, most, _INDIFFERENT) - refused
             step = np.clip(step, least, most)
         for i in fold:
-            own = own_after(problem, i, fitted.linear[i], weights, step)
+            own = blocks[i][1] @ np.append(-step, 1.0)
             innovations[i] = fitted.linear[i].after(step, own)
             lefts[i] = fitted.linear[i].measured.after(step, own)
     return held_out(problem, lefts, innovations)
@@ -99,10 +100,10 @@ def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, witnesses: Coll
     return held_out(problem, lefts)
 
 
-def lone_witness(problem: Problem, fitted: Fitted, index: int) -> int | None:
+def lone_witness(fitted: Fitted, index: int) -> int | None:
     """The one manoeuvre that tells of a shared number, if no other could confirm it."""
     weights = 1.0 / fitted.noise
-    told = [_reduced(problem, i, block, weights)[0][index, index] for i, block in enumerate(fitted.linear)]
+    told = [own_eliminated(block, weights)[0][index, index] for block in fitted.linear]
     return int(np.argmax(told)) if max(told) > _LONE * sum(told) else None
 
 
@@ -132,17 +133,3 @@ def told_beside_others(H: FloatArray) -> FloatArray:
     widened = np.diag(np.linalg.pinv(H / np.outer(scale, scale), hermitian=True))
     # Never less than one; it reads as less only where the data say nothing at all.
     return np.asarray(scale**2 / np.maximum(widened, 1.0))
-
-
-def own_after(problem: Problem, i: int, block: Linear, weights: FloatArray, step: FloatArray) -> FloatArray:
-    """A manoeuvre's own numbers, refitted after a step of the shared ones."""
-    w = row_weights(problem, i, weights)
-    left = block.left - block.shared @ step
-    A = block.own * w[:, None]
-    return np.asarray(solved(factor(A, block.prior), A.T @ (left * w)))
-
-
-def _reduced(problem: Problem, i: int, block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Information and gradient of the shared numbers from one manoeuvre, own numbers eliminated."""
-    inner, _ = own_eliminated(problem, i, block, weights)
-    return inner[:-1, :-1], inner[:-1, -1]

@@ -1,6 +1,7 @@
 """The model about a point: sensitivities to shared numbers and to each manoeuvre's own."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -51,12 +52,28 @@ class Linear(Columns):
     """Shape (m,): inverse prior variances, 0 for flat."""
     measured: Columns
     """The same in the units of the channels, as it was before the filter."""
+    channels: tuple[slice, ...]
+    """The rows of each channel."""
+
+    @cached_property
+    def products(self) -> FloatArray:
+        """Shape (channels, m + k + 1, m + k + 1): of own, shared and left with one another, by channel.
+
+        Every normal equation is a weighted sum of them: weights may change without a look at the rows.
+        """
+        columns = np.column_stack([self.own, self.shared, self.left])
+        return np.stack([columns[rows].T @ columns[rows] for rows in self.channels])
+
+    def squares_after(self, step: FloatArray, own: FloatArray) -> FloatArray:
+        """Shape (channels,): of the residual after a step of the shared and the own numbers."""
+        after = np.concatenate([-own, -step, [1.0]])
+        return np.asarray(np.maximum(self.products @ after @ after, 0.0))
 
 
 def as_measured(block: Linear) -> Linear:
     """The same without a filter: in the units of the channels."""
     raw = block.measured
-    return Linear(raw.left, raw.shared, raw.own, block.prior, raw)
+    return Linear(raw.left, raw.shared, raw.own, block.prior, raw, block.channels)
 
 
 def shared_steps(point: Point) -> FloatArray:
@@ -188,5 +205,5 @@ def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:
         if problem.whitening is not None:
             e = problem.innovations(i, np.column_stack([left, shared, own]))
             left, shared, own = e[:, 0], e[:, 1 : len(steps) + 1], e[:, len(steps) + 1 :]
-        blocks.append(Linear(left, shared, own, prior, measured))
+        blocks.append(Linear(left, shared, own, prior, measured, tuple(problem.rows(flight))))
     return tuple(blocks)

@@ -11,10 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, above_floor, bounds_of, factor
+from advisor.gap.fitting.fit import Fitted, above_floor
 from advisor.gap.fitting.linear import shared_steps, shifted_points
 from advisor.gap.fitting.normal import solved, solved_within
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
+from advisor.gap.fitting.step import bounds_of, factor
 from advisor.gap.records.flights import Flight
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.reading import differences

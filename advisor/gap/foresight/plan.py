@@ -9,9 +9,10 @@ from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 from advisor.gap.candidates.catalogue import BLOCK_OF, variants_for
-from advisor.gap.fitting.fit import Fitted, solve_blocks
+from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.foresight.foresee import Foreseen, foresee
 from advisor.gap.foresight.foresee_apart import foresee_air, foresee_offset, impossible, speed_mark
 from advisor.gap.foresight.marks import Marks
@@ -99,7 +100,8 @@ def foresee_flights(
     point = everywhere(Point(derivatives, own), flights)
     linear = linearise(problem, point)
     step = solve_blocks(problem, linear, 1.0 / noise, point)
-    left = tuple(step.ahead(linear))
+    owns = step.owns(step.shared)
+    left = tuple(b.after(step.shared, own) for b, own in zip(linear, owns, strict=True))
     fitted = Fitted(point, noise, 0.0, left, left, step.information, linear, 0)
     marks = Marks(problem, fitted, noise)
     apart = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []

@@ -11,10 +11,11 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, rms_of, solve_blocks
+from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.linear import as_measured
 from advisor.gap.fitting.problem import Point, Problem, row_weights
+from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.fitting.whitening import Weighting, Whitening, filters_for, rows_in_time
 from advisor.gap.noise.probes import probe_blocks
 from advisor.gap.noise.stamps import stamp_variance

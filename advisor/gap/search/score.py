@@ -60,7 +60,7 @@ def addition(
     at = len(point.derivatives) + sum(len(v) for v in point.values[:k])
     held = hold_out(problem, fitted)
     # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
-    witness = lone_witness(problem, fitted, at) if variant.needs else None
+    witness = lone_witness(fitted, at) if variant.needs else None
     lone = witness is not None
     seen_before, seen_after = (before, fitted) if lone else (held_before, held)
     likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed=lone)

@@ -11,10 +11,11 @@ import numpy as np
 from scipy import fft
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, factor
+from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.linear import pulse_response
 from advisor.gap.fitting.normal import solved
 from advisor.gap.fitting.problem import Problem, row_weights
+from advisor.gap.fitting.step import factor
 from advisor.gap.noise.probes import DYNAMIC
 from advisor.gap.records.flights import Flight
 from advisor.gap.simulator.layout import OUTPUTS

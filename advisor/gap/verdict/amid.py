@@ -21,14 +21,12 @@ _UNKNOWN = 2
 def torn_by_a_change(e: Evidence) -> int | None:
     """Number of the manoeuvre in which a change may have come; None where nothing points to one.
 
-    It is the one with the gust or, of those beside or within a change that was named, the one of which most
-    is left, by far; never the first or the last, for nothing would be left to change from or to.
+    It is one beside or within a change that was named: the one with the gust or the one of which most is
+    left, by far; never the first or the last, for nothing would be left to change from or to.
     """
     flights = e.problem.flights.flights
     if _riddles(e) < 2:
         return None
-    if e.air is not None and e.air.gust:
-        return next((f.number for f in flights[1:-1] if f.number == e.air.gust_number), None)
     left = np.mean(e.stages[-1].held_out.by_maneuver / e.floor**2, axis=1)
     changes = _changes(e)
 
@@ -36,7 +34,10 @@ def torn_by_a_change(e: Evidence) -> int | None:
         earliest, latest = _end_s(flights[i - 1]), flights[i + 1].started_s
         return any(began <= latest and earliest <= ended for began, ended in changes)
 
-    torn = max(filter(beside, range(1, len(flights) - 1)), key=lambda i: float(left[i]), default=None)
+    may_be = list(filter(beside, range(1, len(flights) - 1)))
+    if e.air is not None and e.air.gust:
+        return next((flights[i].number for i in may_be if flights[i].number == e.air.gust_number), None)
+    torn = max(may_be, key=lambda i: float(left[i]), default=None)
     if torn is None or left[torn] < _STANDS_OUT * np.median(np.delete(left, torn)):
         return None
     return flights[torn].number

@@ -14,8 +14,9 @@ from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import covariance, worth
 from advisor.gap.foresight.foresee import unseen_effects
-from advisor.gap.result import Cause, Diagnosis, Verdict, Where
+from advisor.gap.result import Cause, Diagnosis, Gap, Verdict, Where
 from advisor.gap.search.merit import LEAST_SIGMA
+from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.causes import block_ranking
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.judgement import judgement
@@ -53,12 +54,16 @@ def answer(
         # From here on the air is one of the causes: the floor is what stays without its motion.
         last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, np.sqrt(e.air.left)))
     gap = gap_numbers(problem, e.floor, before, last)
-    where = _where(e, verdict, causes)
     shrink = None
     if verdict in ("effect", "parameters"):
         shrink = shrink_of(e, kept, gap, before, last, judged.wrong_numbers)
     fitted = stages[-1].fitted
     known = covariance(problem, fitted, worth(problem, fitted.innovations))
+    where = (
+        _of_the_numbers(problem, fitted, known, gap)
+        if verdict == "parameters"
+        else _where(e, verdict, causes)
+    )
     waterfall = waterfall_of(stages, e.floor, judged.apart, judged.speed, gap.before)
     present = {c.effect for c in causes if c.present}
     effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
@@ -71,7 +76,7 @@ def answer(
         reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
         effects=effects,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
-        notes=notes_of(e, aircraft, holdout, nobodys_fault),
+        notes=notes_of(e, aircraft, holdout, verdict, nobodys_fault),
         maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
 
@@ -102,3 +107,16 @@ def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
     left = whole_gap(e.stages[-1].held_out.mean_square, e.floor)
     block = next((c.block for c in causes if c.present), ranking[0][0] if ranking else "force_equation")
     return Where(block, float(np.clip(1.0 - left / total, 0.0, 1.0)) if causes else 0.0, ranking)
+
+
+def _of_the_numbers(problem: Problem, fitted: Fitted, known: FloatArray, gap: Gap) -> Where:
+    """The equation whose derivatives in the aircraft file are further off, beside what is known of them."""
+    assert problem.believed is not None
+    off = fitted.point.derivatives - problem.believed
+    scores = {}
+    for block, letter in (("force_equation", "Z"), ("moment_equation", "M")):
+        its = [k for k, name in enumerate(DERIVATIVES) if name.startswith(letter)]
+        scores[block] = float(off[its] @ np.linalg.pinv(known[np.ix_(its, its)], hermitian=True) @ off[its])
+    best = max(scores.values())
+    ranking = sorted(((b, round(s / best, 4)) for b, s in scores.items()), key=lambda item: -item[1])
+    return Where(ranking[0][0], float(np.clip(1.0 - gap.after / gap.before, 0.0, 1.0)), tuple(ranking))

@@ -31,6 +31,9 @@ _BEHIND = 0.08
 _MOSTLY = 0.98
 """Share of the gap that wrong numbers make, from which on they are the answer whatever is there besides: what
 leaves the file right, and is imitated by other numbers, is imitated by nine tenths at most."""
+_BY_FAR = 0.985
+"""The same beside something without a name in the equations that they belong to."""
+_EQUATIONS = frozenset({"force_equation", "moment_equation"})
 _HALF = 0.5
 """The same of all that was named where something without a name is there besides."""
 _AIR_DOUBT = 0.25
@@ -68,11 +71,14 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
-    unknown = e.leftover is not None and late is None
     beyond = _beyond_fitted_numbers(e)
     # Fitted numbers bend to the air's motion, and take up a part of it.
     plainly = beyond > PLAIN and e.air is None
     wrong_values = beyond > VISIBLE and file_is_off(problem, stages[-1].fitted, plainly)
+    # What bends a little in an equation whose numbers are far off is told beside them.
+    little = e.leftover is not None and e.leftover.block in _EQUATIONS and beyond > _BY_FAR * (beyond + left)
+    only_numbers = wrong_values and not named and little
+    unknown = e.leftover is not None and late is None and not only_numbers
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
     removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
     outweighs = _speed_outweighs(e, max(beyond, removed))

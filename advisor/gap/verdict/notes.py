@@ -6,12 +6,13 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.known import Effects, left_aside
-from advisor.gap.result import spelled
+from advisor.gap.result import Verdict, spelled
 from advisor.gap.verdict.evidence import Evidence
+from advisor.gap.verdict.text import place
 
 
 def notes_of(
-    e: Evidence, aircraft: Aircraft, holdout: int | None, nobodys_fault: Collection[str]
+    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: Verdict, nobodys_fault: Collection[str]
 ) -> tuple[str, ...]:
     """Every note that these flights and their aircraft file call for, a sentence each.
 
@@ -49,6 +50,8 @@ def notes_of(
         notes.append(e.weight.sentence)
     if e.leftover is not None and e.leftover.note:
         notes.append(e.leftover.note)
+    if e.leftover is not None and verdict == "parameters":
+        notes.append(f"Beside the wrong numbers something small stays {place(e.leftover.block)}.")
     for judged in (stage.added for stage in e.stages):
         if judged is not None and judged.witness is not None:
             number = flights.flights[judged.witness].number

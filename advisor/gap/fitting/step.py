@@ -1,0 +1,96 @@
+"""One Gauss-Newton step: own numbers eliminated manoeuvre by manoeuvre, shared ones kept within their bounds.
+
+With the inner products of the columns at hand a step for other weights is cheap.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.linear import Linear
+from advisor.gap.fitting.normal import factored, solved, solved_within
+from advisor.gap.fitting.problem import Point, Problem
+
+
+def factor(A: FloatArray, prior: FloatArray) -> FloatArray:
+    """Cholesky factor of AᵀA + Λ⁻¹ for one manoeuvre's own columns, weighted."""
+    return _factor_of(A.T @ A, prior)
+
+
+def _factor_of(normal: FloatArray, prior: FloatArray) -> FloatArray:
+    """The same of the product AᵀA, shape (m, m), which is overwritten."""
+    diagonal = np.diagonal(normal) + prior
+    np.fill_diagonal(normal, diagonal * (1.0 + 1e-10) + 1e-12 * np.mean(diagonal))
+    return factored(normal)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A Gauss-Newton step from where the model was made linear."""
+
+    shared: FloatArray
+    """Shape (k,), within the numbers' bounds."""
+    free: list[FloatArray]
+    """Per manoeuvre, shape (m,): own numbers' solution at the old shared numbers ..."""
+    follow: list[FloatArray]
+    """... and shape (m, k), what they lose per unit of the shared ones."""
+    information: FloatArray
+    """Shape (k, k)."""
+    gradient: FloatArray
+    """Shape (k,): half the decrease of the cost per unit of each shared number."""
+
+    def promised(self, shared: FloatArray) -> float:
+        """Decrease of the cost by a step of the shared numbers, were the model linear."""
+        return float(2.0 * self.gradient @ shared - shared @ self.information @ shared)
+
+    def owns(self, shared: FloatArray) -> list[FloatArray]:
+        """Per manoeuvre the own numbers' solution after some step of the shared ones."""
+        return [free - follow @ shared for free, follow in zip(self.free, self.follow, strict=True)]
+
+    def squares_ahead(self, linear: Sequence[Linear]) -> FloatArray:
+        """Shape (channels,): sums of squares of the residuals that the whole step should leave."""
+        owns = self.owns(self.shared)
+        each = [b.squares_after(self.shared, own) for b, own in zip(linear, owns, strict=True)]
+        return np.asarray(np.sum(each, axis=0))
+
+
+def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Normal equations of the shared numbers from one manoeuvre, its own eliminated (Schur complement).
+
+    Returns
+    -------
+    Shape (k + 1, k + 1), the residual's as the last row and column; and how the own numbers follow, shape
+    (m, k + 1).
+    """
+    m = len(block.prior)
+    normal: FloatArray = np.tensordot(weights**2, block.products, 1)
+    AX = normal[:m, m:]
+    eliminated = solved(_factor_of(normal[:m, :m].copy(), block.prior), AX)
+    inner: FloatArray = normal[m:, m:] - AX.T @ eliminated
+    return inner, eliminated
+
+
+def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray, point: Point) -> Step:
+    """One Gauss-Newton step, own numbers eliminated manoeuvre by manoeuvre."""
+    k = linear[0].shared.shape[1]
+    pull, missed = problem.pull(point)
+    H, g = np.diag(pull), pull * missed
+    free, follow = [], []
+    for block in linear:
+        inner, eliminated = own_eliminated(block, weights)
+        H += inner[:k, :k]
+        g += inner[:k, k]
+        free.append(eliminated[:, k])
+        follow.append(eliminated[:, :k])
+    lower, upper = bounds_of(point)
+    return Step(solved_within(H, g, lower - point.shared, upper - point.shared), free, follow, H, g)
+
+
+def bounds_of(point: Point) -> tuple[FloatArray, FloatArray]:
+    """Lower and upper bounds of the shared numbers."""
+    free = np.full(len(point.derivatives), np.inf)
+    lower = np.concatenate([-free, *[np.array([b[0] for b in e.bounds]) for e in point.effects]])
+    upper = np.concatenate([free, *[np.array([b[1] for b in e.bounds]) for e in point.effects]])
+    return lower, upper
