@@ -110,6 +110,24 @@ def test_a_wrong_number_is_placed_in_its_equation(sound, number, block):
     assert (found.verdict, found.where.block) == ("parameters", block)
 
 
+@pytest.mark.parametrize(
+    ("gust_m_s", "off", "verdict", "said"),
+    [
+        (2.0, {"M_delta_e": 0.88}, "parameters", "the air makes the rest"),
+        (6.0, {"Z_alpha": 0.8}, "effect", "its numbers are off besides"),
+    ],
+)
+def test_of_a_gust_and_wrong_numbers_the_larger_part_of_the_gap_is_the_answer(
+    sound, gust_m_s, off, verdict, said
+):
+    _, right = sound
+    model = {name: off.get(name, 1.0) * value.value for name, value in right.model.items()}
+    found = diagnose(fly(Setup(maneuvers=4, gust_pulse=gust_m_s, seed=26)), Aircraft(model=model))
+    assert found.verdict == verdict
+    assert said in found.sentence
+    assert [c.effect for c in found.causes if c.present] == ["gust"]
+
+
 def test_beside_something_unknown_what_was_named_stays_with_half_its_probability():
     setup = Setup(maneuvers=6, switches={"delay": 0.06, "beat": 0.004}, seed=21)
     found = diagnose(fly(setup), Aircraft())

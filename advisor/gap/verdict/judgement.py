@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.kinematics import KinematicCheck
+from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
@@ -34,6 +35,8 @@ leaves the file right, and is imitated by other numbers, is imitated by nine ten
 _BY_FAR = 0.985
 """The same beside something without a name in the equations that they belong to."""
 _EQUATIONS = frozenset({"force_equation", "moment_equation"})
+_FAR_MORE = 3.0
+"""Gap of wrong numbers beside the air's from which on it is not the air that they bend to."""
 _HALF = 0.5
 """The same of all that was named where something without a name is there besides."""
 _AIR_DOUBT = 0.25
@@ -71,9 +74,12 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
-    beyond = _beyond_fitted_numbers(e)
+    # Noise that the air makes hides nothing from a simulator that knows the air's motion.
+    still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
+    beyond, by_numbers = _beyond_fitted_numbers(e, floor), _beyond_fitted_numbers(e, still)
+    of_the_air = whole_gap(first.mean_square, still) if e.air is not None else 0.0
     # Fitted numbers bend to the air's motion, and take up a part of it.
-    plainly = beyond > PLAIN and e.air is None
+    plainly = beyond > PLAIN and by_numbers > _FAR_MORE * of_the_air
     wrong_values = beyond > VISIBLE and file_is_off(problem, stages[-1].fitted, plainly)
     # What bends a little in an equation whose numbers are far off is told beside them.
     little = e.leftover is not None and e.leftover.block in _EQUATIONS and beyond > _BY_FAR * (beyond + left)
@@ -83,8 +89,6 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
     outweighs = _speed_outweighs(e, max(beyond, removed))
     told = (named or bias or late or wrong_values) and not outweighs
-    # Noise that the air makes hides nothing from a simulator that knows the air's motion.
-    still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
     judge_speed = speed_is_unasked if told else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         apart = (speed, *apart)
@@ -102,10 +106,11 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     verdict: Verdict = "none"
     # An aircraft may bend a little besides: what makes the gap is the answer.
     mostly = wrong_values and beyond > _MOSTLY * (beyond + max(removed, 0.0))
+    # Moving air comes with the day, wrong numbers stay; but the larger part of the gap is the answer.
+    larger = by_numbers > of_the_air
     if unknown:
         verdict = "unknown"
-    elif wrong_values and (mostly or not named) and not (bias or late or speed in apart):
-        # Moving air may be there besides: it comes with the day, wrong numbers stay.
+    elif wrong_values and (mostly or not named) and larger and not (bias or late or speed in apart):
         verdict = "parameters"
     elif any(c.present for c in causes):
         verdict = "effect"
@@ -120,11 +125,11 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     return Judgement(verdict, causes, apart, speed, bias, before, wrong_values)
 
 
-def _beyond_fitted_numbers(e: Evidence) -> float:
+def _beyond_fitted_numbers(e: Evidence, floor: FloatArray) -> float:
     """What the file's own derivatives leave beyond fitted ones, mean square over the floor's."""
     if e.file_model is None:
         return 0.0
-    return float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / e.floor**2))
+    return float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / floor**2))
 
 
 def _at_constant_speed(problem: Problem, before: HeldOut, constant: HeldOut, last: HeldOut) -> HeldOut:

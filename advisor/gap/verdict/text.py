@@ -133,7 +133,12 @@ def sentence_of(
     if len(present) > 1:
         also = "; also " + ", ".join(spelled(c.effect) for c in present[1:])
     if present[0].block == "air" and len(present) == 1:
-        return f"{what(present[0])}: that is the air, not the simulator."
+        numbers = ""
+        if shrink is not None and shrink.beyond_air_percent is not None:
+            numbers = (
+                f"; its numbers are off besides, which makes {shrink.beyond_air_percent:.0f} % of the gap"
+            )
+        return f"{what(present[0])}: that is the air, not the simulator{numbers}."
     if shrink is not None and shrink.beyond_air_percent is not None:
         removed = f"{shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
     if present[0].effect == "alpha_lag" and shrink is not None and round(shrink.percent) <= 0:
