@@ -52,7 +52,7 @@ def test_the_climb_rate_shows_a_constant_offset():
     assert checked(alpha_bias=0.01).offset.rad == pytest.approx(0.01, abs=0.001)
 
 
-@pytest.mark.parametrize(("offset", "named"), [(0.004, False), (0.009, True)])
+@pytest.mark.parametrize(("offset", "named"), [(0.002, False), (0.004, True)])
 def test_an_offset_below_what_any_zero_is_set_to_gets_no_name(offset, named):
     found = alpha_bias_cause(
         KinematicCheck("consistent", "", offset=AlphaOffset(offset, 1e-4)), [], sparse_estimate(), 0.0

@@ -23,10 +23,10 @@ _CERTAIN = 30.0
 """Log likelihood from which on there is no doubt that something like the effect is there."""
 _PLAIN_GAIN, _PLAIN_CHANGE = 100.0, 10.0
 """Log likelihood, and changes of the least size, from which on twice the physical minimum is enough."""
-LEAST_OFFSET_RAD = 0.006
+LEAST_OFFSET_RAD = 0.003
 """Smaller offsets get no name: neither a vane's zero nor the attitude's, from which the path is taken, is set
-to better than a few tenths of a degree."""
-OFFSET_SIGMAS = 5.0
+much better."""
+OFFSET_SIGMAS = 8.0
 """Standard deviations that an offset of α must have to be named."""
 LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
