@@ -16,6 +16,9 @@ _NEARLY = 0.25
 _LOOKS_HELD = 0.3
 """... and where delay and lag are half an interval together. A third would be left if they were real: the
 variance of edges anywhere in an interval, beside the square of half of it."""
+_IN_STEP = 0.05
+"""The same where delay and lag are together between half an interval and a whole one: edges anywhere in their
+intervals would leave more."""
 _HALF_S = 0.003
 """How near to half an interval that is."""
 _BEND = frozenset({"actuator_rate_limit", "actuator_backlash", "actuator_deadband"})
@@ -60,7 +63,11 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     # The same with a lag besides: held, the lag is enough; linear, it takes half an interval of delay, too.
     delays = {p.held: _delay_of(f) for p, f in ((linear, both_linear), (held, both_held))}
     without_delay = delays[True] < _HALF_S and abs(delays[False] - half) < _HALF_S
-    if is_held or looks_held or (without_delay and both[True] < both[False] + price):
+    # A fast loop's steps, all at the same place of their interval, are late by up to a whole one together.
+    in_step = half - _HALF_S < late < 2.0 * half + input.LATENCY.bounds[0][1]
+    nearest = best_of_all + _IN_STEP * (max(plain.values()) - best_of_all)
+    steps_alike = in_step and plain[True] < min(nearest, plain[False])
+    if is_held or looks_held or steps_alike or (without_delay and both[True] < both[False] + price):
         return held, plainly_held
     return linear, fitted
 

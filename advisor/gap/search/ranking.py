@@ -12,7 +12,7 @@ from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Point, Problem, counts
 from advisor.gap.fitting.uncertainty import belief_in, covariance, worth
 from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN, Judged, size_of
-from advisor.gap.search.score import addition, predict_alike, smallest_of
+from advisor.gap.search.score import addition, is_plain, predict_alike, smallest_of
 from advisor.gap.search.screen import Screen, Screened
 from advisor.gap.simulator.layout import DERIVATIVES
 
@@ -34,8 +34,8 @@ _LEFT = 2.0
 _SEVERAL = 2
 """... and how many it must have to have more than one optimum."""
 _HIDES = frozenset({"actuator_deadband"})
-"""Effects that are tried then, too: where most of the motion is missing, other numbers imitate it so well
-that no screening leads to them."""
+"""Effects that are tried then, too, while nothing was named: where most of the motion is missing, other
+numbers imitate it so well that no screening leads to them."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
 """Full fits then, and the share of the best promise that earns one."""
@@ -80,7 +80,8 @@ def judge(
         best.setdefault(one.effect, one)
     first, *rest = best.values()
     if first.gain > _GROSS and np.any(first.held_out.mean_square > (_LEFT * problem.flights.white) ** 2):
-        alike = [c.variant for c in candidates if c.variant.effect in {first.effect, *_HIDES}]
+        hidden = _HIDES if is_plain(before) else frozenset()
+        alike = [c.variant for c in candidates if c.variant.effect in {first.effect, *hidden}]
         again = [
             addition(problem, before, held_before, f, f.point.effects[-1].effect, independent)
             for f in _restarted(problem, before, first.fitted, alike)

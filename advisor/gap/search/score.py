@@ -80,7 +80,7 @@ def addition(
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant),
         belief=belief, beforehand=beforehand, value=value, witness=witness,
-        with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=_is_alone(before),
+        with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_plain(before),
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
 
@@ -105,13 +105,13 @@ def log_likelihood_gained(
 
 def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:
     """Of the least change: what is enough where an effect is certain."""
-    if not _is_alone(before) or problem.knows_the_noise or variant.effect in _BY_NATURE:
+    if not is_plain(before) or problem.knows_the_noise or variant.effect in _BY_NATURE:
         return 1.0
     times = 2.0 if variant.names[0] in TIMES or variant.comes_at_any_time else 1.0
     return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0
 
 
-def _is_alone(before: Fitted) -> bool:
+def is_plain(before: Fitted) -> bool:
     """Whether the model has nothing yet that is anyone's fault."""
     return all(effect.always for effect in before.point.effects)
 

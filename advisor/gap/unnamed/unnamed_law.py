@@ -8,6 +8,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import BLOCK_OF
+from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out
 from advisor.gap.fitting.problem import Problem
@@ -23,6 +24,8 @@ _CERTAIN = 30.0
 """Log likelihood that a law must bring: most of what a reading's does is the lift's own slope."""
 _WORTH_A_FIT = 0.2
 """Share of the likeliest law's gain in the screening from which on another is fitted, too."""
+_OUT_OF_REACH = 200.0
+"""Cost beyond that of another law, or of all names together, at which the search for one is given up."""
 _LIKELIER = 10.0
 """... and by how much it must beat all that was named together."""
 _LEAVES = 0.3
@@ -47,7 +50,12 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     best = min((s.cost for s in found), default=plain.cost)
     most = plain.cost - 2.0 * max(_CERTAIN, 0.5 * _WORTH_A_FIT * (plain.cost - best))
     # A law that changes what the derivatives are takes more steps than a screening makes.
-    fits = [(s.variant, fit(problem, s.point, s.noise, tolerance=0.5)) for s in found if s.cost <= most]
+    fits: list[tuple[Variant, Fitted]] = []
+    lost = stages[-1].fitted.cost + _OUT_OF_REACH
+    for s in sorted(found, key=lambda s: s.cost):
+        if s.cost <= most:
+            fits.append((s.variant, fit(problem, s.point, s.noise, tolerance=0.5, beaten_by=lost)))
+            lost = min(lost, fits[-1][1].cost + _OUT_OF_REACH)
     if not fits:
         return None
     law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))

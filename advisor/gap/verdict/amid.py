@@ -14,6 +14,8 @@ _STANDS_OUT = 3.0
 """What is left of such a manoeuvre, beside a usual one."""
 _MOST = 0.5
 """Of a change that took its time, what must lie between the manoeuvres before and after."""
+_TRIFLE = 0.2
+"""Share of the largest gain in log likelihood below which a change is not worth a second explanation."""
 _UNKNOWN = 2
 """Riddles that something without a name is worth: a second name is the better answer."""
 
@@ -66,10 +68,12 @@ def _end_s(flight: Flight) -> float:
 
 
 def _changes(e: Evidence) -> list[tuple[float, float]]:
-    """From when to when each change came that was named, s."""
+    """From when to when each change came that was named and is no trifle beside the others, s."""
+    named = [s.added for s in e.stages if s.added is not None]
+    least = _TRIFLE * max((judged.gain for judged in named), default=0.0)
     found = []
-    for judged in (s.added for s in e.stages):
-        if judged is None or not judged.variant.comes_at_any_time:
+    for judged in named:
+        if not judged.variant.comes_at_any_time or judged.gain < least:
             continue
         said = {**judged.variant.fixed, **dict(zip(judged.variant.names, judged.value, strict=True))}
         found.append((float(said["at_s"]), float(said["at_s"] + said.get("over_s", 0.0))))
