@@ -131,7 +131,7 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
 def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver]) -> Evidence:
     """What air speed and accelerometer are off by beside the path, without any aerodynamics."""
     shear = wind_shear(flown)
-    if shear is not None and not _of_the_attitude(e.leftover):
+    if shear is not None and not _feigns_wind(e.leftover):
         # Air that moves swings the air speed, too: beside it what is not plain is worth a note, no more.
         is_there = e.air is None or shear.is_plain
         e = replace(e, shear=shear, leftover=of_the_wind(e.leftover) if is_there else e.leftover)
@@ -146,6 +146,9 @@ def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver]) -> Evidence:
     return replace(e, weight=weight)
 
 
-def _of_the_attitude(leftover: Leftover | None) -> bool:
-    """An attitude that is wrong feigns wind that changes with height, for the climb is computed from it."""
-    return leftover is not None and leftover.block == "attitude_sensor"
+def _feigns_wind(leftover: Leftover | None) -> bool:
+    """An attitude that is wrong, or an accelerometer by a law that is known: the climb, or the speed along
+    the path, is computed from it, and parts from the air speed as in a wind that changes with height."""
+    if leftover is None:
+        return False
+    return leftover.block == "attitude_sensor" or (leftover.block == "accelerometer" and leftover.note != "")
