@@ -177,6 +177,19 @@ def test_wind_that_changes_with_height_shows_in_the_air_speed_and_nowhere_else()
     assert diagnosis.where.block == "air"
 
 
+def test_an_accelerometer_that_does_not_read_in_proportion_feigns_wind_that_changes_with_height():
+    bent = []
+    for maneuver in (blown(m, 0.2) for m in fly(Setup(maneuvers=6, seed=38))):
+        a_z = maneuver.channels["a_z"]
+        reading = replace(a_z, y=a_z.y + 0.02 * (a_z.y + 9.8) ** 2)
+        bent.append(replace(maneuver, channels={**maneuver.channels, "a_z": reading}))
+    assert wind_shear(bent) is not None
+    found = diagnose(bent, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "accelerometer")
+    assert any("does not read in proportion" in note for note in found.notes)
+    assert not any("wind changed" in note for note in found.notes)
+
+
 def test_a_wind_that_plainly_changes_with_height_is_told_from_air_that_moves_besides():
     moving = fly(Setup(maneuvers=6, gust_std=0.5, seed=53))
     assert diagnose(moving, Aircraft()).causes[0].effect == "turbulence"

@@ -32,7 +32,7 @@ _BEHIND = 0.08
 _MOSTLY = 0.98
 """Share of the gap that wrong numbers make, from which on they are the answer whatever is there besides: what
 leaves the file right, and is imitated by other numbers, is imitated by nine tenths at most, but for the one
-that they imitate exactly."""
+that they imitate exactly, if with it they are nearer to the file's."""
 _BY_FAR = 0.985
 """The same beside something without a name in the equations that they belong to."""
 _EQUATIONS = frozenset({"force_equation", "moment_equation"})
@@ -106,7 +106,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
         causes = _put_first(causes, speed)
     verdict: Verdict = "none"
     # An aircraft may bend a little besides: what makes the gap is the answer.
-    imitated = any(judged.variant.twin is not None for judged in named)
+    imitated = any(judged.variant.twin is not None and judged.belief > 0.0 for judged in named)
     mostly = wrong_values and not imitated and beyond > _MOSTLY * (beyond + max(removed, 0.0))
     # Moving air comes with the day, wrong numbers stay; but the larger part of the gap is the answer.
     larger = by_numbers > of_the_air
