@@ -35,6 +35,7 @@ from advisor.gap.unnamed.leftover import (
 from advisor.gap.unnamed.remainder import (
     is_all_named,
     is_of_no_use,
+    of_the_input,
     only_numbers,
     only_resemble,
     remainder,
@@ -100,6 +101,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     alone = len(stages) == 1 and not (air is not None and air.gust)
     if leftover is None and alone and true_speed is not None and true_speed.is_wrong(air is not None):
         leftover = Leftover("accelerometer", 1.0, (("accelerometer", 1.0),))
+    if leftover is not None:
+        leftover = of_the_input(leftover, stages, file_model, floor)
     if leftover is not None and leftover.in_quiet is not None:
         least = np.maximum(stated_floor(problem.flights), tolerance)
         floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))

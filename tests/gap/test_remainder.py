@@ -8,17 +8,21 @@ import pytest
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.fitting.fit import fit
-from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.fitting.holdout import HeldOut, hold_out
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.noise.quiet import quiet_rms
+from advisor.gap.records.floor import stated_floor
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage
+from advisor.gap.search.waterfall import build_up
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.unnamed.leftover import Leftover
 from advisor.gap.unnamed.remainder import (
     is_all_named,
     is_of_no_use,
+    of_the_input,
     only_numbers,
     only_resemble,
     remainder,
@@ -113,3 +117,29 @@ def test_names_that_only_polish_wrong_numbers_are_none(gyro):
     stages, floor = named_beside(gyro, "pitch_rate_scale")
     problem = replace(gyro[0], believed=fitted[0].believed)
     assert not only_numbers(problem, stages, file_model, floor)
+
+
+@pytest.fixture(scope="module")
+def play():
+    """The stages of a flight with play between command and surface."""
+    flown = fly(Setup(maneuvers=4, switches={"play": 0.02}, seed=44))
+    problem, plain = fit_baseline(prepare(flown, Aircraft()), Aircraft())
+    return build_up(problem, plain, variants_for(problem.flights)), stated_floor(problem.flights)
+
+
+def test_what_play_leaves_beside_most_of_a_gap_is_the_inputs_unless_its_law_is_known(play):
+    stages, floor = play
+    assert stages[0].added.effect == "actuator_backlash"
+    elsewhere = Leftover("moment_equation", 0.3, (("moment_equation", 1.0), ("air", 0.6)))
+    found = of_the_input(elsewhere, stages, None, floor)
+    assert found.block == "input"
+    assert found.ranking == (("input", 1.0), ("moment_equation", 1.0), ("air", 0.6))
+    known = replace(elsewhere, note="The damping in pitch is not the same up and down.")
+    assert of_the_input(known, stages, None, floor) == known
+    # Of a gap that it hardly takes from, it is a likeness and tells nothing of the place.
+    much = HeldOut(
+        (), *(3.0 * values for values in (np.zeros(4), stages[1].held_out.mean_square, np.zeros(4)))
+    )
+    hardly = [replace(stages[0], held_out=stages[1].held_out), *stages[1:]]
+    assert of_the_input(elsewhere, hardly, None, floor) == elsewhere
+    assert of_the_input(elsewhere, hardly, much, floor).block == "input"

@@ -38,6 +38,15 @@ def test_an_instrument_that_reads_in_steps_is_unknown_and_its_step_is_said(chann
     assert percent == pytest.approx(100.0 * step / peak, rel=0.05)
 
 
+def test_errors_that_go_up_and_down_with_a_reading_that_may_be_anything_are_no_steps():
+    bent = []
+    for m in fly(Setup(maneuvers=6, noise=0.005, seed=71)):
+        q = m.channels["q"]
+        wavy = replace(q, y=q.y + 0.005 * np.sin(2.0 * np.pi * q.y / 0.025))
+        bent.append(replace(m, channels={**m.channels, "q": wavy}))
+    assert not any("steps of" in note for note in diagnose(bent, Aircraft()).notes)
+
+
 def test_steps_as_fine_as_a_messages_resolution_are_none():
     flown = fly(Setup(maneuvers=6, noise=0.005, seed=71))
     assert diagnose(rounded(flown, "q", 0.001), Aircraft()).verdict == "none"

@@ -1,10 +1,12 @@
 """A name must explain most of the gap: what leaves much of it only resembles what is there, or is nothing."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import gap_of, whole_gap
 from advisor.gap.fitting.problem import Problem
@@ -25,6 +27,29 @@ _USE = 0.1
 """Share of the gap that names must take away."""
 _OF_THE_NUMBERS = 0.01
 """Share of what fitted numbers take away without them below which names only polish wrong numbers."""
+_BENDS = frozenset({"actuator_backlash", "actuator_deadband"})
+_OF_A_BEND, _OF_THE_INPUT = 0.35, 0.85
+"""Share of the gap that play or a dead band takes, or any other effect of the input, from which on what they
+leave is the input's, too, by another law."""
+
+
+def of_the_input(
+    found: Leftover, stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray
+) -> Leftover:
+    """What is left, in the input where an effect there takes most of the gap and leaves something.
+
+    A servo that sticks until it breaks away, or is slow one way only, is told as play or as a lag: what these
+    leave seems to be elsewhere. Arguments as ``is_of_no_use``.
+    """
+    first = stages[0].added
+    if found.note or first is None or BLOCK_OF[first.effect] != "input":
+        return found
+    plain = stages[0].held_out if file_model is None else file_model
+    before, after = (whole_gap(held.mean_square, floor) for held in (plain, stages[1].held_out))
+    if before - after < (_OF_A_BEND if first.effect in _BENDS else _OF_THE_INPUT) * before:
+        return found
+    others = (pair for pair in found.ranking if pair[0] != "input")
+    return replace(found, block="input", ranking=(("input", 1.0), *others))
 
 
 def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> Leftover | None:

@@ -28,6 +28,10 @@ _SHARE = 0.1
 """... share of the channel's error that they must take up ..."""
 _DEPTH = 0.4
 """... and how much of the error of exact steps they must have: noise before rounding blurs them."""
+_GATHERED = 0.5
+"""How much the readings must gather on the steps, 1 where they are nowhere else: noise after the rounding
+spreads them from a fifth of a step on. A surface that sticks, and a stall, leave errors that go up and down
+with a reading, too, but readings everywhere."""
 _NONE = (0.0, 0.0, 0.0)
 
 
@@ -53,7 +57,8 @@ def _steps(problem: Problem, last: Fitted, channel: int) -> tuple[float, float, 
     name, peak = problem.channels[channel], problem.flights.peaks[channel]
     flights = list(zip(problem.flights.flights, last.left, strict=True))
     errors = [left[problem.rows(flight)[channel]] for flight, left in flights]
-    model = np.concatenate([f.outputs[name].y - e for (f, _), e in zip(flights, errors, strict=True)])
+    readings = np.concatenate([f.outputs[name].y for f, _ in flights])
+    model = readings - np.concatenate(errors)
     quiet = np.concatenate([f.is_quiet(f.outputs[name].t) for f, _ in flights])
     error = np.concatenate([e - np.mean(e) for e in errors])
     at_all = max(float(error @ error), 1e-300)
@@ -65,6 +70,8 @@ def _steps(problem: Problem, last: Fitted, channel: int) -> tuple[float, float, 
     shares = np.where(deep & (explained > _SHARE * at_all), explained / at_all, 0.0)
     likeliest = int(np.argmax(shares))
     if shares[likeliest] == 0.0:
+        return _NONE
+    if np.abs(np.mean(np.exp(2j * np.pi * readings / steps[likeliest]))) < _GATHERED:
         return _NONE
     phase = 2.0 * np.pi * (model - np.min(model)) / steps[likeliest]
     course = amplitudes[:, likeliest] @ np.array([np.cos(phase), np.sin(phase)])
