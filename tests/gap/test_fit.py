@@ -15,9 +15,8 @@ from advisor.gap.fitting.step import own_eliminated
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.search.ranking import shortlist
-from advisor.gap.search.score import price_of_edges, smallest_of
-from advisor.gap.search.screen import Screen, Screened
+from advisor.gap.search.score import price_of_edges
+from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.verdict.causes import with_doubt
 from tests.gap.generator import Setup, fly
@@ -75,15 +74,6 @@ def test_own_numbers_are_eliminated_as_least_squares_of_the_rows_would(settled):
     inner, follow = own_eliminated(block, weights)
     assert inner[-1, -1] == pytest.approx(least, rel=1e-6)
     assert np.sum((left - rows @ follow[:, -1]) ** 2) == pytest.approx(least, rel=1e-6)
-
-
-@pytest.mark.parametrize(("share", "fitted"), [(0.9, True), (0.5, False)])
-def test_what_the_screening_finds_a_little_too_small_is_fitted_all_the_same(settled, share, fitted):
-    problem, plain = settled
-    delay = next(v for v in variants_for(problem.flights) if v.effect == "transport_delay")
-    there = plain.point.with_effect(delay, (share * smallest_of(problem, delay),))
-    found = Screened(delay, there, plain.cost - 100.0, plain.noise, 0.0)
-    assert (shortlist(problem, plain, [found]) == [found]) == fitted
 
 
 @pytest.mark.parametrize("effect", ["transport_delay", "actuator_lag", "alpha_skew"])

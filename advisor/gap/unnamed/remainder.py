@@ -27,6 +27,8 @@ _USE = 0.1
 """Share of the gap that names must take away."""
 _OF_THE_NUMBERS = 0.01
 """Share of what fitted numbers take away without them below which names only polish wrong numbers."""
+_BENT_BY_INPUT = frozenset({"moment_equation", "force_equation", "air"})
+"""Where that seems to be: what an instrument does is told by other signs."""
 _BENDS = frozenset({"actuator_backlash", "actuator_deadband"})
 _OF_A_BEND, _OF_THE_INPUT = 0.35, 0.85
 """Share of the gap that play or a dead band takes, or any other effect of the input, from which on what they
@@ -42,7 +44,7 @@ def of_the_input(
     leave seems to be elsewhere. Arguments as ``is_of_no_use``.
     """
     first = stages[0].added
-    if found.note or first is None or BLOCK_OF[first.effect] != "input":
+    if found.note or found.block not in _BENT_BY_INPUT or first is None or BLOCK_OF[first.effect] != "input":
         return found
     plain = stages[0].held_out if file_model is None else file_model
     before, after = (whole_gap(held.mean_square, floor) for held in (plain, stages[1].held_out))

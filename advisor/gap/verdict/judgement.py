@@ -84,7 +84,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     wrong_values = beyond > VISIBLE and file_is_off(problem, stages[-1].fitted, plainly)
     # What bends a little in an equation whose numbers are far off is told beside them.
     little = e.leftover is not None and e.leftover.block in _EQUATIONS and beyond > _BY_FAR * (beyond + left)
-    only_numbers = wrong_values and not named and little
+    only_numbers = wrong_values and not named and e.air is None and little
     unknown = e.leftover is not None and late is None and not only_numbers
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
     removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
