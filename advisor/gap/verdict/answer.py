@@ -117,6 +117,7 @@ def _of_the_numbers(problem: Problem, fitted: Fitted, known: FloatArray, gap: Ga
     for block, letter in (("force_equation", "Z"), ("moment_equation", "M")):
         its = [k for k, name in enumerate(DERIVATIVES) if name.startswith(letter)]
         scores[block] = float(off[its] @ np.linalg.pinv(known[np.ix_(its, its)], hermitian=True) @ off[its])
-    best = max(scores.values())
+    best = max(*scores.values(), 1e-12)
     ranking = sorted(((b, round(s / best, 4)) for b, s in scores.items()), key=lambda item: -item[1])
-    return Where(ranking[0][0], float(np.clip(1.0 - gap.after / gap.before, 0.0, 1.0)), tuple(ranking))
+    removed = 1.0 - gap.after / max(gap.before, 1e-12)
+    return Where(ranking[0][0], float(np.clip(removed, 0.0, 1.0)), tuple(ranking))
