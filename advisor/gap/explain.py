@@ -103,9 +103,9 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         leftover = Leftover("accelerometer", 1.0, (("accelerometer", 1.0),))
     if leftover is not None:
         leftover = of_the_input(leftover, stages, file_model, floor)
-    if leftover is not None and leftover.in_quiet is not None:
-        least = np.maximum(stated_floor(problem.flights), tolerance)
-        floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
+        if leftover.in_quiet is not None:
+            least = np.maximum(stated_floor(problem.flights), tolerance)
+            floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
     speed = at_constant_speed(problem, stages[-1].fitted)
     return Evidence(problem, stages, leftover, air, floor, file_model, speed, true_speed)
 
