@@ -102,6 +102,16 @@ def test_thrust_that_nobody_asked_for_is_what_neither_the_throttle_nor_drag_expl
     assert unasked(replace(surging, has=surging.has - {"a_x"})) is None
 
 
+def test_thrust_that_grows_while_the_aircraft_speeds_up_does_not_pass_for_drag():
+    grown = 0.05 * np.linspace(-0.2, 1.0, 1000)
+    swelling = prepare(throttled(), Aircraft())
+    for flight in swelling.flights:
+        flight.slow[THRUST] = np.interp(np.linspace(0.0, 1.0, flight.n), np.linspace(0.0, 1.0, 1000), grown)
+        flight.slow[SPEED] = 22.0 + GRAVITY_M_S2 * np.cumsum(flight.slow[THRUST]) * flight.h
+        flight.slow[HEIGHT] = 80.0
+    assert unasked(swelling) == pytest.approx(GRAVITY_M_S2 * np.std(grown), rel=0.2)
+
+
 def test_noise_of_an_accelerometer_is_no_thrust_though_the_speed_swings():
     noisy = prepare(throttled(thrust_amplitude=0.8, engine_lag_s=0.6), Aircraft())
     rng, noise = np.random.default_rng(5), 0.03

@@ -20,14 +20,12 @@ _SMOOTHED_S = 1.0
 def work(flights: Flights) -> float | None:
     """How much work beyond drag's would make the speed swing within a manoeuvre, relative to the mean speed.
 
-    What the accelerations show along the path is freed of what goes with V² and with lift squared over V²
-    (the two parts of a parabolic polar) in all manoeuvres alike, and integrated. None where they were not
-    measured.
+    What the accelerations show along the path is freed of a constant and of drag in all manoeuvres alike, and
+    integrated. None where they were not measured.
     """
     if not felt_along(flights):
         return None
-    constant = [np.ones((flight.n, 1)) for flight in flights.flights]
-    beyond = _beyond(flights, [np.hstack(pair) for pair in zip(constant, _drag(flights), strict=True)])
+    beyond = _beyond(flights, [np.ones((flight.n, 1)) for flight in flights.flights])
     gained = [np.std(np.cumsum(b) * flight.h) for b, flight in zip(beyond, flights.flights, strict=True)]
     return float(np.mean(gained)) / mean_speed(flights)
 
@@ -43,10 +41,10 @@ def unasked(flights: Flights) -> float | None:
     if not felt_along(flights) or "height" not in flights.has:
         return None
     columns = []
-    for number, (flight, drag) in enumerate(zip(flights.flights, _drag(flights), strict=True)):
+    for number, flight in enumerate(flights.flights):
         own = np.zeros((flight.n, len(flights)))
         own[:, number] = 1.0
-        columns.append(np.column_stack([own, drag, _lift(flight), *_throttle(flight)]))
+        columns.append(np.column_stack([own, _lift(flight), *_throttle(flight)]))
     swings_by, explained, swung = [], 0.0, 0.0
     for flight, rest in zip(flights.flights, _beyond(flights, columns), strict=True):
         swings_by.append(np.std(smooth(rest, _SMOOTHED_S)))
@@ -91,15 +89,28 @@ def _throttle(flight: Flight) -> list[FloatArray]:
     return [asked, *(asked[0] + (1.0 - k) * accumulated(asked - asked[0], k) for k in keeps)]
 
 
-def _drag(flights: Flights) -> list[FloatArray]:
-    """Per manoeuvre, shape (n, 2): what the two parts of a parabolic polar go with."""
-    return [np.column_stack([f.slow[SPEED] ** 2, (_lift(f) / f.slow[SPEED]) ** 2]) for f in flights.flights]
+def _drag(flights: Flights) -> FloatArray:
+    """Shape (samples of all manoeuvres, 2): V² and (lift / V)², what a parabolic polar goes with."""
+    return np.vstack(
+        [np.column_stack([f.slow[SPEED] ** 2, (_lift(f) / f.slow[SPEED]) ** 2]) for f in flights.flights]
+    )
 
 
 def _beyond(flights: Flights, columns: Sequence[FloatArray]) -> list[FloatArray]:
-    """Per manoeuvre, shape (n,): the acceleration along the path that the columns do not explain, m/s²."""
-    along = [GRAVITY_M_S2 * flight.slow[THRUST] for flight in flights.flights]
-    X = np.vstack(columns)
-    scale = np.maximum(np.max(np.abs(X), axis=0), 1e-12)
-    parts = np.linalg.lstsq(X / scale, np.concatenate(along), rcond=1e-9)[0] / scale
-    return [felt - taken @ parts for felt, taken in zip(along, columns, strict=True)]
+    """Per manoeuvre, shape (n,): acceleration along the path that neither drag nor columns explain, m/s².
+
+    Drag and a propeller's loss of thrust with speed hold an aircraft back. A thrust that swings slowly moves
+    the speed with it and would pass for the contrary: a part of the polar that pushes is left out.
+    """
+    felt = np.concatenate([GRAVITY_M_S2 * flight.slow[THRUST] for flight in flights.flights])
+    drag = _drag(flights)
+    while True:
+        X = np.hstack([drag, np.vstack(columns)])
+        scale = np.maximum(np.max(np.abs(X), axis=0), 1e-12)
+        parts = np.linalg.lstsq(X / scale, felt, rcond=1e-9)[0] / scale
+        holds_back = parts[: drag.shape[1]] <= 0.0
+        if np.all(holds_back):
+            break
+        drag = drag[:, holds_back]
+    ends = np.cumsum([flight.n for flight in flights.flights])
+    return np.split(felt - X @ parts, ends[:-1])
