@@ -8,7 +8,6 @@ import numpy as np
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 
-SMALLEST_BIAS_RAD = np.radians(0.1)
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
 """The beginning of a record; share of itself that an offset may lack there, in the mean of all manoeuvres;
 and how many times their scatter that takes."""

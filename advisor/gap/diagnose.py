@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.aircraft import Aircraft
-from advisor.flight.alpha_offset import SMALLEST_BIAS_RAD
 from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import BLOCK_OF
@@ -13,9 +12,10 @@ from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
+from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.search.merit import OFFSET_SIGMAS
+from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.unnamed.leftover import Leftover, of_the_wind
 from advisor.gap.unnamed.weight import weight_carried
@@ -53,7 +53,7 @@ def diagnose(
         Too few manoeuvres, or no angle of attack.
     """
     progress("checking the angle of attack against the motion", 0.0)
-    aircraft = _with_speed(maneuvers, aircraft)
+    aircraft = _with_speed(usable_of(maneuvers), aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = [_without_offset(m, offset) for m in maneuvers]
     evidence, kinematics = _explained(maneuvers, aircraft, progress)
@@ -82,7 +82,7 @@ def _explained(
     flown = [_without_dead_pitot(m) for m in maneuvers if m.number in numbers]
     kinematics = combine([check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown])
     progress("fitting the simulator's model", 0.1)
-    least = max(SMALLEST_BIAS_RAD, OFFSET_SIGMAS * kinematics.offset.std_rad)
+    least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * kinematics.offset.std_rad)
     if kinematics.offset.stays and abs(kinematics.offset.rad) > least:
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
         flights = prepare([_without_offset(m, kinematics.offset.rad) for m in maneuvers], aircraft)

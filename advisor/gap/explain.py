@@ -13,7 +13,7 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.linear import linearise
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.noise.quiet import quiet_rms
@@ -141,8 +141,8 @@ def _named(
 def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage], Air | None]:
     """The air's motion, and the stages without what is no more than its shape."""
     last = stages[-1].fitted
-    samples = sum(len(f.outputs["q"].t) for f in problem.flights.flights)
-    if not problem.knows_the_noise and np.min(worth(problem, last.innovations)) >= 0.5 * samples:
+    nearly_white = np.all(worth(problem, last.innovations) >= 0.5 * counts(problem))
+    if not problem.knows_the_noise and nearly_white:
         return stages, None
     air = moving_air(problem, last)
     if air is None:

@@ -28,4 +28,4 @@ def test_the_time_of_a_change_stays_where_only_manoeuvres_kept_out_tell_it(heavi
     point = plain.point.with_effect(gradual, (0.2, at_s - 0.5 * over_s, over_s))
     fitted = fit(problem, point, plain.noise, tolerance=0.5)
     predicted = hold_out(problem, fitted)
-    assert np.all(predicted.innovations < 3.0 * fitted.noise**2)
+    assert np.all(predicted.innovation_square < 3.0 * fitted.noise**2)

@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.fitting.fit import fit
-from advisor.gap.fitting.holdout import HeldOut, hold_out
+from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.records.floor import stated_floor
@@ -137,9 +137,7 @@ def test_what_play_leaves_beside_most_of_a_gap_is_the_inputs_unless_its_law_is_k
     known = replace(elsewhere, note="The damping in pitch is not the same up and down.")
     assert of_the_input(known, stages, None, floor) == known
     # Of a gap that it hardly takes from, it is a likeness and tells nothing of the place.
-    much = HeldOut(
-        (), *(3.0 * values for values in (np.zeros(4), stages[1].held_out.mean_square, np.zeros(4)))
-    )
+    much = replace(stages[1].held_out, mean_square=3.0 * stages[1].held_out.mean_square)
     hardly = [replace(stages[0], held_out=stages[1].held_out), *stages[1:]]
     assert of_the_input(elsewhere, hardly, None, floor) == elsewhere
     assert of_the_input(elsewhere, hardly, much, floor).block == "input"

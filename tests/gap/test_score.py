@@ -71,7 +71,7 @@ def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain
 
 def test_beside_turbulence_that_explains_far_more_only_what_is_plain_is_not_its_shape(late):
     *_, judged = late
-    strong = Air(0.01, 1000.0, False, 1, 0.02, 0.0, np.zeros(4), (), 100.0)
+    strong = Air(0.01, 1000.0, False, 1, 0.02, 0.0, np.zeros(4), (), np.zeros(4), 100.0)
     thrust = replace(judged.variant, effect="thrust_moment")
     plain = replace(judged, variant=thrust, gain=18.0, removed=20.0 * judged.least, belief=0.0)
     assert not strong.may_be(plain)
@@ -134,7 +134,7 @@ def test_what_is_kept_out_is_predicted_alike_by_two_names_of_one_motion():
     for name in ("accelerometer_offset", "alpha_vane_offset"):
         variant = next(v for v in variants_for(flights) if v.effect == name)
         fitted = fit(problem, plain.point.with_effect(variant, variant.starts[0]), plain.noise, 25)
-        errors.append(hold_out(problem, fitted).innovations / fitted.noise**2)
+        errors.append(hold_out(problem, fitted).innovation_square / fitted.noise**2)
     # The accelerometer and the attitude see the two arms differ a little where the speed moves.
     angle_and_rate = slice(0, 2)
     assert errors[0][angle_and_rate] == pytest.approx(errors[1][angle_and_rate], rel=1e-3)

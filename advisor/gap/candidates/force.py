@@ -66,6 +66,7 @@ def variants(flights: Flights) -> list[Variant]:
                 0.0,
                 entries=(lift, "M_h", "scale_m"),
                 needs=frozenset({"height"}),
+                places=("scale_m",),
             )
             for lift, bounds in (("lift_h", (-0.9, 3.0)), ("Z_h", (-50.0, 50.0)))
         ),

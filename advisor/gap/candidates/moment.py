@@ -95,6 +95,7 @@ def variants(flights: Flights) -> list[Variant]:
             0.0,
             entries=("M_throttle", "engine_lag_s"),
             needs=frozenset({"throttle"}),
+            places=("lag_s",),
         ),
         Variant(
             "alpha_dot",

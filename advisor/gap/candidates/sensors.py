@@ -88,6 +88,7 @@ def variants(least_s: float) -> list[Variant]:
             ((-50.0, 50.0), (-50.0, 50.0), (12.0, 80.0), (0.003, 0.15)),
             0.0,
             entries=("mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping"),
+            places=("omega_rad_s", "damping"),
         ),
         Variant(
             "accelerometer_offset",

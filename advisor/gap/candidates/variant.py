@@ -29,7 +29,7 @@ class Variant:
     smallest: float
     """Size of the first parameter below which the effect is not worth a name: 4 ms, 1 %, 0.1 deg."""
     entries: tuple[str, ...] = ()
-    """Entries of the simulation the parameters are, one to one; empty when ``apply`` says otherwise."""
+    """Entries of the simulation the parameters are, one to one; empty when ``apply_with`` says otherwise."""
     apply_with: Apply | None = None
     sides: tuple[str, tuple[float, ...]] | None = None
     """An entry that may take any of some values in each manoeuvre: which side the play rests on."""
@@ -40,7 +40,7 @@ class Variant:
     one_sided: bool = False
     """Its bounds are physics, not the range of the search: a parameter may well lie there."""
     places: tuple[str, ...] = ()
-    """Parameters that say where, not how much: at zero they are no "no effect"."""
+    """Parameters that say where, when or how fast, not how much: at zero they are no "no effect"."""
     spread: tuple[float, ...] = ()
     """Standard deviation about zero that each parameter has beforehand; none: anything goes."""
     always: bool = False

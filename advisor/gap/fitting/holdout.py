@@ -33,10 +33,12 @@ class HeldOut:
 
     left: tuple[FloatArray, ...]
     """Per manoeuvre, stacked channels, in their units."""
-    innovations: FloatArray
-    """Shape (channels,): mean squares after the filter; the same as ``mean_square`` without one."""
+    innovations: tuple[FloatArray, ...]
+    """The same after the filter."""
     mean_square: FloatArray
     """Shape (channels,)."""
+    innovation_square: FloatArray
+    """Shape (channels,): mean square after the filter."""
     by_maneuver: FloatArray
     """Shape (manoeuvres, channels): mean squares."""
 
@@ -93,11 +95,13 @@ def _without_effect(point: Point) -> FloatArray:
 
 def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, witnesses: Collection[int]) -> HeldOut:
     """The same, but of some manoeuvres what the fit itself leaves: what they alone tell no other predicts."""
-    lefts = [
-        inside if i in witnesses else kept_out
-        for i, (inside, kept_out) in enumerate(zip(fitted.left, held.left, strict=True))
-    ]
-    return held_out(problem, lefts)
+
+    def chosen(inside: Sequence[FloatArray], kept_out: Sequence[FloatArray]) -> list[FloatArray]:
+        pairs = enumerate(zip(inside, kept_out, strict=True))
+        return [seen if i in witnesses else unseen for i, (seen, unseen) in pairs]
+
+    innovations = chosen(fitted.innovations, held.innovations)
+    return held_out(problem, chosen(fitted.left, held.left), innovations)
 
 
 def lone_witness(fitted: Fitted, index: int) -> int | None:
@@ -110,11 +114,12 @@ def lone_witness(fitted: Fitted, index: int) -> int | None:
 def held_out(
     problem: Problem, lefts: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
 ) -> HeldOut:
-    """Residuals with their mean squares."""
-    powers = mean_squares(problem, lefts)
-    total = rms_of(problem, lefts) ** 2
-    seen = total if innovations is None else rms_of(problem, innovations) ** 2
-    return HeldOut(tuple(lefts), seen, total, powers)
+    """Residuals with their mean squares; without innovations they are their own."""
+    whitened = tuple(lefts if innovations is None else innovations)
+    return HeldOut(
+        tuple(lefts), whitened,
+        rms_of(problem, lefts) ** 2, rms_of(problem, whitened) ** 2, mean_squares(problem, lefts),
+    )  # fmt: skip
 
 
 def mean_squares(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:

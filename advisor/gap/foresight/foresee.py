@@ -95,8 +95,12 @@ def foresee(
     marks = Marks(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
     present = {e.effect for e in fitted.point.effects}
     apart = present | {mark.effect for mark in others}
+    wanted = [v for v in _one_each(variants) if v.effect not in apart]
+    sizes = [_first_size(v) for v in wanted]
+    seen = _responses(problem, fitted, list(zip(wanted, sizes, strict=True)))
     found = [
-        _mark_of(problem, fitted, marks, v, rounds) for v in _one_each(variants) if v.effect not in apart
+        _mark_of(problem, fitted, marks, variant, size, marks.of(response), rounds)
+        for variant, size, response in zip(wanted, sizes, seen, strict=True)
     ]
     found += others
     shares = _shares(problem, fitted)
@@ -137,40 +141,63 @@ def _one_each(variants: Sequence[Variant]) -> list[Variant]:
     ]
 
 
-def _mark_of(problem: Problem, fitted: Fitted, marks: Marks, variant: Variant, rounds: int) -> Mark:
+def _reach(variant: Variant) -> float:
+    """The size, with its sign, beyond which nobody looks for an effect."""
+    low, high = variant.bounds[0]
+    return high if high >= -low or variant.starts[0][0] > 0.0 else low
+
+
+def _first_size(variant: Variant) -> float:
+    """The size, with its sign, at which an effect's response is taken first."""
+    return float(np.copysign(abs(variant.starts[0][0]) or variant.steps[0], _reach(variant)))
+
+
+def _mark_of(
+    problem: Problem,
+    fitted: Fitted,
+    marks: Marks,
+    variant: Variant,
+    size: float,
+    vector: FloatArray,
+    rounds: int,
+) -> Mark:
     """The model's response to an effect, per unit of its first parameter.
 
     An effect whose search starts at nothing is linear there, and its derivative serves. The others bend: a
     limit that no command reaches leaves no mark at all. Their response is taken at the size that just shows.
+    ``vector`` is the mark at the first size.
     """
-    low, high = variant.bounds[0]
-    sign, reach = (1.0, high) if high >= -low or variant.starts[0][0] > 0.0 else (-1.0, -low)
+    reach = _reach(variant)
     numbers = len(variant.names)
     needed = _needed(marks, numbers)
-    size = abs(variant.starts[0][0]) or variant.steps[0]
-    vector = marks.of(_response(problem, fitted, variant, sign * size))
     for _ in range(rounds - 1 if variant.starts[0][0] else 0):
         just = max(marks.smallest(vector, needed), variant.smallest)
-        wanted = min(just if np.isfinite(just) else _GROWTH * size, reach)
-        if abs(wanted - size) < _CLOSE * size:
+        wanted = min(just if np.isfinite(just) else _GROWTH * abs(size), abs(reach))
+        if abs(wanted - abs(size)) < _CLOSE * abs(size):
             break
-        size = wanted
-        vector = marks.of(_response(problem, fitted, variant, sign * size))
-    return Mark(variant.effect, variant.names[0], vector, variant.smallest, reach, numbers, variant.inverted)
+        size = float(np.copysign(wanted, reach))
+        vector = marks.of(_responses(problem, fitted, [(variant, size)])[0])
+    least, most = variant.smallest, abs(reach)
+    return Mark(variant.effect, variant.names[0], vector, least, most, numbers, variant.inverted)
 
 
-def _response(problem: Problem, fitted: Fitted, variant: Variant, size: float) -> list[FloatArray]:
-    """Change of every manoeuvre's channels, shape (rows,), per unit of the effect's size."""
-    sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
-    rest = variant.starts[0][1:]
-    there, here = (
-        problem.driving(fitted.point.with_effect(variant, (value, *rest), sides)) for value in (size, 0.0)
-    )
-    changes = []
+def _responses(
+    problem: Problem, fitted: Fitted, sized: Sequence[tuple[Variant, float]]
+) -> list[list[FloatArray]]:
+    """Per effect: change of every manoeuvre's channels, shape (rows,), per unit of the effect's size."""
+    driving = []
+    for variant, size in sized:
+        sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
+        rest = variant.starts[0][1:]
+        driving += [
+            problem.driving(fitted.point.with_effect(variant, (value, *rest), sides)) for value in (size, 0.0)
+        ]
+    changes: list[list[FloatArray]] = [[] for _ in sized]
     for i, flight in enumerate(problem.flights.flights):
-        rows = np.stack([there[i], here[i]])
-        seen = problem.fly_and_read(flight, rows)
-        changes.append((seen[:, 0] - seen[:, 1]) / size)
+        # All effects at once: the simulations of a manoeuvre share packs.
+        seen = problem.fly_and_read(flight, np.stack([p[i] for p in driving]))
+        for k, (_, size) in enumerate(sized):
+            changes[k].append((seen[:, 2 * k] - seen[:, 2 * k + 1]) / size)
     return changes
 
 

@@ -9,6 +9,7 @@ from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 from advisor.gap.candidates.catalogue import BLOCK_OF, variants_for
+from advisor.gap.candidates.known import beyond_known, with_known
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Point, Problem
@@ -17,7 +18,8 @@ from advisor.gap.foresight.foresee import Foreseen, foresee
 from advisor.gap.foresight.foresee_apart import foresee_air, foresee_offset, impossible, speed_mark
 from advisor.gap.foresight.marks import Marks
 from advisor.gap.records.flights import Flights
-from advisor.gap.records.prepare import LEAST_SAMPLES, prepare
+from advisor.gap.records.prepare import prepare
+from advisor.gap.records.usable import LEAST_SAMPLES
 from advisor.gap.search.baseline import base_entries, believed_derivatives, everywhere
 from advisor.gap.simulator.layout import NUISANCES, OUTPUTS
 from advisor.problems import ConfigurationError
@@ -94,7 +96,9 @@ def foresee_flights(
     unit_s
         Time unit of the input; a gust is taken to last two of them.
     """
-    problem = Problem(flights, base_entries(aircraft), believed=derivatives)
+    variants = variants_for(flights)
+    known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
+    problem = Problem(flights, known, believed=derivatives)
     own = np.zeros((len(flights), len(NUISANCES)))
     own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
     point = everywhere(Point(derivatives, own), flights)
@@ -106,7 +110,7 @@ def foresee_flights(
     marks = Marks(problem, fitted, noise)
     apart = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []
     found = [
-        *foresee(problem, fitted, variants_for(flights), noise, apart),
+        *foresee(problem, fitted, beyond_known(aircraft.effects, variants), noise, apart),
         *foresee_air(problem, fitted, marks, unit_s),
         foresee_offset(problem, noise),
     ]

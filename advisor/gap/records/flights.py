@@ -67,9 +67,7 @@ class Flight:
     @property
     def level_lift(self) -> float:
         """Trim term of Eq. (1) that carries the weight at the mean speed, given at the reference speed."""
-        speed = float(np.mean(self.slow[SPEED]))
-        given_at = float(self.trim[REFERENCE]) if self.trim[SCALED] else speed
-        return -GRAVITY_M_S2 * given_at / speed**2
+        return -GRAVITY_M_S2 * float(self.trim[REFERENCE]) / float(np.mean(self.slow[SPEED])) ** 2
 
     def at_constant_speed(self) -> "Flight":
         """The same with derivatives that do not move with the air speed."""

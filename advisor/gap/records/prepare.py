@@ -1,53 +1,37 @@
-"""Manoeuvres made ready: which can be used, and what of them is put on the grid."""
+"""Manoeuvres made ready: what of them is put on the grid, and what is known of their instruments."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import compress
 
 import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.renewal import renewed
 from advisor.gap.records.airspeed import (
     airspeed_on,
     along_the_path,
     measures_speed,
     speed_doubts,
 )
-from advisor.gap.records.edges import edges_of, held_from, step_unseen
-from advisor.gap.records.flights import Flight, Flights, Measured
+from advisor.gap.records.edges import edges_of, held_from
+from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
+from advisor.gap.records.usable import outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SPEED, THETA_FROM, THRUST
 from advisor.gravity import GRAVITY_M_S2
 
 STEP_S = 0.005
 """Grid of the simulation: a hundredth of the fastest short period, as fine as stamps are known."""
-LEAST_SAMPLES = 15
-"""Of a channel in a manoeuvre: what a derived α of 8 Hz brings in the shortest."""
-_LEAST_RENEWED = 30
-"""Renewals below which a channel that repeats itself is taken as it is: a vane may stick."""
-DEPARTED_RAD = 1.0
-"""Swing of the angle of attack that no equation about a trim describes any more."""
 ASSUMED_M_S = 20.0
 """Air speed where neither log nor file nor motion has one: then only the weight's part of α̇ knows of it."""
-_ENOUGH = 4
-"""Manoeuvres with all that is needed that are enough to leave the others out."""
 
 
-def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed: bool = True) -> Flights:
-    """Make the manoeuvres ready.
-
-    Left out are those without elevator or pitch rate, those that departed, and, where enough others are
-    left, those without an angle of attack or in which a step of the command fell into a hole of the log.
-    """
-    usable = [m for m in maneuvers if _usable(m)]
-    seen = [m for m in usable if not step_unseen(m)]
-    if len(seen) >= _ENOUGH:
-        usable = seen
+def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Flights:
+    """Make the manoeuvres ready; those that cannot be used are left out (``usable_of``)."""
+    usable = usable_of(maneuvers)
     speeds = [m.channels["airspeed"].y for m in usable if measures_speed(m)]
     measured = bool(usable) and len(speeds) == len(usable)
     shown = None
@@ -59,10 +43,7 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
         shown = speeds_about(usable, reference)
         moves = shown.moves
     levels = [None] * len(usable) if shown is None else [float(v) for v in shown.before_m_s]
-    flights = _about_their_mean(
-        _ready(m, aircraft, reference, level, scale_with_speed)
-        for m, level in zip(usable, levels, strict=True)
-    )
+    flights = _about_their_mean(_ready(m, reference, level) for m, level in zip(usable, levels, strict=True))
     if shown is None:
         flights = _with_doubt(flights, usable)
     else:
@@ -70,9 +51,6 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, scale_with_speed:
             replace(f, speed_doubt=np.array([[doubt]]))
             for f, doubt in zip(flights, shown.doubt_m_s, strict=True)
         )
-    with_alpha = tuple("alpha" in f.outputs for f in flights)
-    if sum(with_alpha) >= _ENOUGH:
-        usable, flights = list(compress(usable, with_alpha)), tuple(compress(flights, with_alpha))
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
     flights = tuple(_with_rows(f, channels) for f in flights)
@@ -125,17 +103,9 @@ def _with_doubt(flights: Sequence[Flight], maneuvers: Sequence[Maneuver]) -> tup
     return tuple(replace(f, speed_doubt=doubt) for f, doubt in zip(flights, doubts, strict=True))
 
 
-def _usable(maneuver: Maneuver) -> bool:
-    found = maneuver.channels
-    if not all(name in found and len(found[name]) >= LEAST_SAMPLES for name in ("elevator", "q")):
-        return False
-    return "alpha" not in found or float(np.ptp(found["alpha"].y)) < DEPARTED_RAD
-
-
-def _ready(m: Maneuver, aircraft: Aircraft, reference: float, level: float | None, scaled: bool) -> Flight:
+def _ready(m: Maneuver, reference: float, level: float | None) -> Flight:
     """On the grid; ``level`` is its speed in m/s before the first step, None where the log has the speed."""
-    start = max(m.channels["elevator"].t[0], m.channels["q"].t[0])
-    end = min(m.channels["elevator"].t[-1], m.channels["q"].t[-1])
+    start, end = recorded(m)
     n = int(np.ceil((end - start) / STEP_S)) + 1
     grid: FloatArray = (np.arange(n, dtype=np.float64) + 0.5) * STEP_S
     first = m.span.start_s - start
@@ -154,7 +124,7 @@ def _ready(m: Maneuver, aircraft: Aircraft, reference: float, level: float | Non
     height = on_grid("height", 1e3)
     along = along_the_path(grid, m, start) / GRAVITY_M_S2
     slow = np.vstack([speed, a_x, bank, throttle - float(np.mean(throttle[:20])), height, along])
-    outputs = _outputs(m, start, end)
+    outputs = outputs_of(m)
     t_u, u = m.channels["elevator"].t - start, m.channels["elevator"].y
     lead = (t_u >= 0.0) & (t_u < max(first - 0.02, 0.1))
     u_trim = float(np.median(u[lead])) if np.any(lead) else float(u[0])
@@ -165,9 +135,8 @@ def _ready(m: Maneuver, aircraft: Aircraft, reference: float, level: float | Non
         out = outputs[name]
         return float(np.mean(out.y[out.t <= max(first, out.t[0] + 0.1)]))
 
-    trim = np.array(
-        [at_start("alpha", 0.0), at_start("theta", at_start("alpha", 0.0)), reference, float(scaled)]
-    )
+    alpha = at_start("alpha", 0.0)
+    trim = np.array([alpha, at_start("theta", alpha), reference, 1.0])
     if "theta" in outputs:
         trim[THETA_FROM] = float(np.mean(outputs["theta"].y[:3]))
     return Flight(
@@ -181,19 +150,6 @@ def _with_rows(flight: Flight, channels: Sequence[str]) -> Flight:
     times = [flight.outputs[c].t for c in channels]
     output = np.repeat([OUTPUTS.index(c) for c in channels], [len(t) for t in times])
     return replace(flight, stamps=np.concatenate(times), output=output.astype(np.int64))
-
-
-def _outputs(m: Maneuver, start: float, end: float) -> dict[str, Measured]:
-    outputs = {}
-    for name in OUTPUTS:
-        channel = m.channels.get(name)
-        if channel is None or len(channel) < LEAST_SAMPLES:
-            continue
-        cut = channel.cut(start, end)
-        t, y = renewed(cut.t - start, cut.y, _LEAST_RENEWED)
-        if len(t) >= LEAST_SAMPLES:
-            outputs[name] = Measured(t, y)
-    return outputs
 
 
 def smooth(y: FloatArray, seconds: float) -> FloatArray:

@@ -65,6 +65,8 @@ class Air:
     """Shape (channels,): mean square that stays when the likeliest course of the air is taken out."""
     lefts: tuple[FloatArray, ...]
     """The same per manoeuvre, stacked channels, in their units."""
+    instruments: FloatArray
+    """Shape (channels,): noise of the instruments beside it."""
     power: float
     """What its course takes up, mean over channels of the mean square beside the instruments' noise."""
 
@@ -118,7 +120,7 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
         gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
-        left=left, lefts=course.lefts, power=float(np.mean(taken / floor**2)),
+        left=left, lefts=course.lefts, instruments=instruments, power=float(np.mean(taken / floor**2)),
     )  # fmt: skip
 
 

@@ -66,13 +66,9 @@ def addition(
     likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed=lone)
     likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
     likelihood += 0.5 * (problem.strangeness(before.point) - problem.strangeness(point))
-    numbers = len(variant.names) + (1 if variant.fixed else 0)
-    price = 0.5 * numbers * float(np.log(np.sum(independent)))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
-    odds = odds_of_arm(
-        variant.effect, float(value[0]), problem.arms_in_file, problem.flights.alpha_is_derived
-    )
-    least, beforehand = least_change(problem), belief + odds - price
+    odds = odds_in(problem, variant.effect, float(value[0]))
+    least, beforehand = least_change(problem), belief + odds - price_of(variant, independent)
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
         gain=likelihood + beforehand,
@@ -83,6 +79,17 @@ def addition(
         with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_plain(before),
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
+
+
+def price_of(variant: Variant, independent: FloatArray) -> float:
+    """k/2 ln N of an effect's k numbers, one of them for the choice of what is fixed in it (Schwarz)."""
+    numbers = len(variant.names) + (1 if variant.fixed else 0)
+    return 0.5 * numbers * float(np.log(np.sum(independent)))
+
+
+def odds_in(problem: Problem, effect: str, size: float) -> float:
+    """Log odds beforehand of an arm of that size, 0 for other effects."""
+    return odds_of_arm(effect, size, problem.arms_in_file, problem.flights.alpha_is_derived)
 
 
 def log_likelihood_gained(
@@ -99,7 +106,7 @@ def log_likelihood_gained(
     """
     ratios = [np.log((before.noise / after.noise) ** 2)]
     if not unconfirmed:
-        ratios.append(np.log(held_before.innovations / held_after.innovations))
+        ratios.append(np.log(held_before.innovation_square / held_after.innovation_square))
     return min(float(np.sum(independent / 2.0 * r)) for r in ratios)
 
 

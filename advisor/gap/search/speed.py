@@ -39,7 +39,7 @@ _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
 _UNASKED = 0.003 * GRAVITY_M_S2
 """Thrust that nobody asked for, m/s²: what drag and engines do beyond simple laws stays below it ..."""
-_UNASKED_SWING = 0.0045
+_UNASKED_SWING = 0.006
 """... if the speed swings by more than this, relative ..."""
 _UNASKED_GUSTS = 1.5
 """... and than this many times the air's own motion ..."""

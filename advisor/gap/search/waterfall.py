@@ -35,9 +35,11 @@ def build_up(
     fitted, held, ahead = baseline, hold_out(problem, baseline), None
     for n in range(MOST_EFFECTS + 1):
         progress(f"trying {len(variants)} ways to explain what is left", 0.2 + 0.15 * n)
+        if n == MOST_EFFECTS:
+            stages.append(Stage(fitted, held, (), None))
+            break
         considered = ahead or judge(problem, fitted, held, candidates_for(problem, fitted, variants))
-        added = next((j for j in considered if j.worth_naming), None) if n < MOST_EFFECTS else None
-        ahead = None
+        added, ahead = next((j for j in considered if j.worth_naming), None), None
         if added is None and n < MOST_EFFECTS - 1:
             added, ahead = _leading_on(problem, considered, variants)
         stages.append(Stage(fitted, held, tuple(considered), added))
@@ -146,5 +148,7 @@ def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) 
     considered = {s.added.effect: s.considered for s in stages if s.added is not None}
     if list(names) == list(considered):
         return list(stages)
+    if not names:
+        return [replace(stages[0], added=None)]
     full = only(problem, stages[-1].fitted, names)
     return in_full(problem, rebuilt(problem, stages[0], names, full, considered, stages[-1].considered))

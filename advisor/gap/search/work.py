@@ -25,7 +25,8 @@ def work(flights: Flights) -> float | None:
     """
     if not felt_along(flights):
         return None
-    beyond = _beyond(flights, [np.ones((flight.n, 1)) for flight in flights.flights])
+    everywhere = [slice(0, flight.n) for flight in flights.flights]
+    beyond = _beyond(flights, [np.ones((flight.n, 1)) for flight in flights.flights], everywhere)
     gained = [np.std(np.cumsum(b) * flight.h) for b, flight in zip(beyond, flights.flights, strict=True)]
     return float(np.mean(gained)) / mean_speed(flights)
 
@@ -33,10 +34,11 @@ def work(flights: Flights) -> float | None:
 def unasked(flights: Flights) -> float | None:
     """Thrust that swings though the throttle does not, m/s²: median of standard deviations in a manoeuvre.
 
-    What the accelerations show along the path is freed of a constant in each manoeuvre, of drag, of an
-    instrument that leans, and of what follows the throttle, at once or late. It counts for the share of the
-    energy's swing that it accounts for: air speed and height were measured by other instruments, and know
-    nothing of an accelerometer's noise. None where accelerations or height were not measured.
+    What the accelerations show along the path while it is flown (a pilot sets the speed before and after) is
+    freed of a constant in each manoeuvre, of drag, of an instrument that leans, and of what follows the
+    throttle, at once or late. It counts for the share of the energy's swing that it accounts for: air speed
+    and height were measured by other instruments, and know nothing of an accelerometer's noise. None where
+    accelerations or height were not measured.
     """
     if not felt_along(flights) or "height" not in flights.has:
         return None
@@ -45,13 +47,23 @@ def unasked(flights: Flights) -> float | None:
         own = np.zeros((flight.n, len(flights)))
         own[:, number] = 1.0
         columns.append(np.column_stack([own, _lift(flight), *_throttle(flight)]))
+    stretches = [_while_flown(flight) for flight in flights.flights]
     swings_by, explained, swung = [], 0.0, 0.0
-    for flight, rest in zip(flights.flights, _beyond(flights, columns), strict=True):
+    for flight, flown, rest in zip(
+        flights.flights, stretches, _beyond(flights, columns, stretches), strict=True
+    ):
         swings_by.append(np.std(smooth(rest, _SMOOTHED_S)))
-        gained, energy = _swing(np.cumsum(rest) * flight.h), _swing(energy_speed(flight))
+        gained, energy = _swing(np.cumsum(rest) * flight.h), _swing(energy_speed(flight)[flown])
         explained += float(gained @ energy)
         swung += float(energy @ energy)
     return float(np.median(swings_by)) * explained / max(swung, 1e-300)
+
+
+def _while_flown(flight: Flight) -> slice:
+    """From the first step on, without the last second; all of it where next to nothing would be left."""
+    first = max(int(flight.first_step_s / flight.h), 0)
+    last = flight.n - int(_SMOOTHED_S / flight.h)
+    return slice(first, last) if last - first > int(2.0 * _SMOOTHED_S / flight.h) else slice(0, flight.n)
 
 
 def energy_speed(flight: Flight) -> FloatArray:
@@ -89,28 +101,27 @@ def _throttle(flight: Flight) -> list[FloatArray]:
     return [asked, *(asked[0] + (1.0 - k) * accumulated(asked - asked[0], k) for k in keeps)]
 
 
-def _drag(flights: Flights) -> FloatArray:
-    """Shape (samples of all manoeuvres, 2): V² and (lift / V)², what a parabolic polar goes with."""
-    return np.vstack(
-        [np.column_stack([f.slow[SPEED] ** 2, (_lift(f) / f.slow[SPEED]) ** 2]) for f in flights.flights]
-    )
+def _drag(flight: Flight) -> FloatArray:
+    """Shape (n, 2): V² and (lift / V)², what the parts of a parabolic polar go with."""
+    return np.column_stack([flight.slow[SPEED] ** 2, (_lift(flight) / flight.slow[SPEED]) ** 2])
 
 
-def _beyond(flights: Flights, columns: Sequence[FloatArray]) -> list[FloatArray]:
-    """Per manoeuvre, shape (n,): acceleration along the path that neither drag nor columns explain, m/s².
+def _beyond(flights: Flights, columns: Sequence[FloatArray], stretches: Sequence[slice]) -> list[FloatArray]:
+    """Per manoeuvre, in its stretch: acceleration along the path that neither drag nor columns explain, m/s².
 
     Drag and a propeller's loss of thrust with speed hold an aircraft back. A thrust that swings slowly moves
     the speed with it and would pass for the contrary: a part of the polar that pushes is left out.
     """
-    felt = np.concatenate([GRAVITY_M_S2 * flight.slow[THRUST] for flight in flights.flights])
-    drag = _drag(flights)
+    cut = list(zip(flights.flights, columns, stretches, strict=True))
+    along = np.concatenate([GRAVITY_M_S2 * flight.slow[THRUST][flown] for flight, _, flown in cut])
+    drag = np.vstack([_drag(flight)[flown] for flight, _, flown in cut])
+    others = np.vstack([one[flown] for _, one, flown in cut])
     while True:
-        X = np.hstack([drag, np.vstack(columns)])
+        X = np.hstack([drag, others])
         scale = np.maximum(np.max(np.abs(X), axis=0), 1e-12)
-        parts = np.linalg.lstsq(X / scale, felt, rcond=1e-9)[0] / scale
+        parts = np.linalg.lstsq(X / scale, along, rcond=1e-9)[0] / scale
         holds_back = parts[: drag.shape[1]] <= 0.0
         if np.all(holds_back):
             break
         drag = drag[:, holds_back]
-    ends = np.cumsum([flight.n for flight in flights.flights])
-    return np.split(felt - X @ parts, ends[:-1])
+    return np.split(along - X @ parts, np.cumsum([flown.stop - flown.start for _, _, flown in cut])[:-1])

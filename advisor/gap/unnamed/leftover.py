@@ -92,21 +92,23 @@ def left_over(
         Whether named effects leave no gap: then only a sensor that jumps is asked for: the floor hides it.
     """
     noise = noise_of(problem)
-    probes = probe_blocks(problem, last, noise)
-    best, jumping = probes[0], jumping_sensor(problem, last, tolerance)
-    # What a disturbance with a memory describes did not jump.
-    if jumping is not None and best.explained < _LEAST_SHARE:
-        return Leftover(jumping, 1.0, ranking_of(probes, jumping), note="It jumps now and then.")
-    if all_named:
-        return None
     powers = (rms_of(problem, last.innovations) / noise) ** 2
-    active, quiet = unrest(problem, last.innovations)
     telling = np.isin(np.arange(len(problem.channels)), problem.flights.telling)
     beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - instruments_of(problem) ** 2, 0.0))
     peaks = problem.flights.peaks
     telling &= beyond > max(OF_PEAK, _of_the_command(problem, last)) * peaks
-    if not np.any(telling):
+    jumping = jumping_sensor(problem, last, tolerance)
+    nothing = all_named or not np.any(telling)
+    if nothing and jumping is None:
         return None
+    probes = probe_blocks(problem, last, noise)
+    best = probes[0]
+    # What a disturbance with a memory describes did not jump.
+    if jumping is not None and best.explained < _LEAST_SHARE:
+        return Leftover(jumping, 1.0, ranking_of(probes, jumping), note="It jumps now and then.")
+    if nothing:
+        return None
+    active, quiet = unrest(problem, last.innovations)
     loud = telling & (rms_of(problem, last.left) > DOUBT * tolerance)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     faint = best.explained < _LEAST_SHARE

@@ -73,7 +73,7 @@ def removed_beyond_air(stages: Sequence[Stage]) -> float | None:
     Measured in the innovations, which are freed of the air. None where it explains everything.
     """
     noise = stages[-1].fitted.noise ** 2
-    was, now = (float(np.mean(s.held_out.innovations / noise)) - 1.0 for s in (stages[0], stages[-1]))
+    was, now = (float(np.mean(s.held_out.innovation_square / noise)) - 1.0 for s in (stages[0], stages[-1]))
     return 1.0 - now / was if was > 1e-9 else None
 
 

@@ -14,7 +14,14 @@ from advisor.gap.fitting.holdout import HeldOut, hold_out
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
 from advisor.gap.search.merit import Judged
-from advisor.gap.search.score import addition, difference, log_likelihood_gained
+from advisor.gap.search.score import (
+    addition,
+    difference,
+    log_likelihood_gained,
+    odds_in,
+    price_of,
+    price_of_edges,
+)
 from advisor.gap.search.screen import Screen, penalty
 from advisor.gap.search.stage import Stage
 from advisor.gap.unnamed.laws import PLAIN, laws_for, said
@@ -86,14 +93,17 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
 def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:
     """What the named effects bring together, as ``Judged.gain`` counts; 0 without any."""
     first, last = stages[0], stages[-1]
-    numbers = sum(len(s.added.variant.names) for s in stages if s.added is not None)
-    if numbers == 0:
+    named = [s.added for s in stages if s.added is not None]
+    if not named:
         return 0.0
     independent = worth(problem, last.fitted.innovations)
     likelihood = log_likelihood_gained(first.fitted, first.held_out, last.fitted, last.held_out, independent)
     likelihood += 0.5 * (problem.strangeness(first.fitted.point) - problem.strangeness(last.fitted.point))
+    likelihood += 0.5 * (price_of_edges(problem, first.fitted) - price_of_edges(problem, last.fitted))
     belief = belief_in(problem, last.fitted, independent) - belief_in(problem, first.fitted, independent)
-    return likelihood - 0.5 * numbers * float(np.log(np.sum(independent))) + belief
+    price = sum(price_of(j.variant, independent) for j in named)
+    odds = sum(odds_in(problem, j.effect, float(j.value[0])) for j in named)
+    return likelihood + belief + odds - price
 
 
 def _is_another_matter(problem: Problem, stages: list[Stage], bent: Judged, independent: FloatArray) -> bool:

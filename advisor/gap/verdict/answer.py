@@ -51,8 +51,8 @@ def answer(
         problem = as_read(problem, offset_rad)
     before = over_maneuvers(problem, before, kept)
     if e.air is not None:
-        # From here on the air is one of the causes: the floor is what stays without its motion.
-        last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, np.sqrt(e.air.left)))
+        # From here on the air is one of the causes: the floor is the instruments' noise without its motion.
+        last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, e.air.instruments))
     gap = gap_numbers(problem, e.floor, before, last)
     shrink = None
     if verdict in ("effect", "parameters"):

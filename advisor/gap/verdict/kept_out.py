@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.holdout import HeldOut, folds_of, held_out, hold_out
+from advisor.gap.fitting.holdout import HeldOut, folds_of, held_out, hold_out, mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import Measured
 from advisor.gap.search.air import Air
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
+from advisor.gap.search.waterfall import as_measured
 from advisor.gap.verdict.evidence import Evidence
 
 
@@ -27,16 +27,20 @@ def keep_out(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
     kept = list(range(n - holdout, n))
     folds = [kept, *[[i for i in fold if i not in kept] for fold in folds_of(n)]]
 
-    def predicted(fitted: Fitted) -> HeldOut:
-        return over_maneuvers(e.problem, hold_out(e.problem, fitted, folds), kept)
-
     def judged(one: Judged) -> Judged:
-        return replace(one, held_out=predicted(one.fitted))
+        held = hold_out(e.problem, one.fitted, folds)
+        return replace(one, held_out=over_maneuvers(e.problem, held, kept))
 
+    predicted = as_measured(
+        e.problem, [replace(s, held_out=hold_out(e.problem, s.fitted, folds)) for s in e.stages]
+    )
     stages = [
-        Stage(s.fitted, predicted(s.fitted), tuple(map(judged, s.considered)), s.added and judged(s.added))
-        for s in e.stages
-    ]
+        Stage(
+            s.fitted, over_maneuvers(e.problem, s.held_out, kept),
+            tuple(map(judged, s.considered)), s.added and judged(s.added),
+        )
+        for s in predicted
+    ]  # fmt: skip
     speed = at_constant_speed(e.problem, e.stages[-1].fitted, folds)
     return replace(
         e,
@@ -50,8 +54,10 @@ def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> Held
     """The mean squares over some manoeuvres only; as in a fit, every sample counts alike."""
     flights = [problem.flights.flights[i] for i in kept]
     samples = np.array([[len(f.outputs[c].t) for c in problem.channels] for f in flights], float)
-    sums = np.sum(samples * held.by_maneuver[list(kept)], axis=0)
-    return replace(held, mean_square=sums / np.sum(samples, axis=0))
+    shares = samples / np.sum(samples, axis=0)
+    innovations = mean_squares(problem, held.innovations)
+    squares, seen = (np.sum(shares * by[list(kept)], axis=0) for by in (held.by_maneuver, innovations))
+    return replace(held, mean_square=squares, innovation_square=seen)
 
 
 def as_read(problem: Problem, offset_rad: float) -> Problem:

@@ -20,7 +20,7 @@ _WHAT = {
     "thrust_moment": "Thrust pitches the real aircraft",
     "thrust_moment lag_s": "Thrust pitches the real aircraft, {lag_s_ms:.0f} ms behind the throttle",
     "cg_shift": "The centre of gravity moved during the flight",
-    "alpha_dot": "The rate of angle of attack makes a moment that the simulator lacks",
+    "alpha_dot": "The rate of angle of attack makes another moment than in the simulator",
     "nonlinear_lift": "The real lift curves with angle of attack",
     "unsteady_lift": "The real lift builds up with a lag of {lag_s_ms:.0f} ms",
     "mass_change": "The mass changed during the flight",
@@ -59,7 +59,6 @@ _TOO_MUCH = {
         -1.0,
         "The simulator's elevator ignores {half_width_rad_deg:.2f} deg too much around neutral",
     ),
-    "alpha_dot": (1.0, "The simulator has too much of the moment that the rate of angle of attack makes"),
 }
 """What is said where the aircraft file has too much of an effect; the sign of its first number then."""
 _BLOCK = {
@@ -91,7 +90,8 @@ def what(cause: Cause) -> str:
     if cause.parameters:
         name, value = list(cause.parameters.items())[-1]
         # A lag that may as well be none is not worth telling.
-        particular += f" {name}" if abs(value.value) > LEAST_SIGMA * value.std else ""
+        none = name == "lag_s" and abs(value.value) <= LEAST_SIGMA * value.std
+        particular += "" if none else f" {name}"
     return _WHAT.get(particular, _WHAT[cause.effect]).format(**sizes)
 
 

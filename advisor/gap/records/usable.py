@@ -1,0 +1,73 @@
+"""Which manoeuvres can be used, and what of each was recorded while command and pitch rate both were."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.renewal import renewed
+from advisor.gap.records.edges import step_unseen
+from advisor.gap.records.flights import Measured
+from advisor.gap.simulator.layout import OUTPUTS
+
+LEAST_SAMPLES = 15
+"""Of a channel in a manoeuvre: what a derived α of 8 Hz brings in the shortest."""
+_LEAST_RENEWED = 30
+"""Renewals below which a channel that repeats itself is taken as it is: a vane may stick."""
+DEPARTED_RAD = 1.0
+"""Swing of the angle of attack that no equation about a trim describes any more."""
+_ENOUGH = 4
+"""Manoeuvres with all that is needed that are enough to leave the others out."""
+
+
+def usable_of(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
+    """The manoeuvres that can be used, in their order.
+
+    Left out are those without elevator or pitch rate, those that departed, and, where enough others are
+    left, those in which a step of the command fell into a hole of the log or without an angle of attack.
+    """
+    usable = [m for m in maneuvers if _moves(m)]
+    whole: Sequence[Callable[[Maneuver], bool]] = (_steps_seen, _has_alpha)
+    for is_whole in whole:
+        better = [m for m in usable if is_whole(m)]
+        if len(better) >= _ENOUGH:
+            usable = better
+    return usable
+
+
+def recorded(m: Maneuver) -> tuple[float, float]:
+    """Vehicle times in s between which both elevator and pitch rate were recorded."""
+    both = m.channels["elevator"].t, m.channels["q"].t
+    return max(float(t[0]) for t in both), min(float(t[-1]) for t in both)
+
+
+def outputs_of(m: Maneuver) -> dict[str, Measured]:
+    """Channels that are compared, as far as they were renewed meanwhile; times from its beginning."""
+    start, end = recorded(m)
+    outputs = {}
+    for name in OUTPUTS:
+        channel = m.channels.get(name)
+        if channel is None or len(channel) < LEAST_SAMPLES:
+            continue
+        cut = channel.cut(start, end)
+        t, y = renewed(cut.t - start, cut.y, _LEAST_RENEWED)
+        if len(t) >= LEAST_SAMPLES:
+            outputs[name] = Measured(t, y)
+    return outputs
+
+
+def _moves(m: Maneuver) -> bool:
+    found = m.channels
+    if not all(name in found and len(found[name]) >= LEAST_SAMPLES for name in ("elevator", "q")):
+        return False
+    if len(found["elevator"].cut(*recorded(m))) < LEAST_SAMPLES or "q" not in outputs_of(m):
+        return False
+    return "alpha" not in found or float(np.ptp(found["alpha"].y)) < DEPARTED_RAD
+
+
+def _steps_seen(m: Maneuver) -> bool:
+    return not step_unseen(m)
+
+
+def _has_alpha(m: Maneuver) -> bool:
+    return "alpha" in outputs_of(m)
