@@ -45,6 +45,8 @@ class LinearTerms:
     """Of the elevator's power: what grows with the excess of thrust over drag, per unit of weight."""
     unsteady_share: float = 0.0
     unsteady_lag: float = 1.0
+    unsteady_moment: float = 0.0
+    """1: the moment builds up with the lift; 0: it knows the angle of attack at once."""
     stall_alpha: float = 0.0
     """rad, where half the flow has separated (Kirchhoff)."""
     stall_sharpness: float = 0.0
@@ -86,7 +88,8 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
     throttle = x[7] if m.throttle_lag > 0.0 else u[1]
     elevator, speed = u[0], u[4]
     air = alpha + u[3] / speed
-    lifting = air - m.unsteady_share * (air - late)
+    behind = m.unsteady_share * (air - late)
+    lifting, turning = air - behind, air - m.unsteady_moment * behind
     off, off_elevator = air - m.alpha_ref, elevator - m.delta_ref
     gamma = theta - alpha
     ratio, power, weight, gravity = 1.0, 1.0, GRAVITY_M_S2 / m.speed_ref, 0.0
@@ -121,7 +124,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
         * power
         * (
             m.M_0
-            + m.M_alpha * air
+            + m.M_alpha * turning
             + m.M_delta_e * elevator
             + m.M_alpha2 * off**2
             + m.M_alpha3 * off**3

@@ -30,7 +30,7 @@ _SIGNED = frozenset({"scale", "step", "change", "skew_s", "bias_rad", "bias_rad_
 """Parameters whose direction matters to the reader."""
 
 
-_IN_WORDS = {"with_pitch_rate": "the pitch rate, too"}
+_IN_WORDS = {"with_pitch_rate": "the pitch rate, too", "with_moment": "the moment, too"}
 """Parameters that only say that something is so."""
 
 

@@ -137,7 +137,10 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
             blown_share="blown_share",
         ),
     ),
-    "unsteady_lift": (frozenset({"share", "lag_s"}), _fields(share="unsteady_share", lag_s="unsteady_lag")),
+    "unsteady_lift": (
+        frozenset({"share", "lag_s", "with_moment"}),
+        _fields(share="unsteady_share", lag_s="unsteady_lag", with_moment="unsteady_moment"),
+    ),
     "ground_effect": (
         frozenset({"Z_h", "lift_h", "M_h", "scale_m"}),
         _fields(Z_h="Z_h", lift_h="lift_h", M_h="M_h", scale_m="ground_scale"),

@@ -47,7 +47,7 @@ LIGHT_AIRCRAFT = Airframe(
 SWITCHES = {
     "lag": 0.0, "rate_limit": 1e9, "play": 0.0, "deadband": 0.0, "delay": 0.0,
     "de2": 0.0, "de3": 0.0, "cm_a2": 0.0, "cm_a3": 0.0, "thrust_arm": 0.0, "cm_alphadot": 0.0,
-    "cl_a2": 0.0, "cl_a3": 0.0, "lift_lag": 0.0, "lift_lag_share": 0.0,
+    "cl_a2": 0.0, "cl_a3": 0.0, "lift_lag": 0.0, "lift_lag_share": 0.0, "moment_lags": 0.0,
     "ice_t": 1e9, "ice": 0.0, "height": 1e9, "ground": 0.0,
     "vane_lag": 0.0, "vane_arm": 0.0, "mode_gain": 0.0, "mode_hz": 5.0, "acc_arm": 0.0,
     "hysteresis": 0.0, "q_square": 0.0, "extra_cm_lag": 0.0, "extra_cm": 0.0,
@@ -58,7 +58,7 @@ SWITCHES = {
     "ring_hz": 0.0, "ring_zeta": 0.2, "stall_at": 9.0, "stall_sharpness": 40.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
-(LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, ICET,
+(LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, MLAGS, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
  MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST, RINGHZ,
@@ -144,7 +144,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
         cd = cd0 + induced * cl * cl + 3.0 * ice * cd0
         cm = beyond * (
             cm0
-            + cma * (1.0 - 0.6 * ice) * a
+            + cma * (1.0 - 0.6 * ice) * (a - sw[MLAGS] * (a - ae))
             + sw[CMA2] * (db * db - d0 * d0)
             + sw[CMA3] * (db**3 - d0**3)
             + (cmq * q + (cmad + sw[CMAD]) * alphadot) * chord / (2 * V)

@@ -34,6 +34,17 @@ def test_a_wing_that_stalls_deeply_is_known_though_a_screening_sees_little_of_th
     assert found.causes[0].parameters["stall_rad"].value == pytest.approx(stall_rad, abs=0.02)
 
 
+@pytest.mark.parametrize("moment", [0.0, 1.0])
+def test_lift_that_builds_up_late_takes_the_moment_along_or_not(moment):
+    late = {"lift_lag": 0.2, "lift_lag_share": 0.35, "moment_lags": moment}
+    found = diagnose(fly(Setup(maneuvers=6, switches=late, seed=15)), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["unsteady_lift"]
+    sizes = found.causes[0].parameters
+    assert sizes["share"].value == pytest.approx(0.35, abs=0.08)
+    assert sizes["lag_s"].value == pytest.approx(0.2, rel=0.2)
+    assert ("with_moment" in sizes) == bool(moment)
+
+
 def test_a_lift_slope_that_grows_near_the_ground_is_the_ground():
     found = diagnose(
         fly(Setup(maneuvers=6, heights_m=(6.0, 9.0, 60.0), switches={"ground": 0.3}, seed=13)), Aircraft()

@@ -83,6 +83,7 @@ def plain(tmp_path_factory):
         ("elevator_nonlinearity", {"M_delta2": 30.0, "M_delta3": 10.0}),
         ("alpha_dot", {"M_alpha_dot": -1.0}),
         ("unsteady_lift", {"share": 0.3, "lag_s": 0.3}),
+        ("unsteady_lift", {"share": 0.3, "lag_s": 0.3, "with_moment": 1.0}),
         ("cg_shift", {"step": 0.2, "at_s": 35.0}),
         ("cg_shift", {"step": 0.2, "at_s": 20.0, "over_s": 30.0}),
         ("mass_change", {"rate_per_s": 0.01}),

@@ -1,5 +1,7 @@
 """The force equation: curved and unsteady lift, mass, ice, the ground."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from advisor.flight.messages import FloatArray
@@ -25,20 +27,33 @@ _CURVED_LIFT = Variant(
 )
 
 
+_UNSTEADY = Variant(
+    "unsteady_lift",
+    BLOCK,
+    ("share", "lag_s"),
+    ((0.1, 0.1), (0.3, 0.4)),
+    (0.005, 0.01),
+    ((0.0, 0.95), (0.01, 3.0)),
+    0.01,
+    entries=("lift_share", "lift_lag_s"),
+)
+
+
+def _with_moment(p: FloatArray, values: Values, _: Flights) -> None:
+    """Of a wing alone the lift acts where it always does, and the moment builds up with it."""
+    p[:, INDEX["lift_share"]] += values[0]
+    p[:, INDEX["lift_lag_s"]] += values[1]
+    p[:, INDEX["moment_share"]] += values[0]
+
+
+_UNSTEADY_WITH_MOMENT = replace(_UNSTEADY, apply_with=_with_moment, fixed={"with_moment": 1.0})
+
+
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block; those between manoeuvres depend on how many were flown."""
     return [
         bent_in_alpha(_CURVED_LIFT, "Z_alpha", flights),
-        Variant(
-            "unsteady_lift",
-            BLOCK,
-            ("share", "lag_s"),
-            ((0.1, 0.1), (0.3, 0.4)),
-            (0.005, 0.01),
-            ((0.0, 0.95), (0.01, 3.0)),
-            0.01,
-            entries=("lift_share", "lift_lag_s"),
-        ),
+        replace(_UNSTEADY, likewise=(_UNSTEADY_WITH_MOMENT,)),
         *_stall(flights),
         *ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES)),
         *_icing(flights),

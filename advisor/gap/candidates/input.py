@@ -149,7 +149,7 @@ def variants(flights: Flights) -> list[Variant]:
             ((0.0, 0.1),),
             _SMALL_ANGLE,
             entries=("half_play_rad",),
-            sides=("play_side", tuple(np.linspace(-1.0, 1.0, 9))),
+            sides=("play_side", tuple(np.linspace(-1.0, 1.0, 8))),
         ),
         _DEADBAND,
         *([_DEADBAND_ABOUT_TRIM] if moves else []),

@@ -28,7 +28,8 @@ def with_known(
     for effect, parameters in effects.items():
         if effect in _OF_ITS_FLIGHT:
             continue
-        meant = [v for v in variants if v.effect == effect and _says(v, parameters)]
+        described = [w for v in variants if v.effect == effect for w in (v, *v.likewise)]
+        meant = [w for w in described if _says(w, parameters)]
         for variant in sorted(meant, key=lambda v: (-len(v.fixed), -len(v.names)))[:1]:
             variant.apply(numbers, _values(variant, parameters), flights)
     return numbers

@@ -49,7 +49,8 @@ LANES = 8
     DELAY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL, STOP_UP, STOP_DOWN,
     M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, ENGINE_LAG, M_THRUST, WASHED, BLOWN,
     M_Q_ABS, M_Q_Q, M_ALPHA_Q, M_ALPHA_DELTA,
-    Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, Z_H, LIFT_H, SCALE_H, SPEED_POWER,
+    Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, MOMENT_SHARE,
+    Z_H, LIFT_H, SCALE_H, SPEED_POWER,
     ALPHA_LAG, ALPHA_SCALE, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, LATENCY, A_Z_SCALE, THETA_SCALE,
@@ -218,7 +219,8 @@ def simulate(
                     a = x[ALPHA, m] + 0.5 * h * x[KA, m] + x[DOSE, m] * d_air
                     q = x[Q, m] + 0.5 * h * x[KQ, m]
                     da = a - alpha_trim
-                    lagged = da - x[LIFT_SHARE, m] * (a - x[LIFT, m])
+                    behind = a - x[LIFT, m]
+                    lagged, turned = da - x[LIFT_SHARE, m] * behind, da - x[MOMENT_SHARE, m] * behind
                     wing = (
                         x[Z_TRIM, m]
                         + (x[Z_ALPHA, m] + (x[Z_ALPHA2, m] + x[Z_ALPHA3, m] * lagged) * lagged) * lagged
@@ -231,7 +233,7 @@ def simulate(
                     slope = x[MOMENT_SLOPE, m] + x[POWER, m] * v * v * bent
                     damping = x[M_Q, m] + x[M_ALPHA_Q, m] * da + x[M_Q_Q, m] * abs(q)
                     damped = damping * q + x[M_Q_ABS, m] * abs(q)
-                    kq = x[M_REST, m] + slope * da + v * (damped + x[M_ALPHA_DOT, m] * ka)
+                    kq = x[M_REST, m] + slope * turned + v * (damped + x[M_ALPHA_DOT, m] * ka)
                     x[KA, m], x[KQ, m] = ka, kq
                     if stage == 0:
                         x[NORMAL_0, m] += normal
