@@ -32,6 +32,7 @@ from advisor.gap.unnamed.leftover import (
     left_over,
     other_than_air,
 )
+from advisor.gap.unnamed.memory import remembering
 from advisor.gap.unnamed.remainder import (
     is_all_named,
     is_of_no_use,
@@ -79,7 +80,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     tolerance = tolerance_of(problem.flights)
     stages = as_measured(problem, stages)
     floor = _floor(problem, stages[-1], tolerance)
-    leftover = law or drifting(problem, stages) or stepping(problem, stages[-1].fitted)
+    leftover = law or drifting(problem, stages) or remembering(problem, stages)
+    leftover = leftover or stepping(problem, stages[-1].fitted)
     leftover = leftover or _without_a_name(problem, stages, air, tolerance, floor)
     if leftover is None and air is not None and only_resemble(stages):
         stages = reduced_to(problem, stages, [])

@@ -56,13 +56,14 @@ SWITCHES = {
     "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0, "change_t": 1e9, "cg_after": 0.0, "mass_after": 0.0,
     "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9, "stop_low": -9.0, "stop_high": 9.0,
     "ring_hz": 0.0, "ring_zeta": 0.2, "stall_at": 9.0, "stall_sharpness": 40.0,
+    "lets_go_at": 9.0, "holds_below": -9.0, "lost_cl": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, MLAGS, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
  MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST, RINGHZ,
- RINGZETA, STALLAT, STALLS) = range(len(SWITCHES))  # fmt: skip
+ RINGZETA, STALLAT, STALLS, LETSGO, HOLDS, LOST) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -83,6 +84,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
     hyst, extra, met = 0.0, 0.0, 0.0
     fuel, flow, turned_at = 0.0, 0.0, 0.0
     rung, rung_rate = 0.0, 0.0
+    separated = False
     shift = round(sw[DELAY] / H)
     for k in range(n):
         t = k * H
@@ -127,8 +129,11 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
         wash = 1.0 + sw[WASH] * (thrust / trim_thrust * (speed / V) ** 2 - 1.0)
         # Kirchhoff's flow: the part of the wing along which it is attached.
         attached = 0.5 * (1.0 - np.tanh(sw[STALLS] * (ae - sw[STALLAT])))
+        # Flow that lets go at one angle and comes back at a lower one.
+        separated = a > sw[LETSGO] or (separated and a > sw[HOLDS])
         cl = (
             cl0
+            - sw[LOST] * separated
             + cla * (1.0 - ice) * (1.0 + near) * ae * (0.5 * (1.0 + np.sqrt(attached))) ** 2
             + sw[CLA2] * (da * da - d0 * d0)
             + sw[CLA3] * (da**3 - d0**3)

@@ -125,6 +125,13 @@ def test_a_force_or_a_moment_that_bends_is_no_instruments_fault(switches):
     assert found.where.block in ("force_equation", "moment_equation")
 
 
+@pytest.mark.parametrize(("lost_cl", "bends"), [(0.12, 0.0), (0.06, -8.0)])
+def test_lift_that_comes_back_another_way_than_it_went_is_no_lift_that_bends(lost_cl, bends):
+    stalling = {"lets_go_at": 0.09, "holds_below": 0.05, "lost_cl": lost_cl, "cl_a2": bends}
+    found = diagnose(fly(Setup(maneuvers=6, switches=stalling, seed=46)), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "force_equation")
+
+
 def test_what_is_wrong_beside_a_reading_out_of_proportion_keeps_its_name():
     both = with_reading(replace(HARD, q_bias=0.02), "a_z", lambda y: 1.07 * y)
     found = diagnose(both, Aircraft())

@@ -81,9 +81,12 @@ class Judged:
 
     @property
     def sigmas(self) -> float:
-        """Standard deviations by which a number of it that says how much differs from nothing."""
-        sizes = [name not in self.variant.places for name in self.variant.names]
-        return float(np.max(np.abs(self.value[sizes]) / np.maximum(self.std[sizes], 1e-300)))
+        """Standard deviations by which a number of it differs from nothing.
+
+        When or how fast counts, too: a step that a single manoeuvre shows has no size of its own if it may
+        have come gradually, and is certain all the same.
+        """
+        return float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
 
     @property
     def least_gain(self) -> float:

@@ -24,7 +24,7 @@ EFFECT_ENTRIES = (
     "M_q_abs", "M_q_q", "M_alpha_q", "M_alpha_delta_e",
     # force equation
     "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s", "moment_share",
-    "Z_h", "lift_h", "scale_m", "speed_power",
+    "Z_memory", "memory_rad", "Z_h", "lift_h", "scale_m", "speed_power",
     # sensors
     "alpha_lag_s", "alpha_scale", "vane_arm_m", "q_bias", "q_scale",
     "mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping", "imu_arm_m",

@@ -49,7 +49,7 @@ LANES = 8
     DELAY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL, STOP_UP, STOP_DOWN,
     M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, ENGINE_LAG, M_THRUST, WASHED, BLOWN,
     M_Q_ABS, M_Q_Q, M_ALPHA_Q, M_ALPHA_DELTA,
-    Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, MOMENT_SHARE,
+    Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, MOMENT_SHARE, Z_MEMORY, MEMORY,
     Z_H, LIFT_H, SCALE_H, SPEED_POWER,
     ALPHA_LAG, ALPHA_SCALE, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
@@ -60,10 +60,10 @@ LANES = 8
 # Rows of a pack behind the driving numbers: what follows from them once, the state, what a step hands on.
 (
     DOSE, ENGINE_DECAY, LIFT_DECAY, VANE_DECAY, VANE_RAMP, FADE, SWING_COS, SWING_SIN, SOFTNESS,
-    ALPHA, Q, THETA, ENGINE, LIFT, VANE_BEFORE, VANE_OUT, BEND, BEND_RATE,
+    ALPHA, Q, THETA, ENGINE, LIFT, FOLLOWED, VANE_BEFORE, VANE_OUT, BEND, BEND_RATE,
     AIRSPEED, RATIO, NEAR, POWER, ATTACHED, COS_ALPHA, SIN_ALPHA, GRAVITY, LIFTING, MOMENT_SLOPE,
     DEFLECTION, Z_REST, M_REST, KA, KQ, NORMAL_0, QDOT_0, ROWS,
-) = range(len(ENTRIES), len(ENTRIES) + 36)  # fmt: skip
+) = range(len(ENTRIES), len(ENTRIES) + 37)  # fmt: skip
 
 
 @njit(cache=True)
@@ -98,7 +98,7 @@ def _begin(
         p[Q_START],
         trim[THETA_FROM],
     )
-    x[ENGINE, lane], x[LIFT, lane] = 0.0, trim[ALPHA_TRIM]
+    x[ENGINE, lane], x[LIFT, lane], x[FOLLOWED, lane] = 0.0, trim[ALPHA_TRIM], x[ALPHA, lane]
     x[VANE_OUT, lane] = x[ALPHA, lane] - p[VANE_ARM] * x[Q, lane] / speed
     x[VANE_BEFORE, lane] = x[VANE_OUT, lane]
     x[BEND, lane], x[BEND_RATE, lane] = 0.0, 0.0
@@ -225,6 +225,7 @@ def simulate(
                         x[Z_TRIM, m]
                         + (x[Z_ALPHA, m] + (x[Z_ALPHA2, m] + x[Z_ALPHA3, m] * lagged) * lagged) * lagged
                     )
+                    wing += x[Z_MEMORY, m] * (a - x[FOLLOWED, m])
                     normal = x[Z_REST, m] + x[LIFTING, m] * x[ATTACHED, m] * wing + x[Z_Q, m] * q
                     ka = q + x[GRAVITY, m] + normal
                     v = x[RATIO, m]
@@ -264,6 +265,8 @@ def simulate(
                 x[THETA, m] = theta + 0.5 * h * (q + x[Q, m]) * cb
                 keep = x[LIFT_DECAY, m]
                 x[LIFT, m] = keep * x[LIFT, m] + (1.0 - keep) * (0.5 * (alpha + x[ALPHA, m]) + air)
+                followed = max(x[FOLLOWED, m], x[ALPHA, m] + air - x[MEMORY, m])
+                x[FOLLOWED, m] = min(followed, x[ALPHA, m] + air + x[MEMORY, m])
                 off, rate, zeta = x[BEND, m] - d, x[BEND_RATE, m], x[MODE_DAMPING, m]
                 swing, turn, fade = x[SWING_COS, m], x[SWING_SIN, m], x[FADE, m]
                 x[BEND, m] = d + fade * ((swing + zeta * turn) * off + turn * rate * x[SOFTNESS, m])

@@ -1,8 +1,9 @@
-"""Simple laws that have no name in the catalogue: readings out of proportion, moments that bend, stops.
+"""Simple laws that have no name in the catalogue: readings out of proportion, moments that bend, a memory.
 
 α and q may be scaled by name; a_z and θ may not, no reading may be bent, and no gyro feel an acceleration.
 A moment may bend by name with the deflection and with α, but not with the pitch rate, nor with products. A
-servo may lag or run at its limit, but neither overshoot nor meet a stop.
+servo may lag or run at its limit, but neither overshoot nor meet a stop. Lift may bend and come late, but not
+come back another way than it went.
 """
 
 from collections.abc import Sequence
@@ -33,7 +34,7 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
     )  # fmt: skip
 
 
-_PULLED, _STOP, _RINGS = "gyro_pulled", "surface_stop", "servo_rings"
+_PULLED, _STOP, _RINGS, _MEMORY = "gyro_pulled", "surface_stop", "servo_rings", "lift_memory"
 PLAIN = frozenset({_PULLED, _STOP, _RINGS})
 """Laws that leave little where they are the truth: what they resemble is of another kind."""
 _TRIMMED_RAD = 0.002
@@ -76,6 +77,7 @@ _SAID = {
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
     _STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no further.",
     _RINGS: "The surface overshoots its command: a servo of second order that is hardly damped.",
+    _MEMORY: "The lift is another on the way up than on the way down: a stall that lets go late.",
     _PULLED: "The pitch rate feels the acceleration.",
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
@@ -110,11 +112,22 @@ def _stops(flights: Flights) -> list[Variant]:
     return variants
 
 
+def lift_memory(flights: Flights) -> Variant:
+    """Lift that is another on the way up than on the way down: the elementary play of hysteresis."""
+    swing = float(np.median([np.ptp(f.outputs["alpha"].y) for f in flights.flights]))
+    return Variant(
+        _MEMORY, "force_equation", ("Z_memory", "half_width_rad"),
+        tuple((0.0, share * swing) for share in (0.1, 0.3)), (0.05, 0.01 * swing),
+        ((-20.0, 0.0), (0.01 * swing, 0.6 * swing)), 0.0,
+        entries=("Z_memory", "memory_rad"), places=("half_width_rad",),
+    )  # fmt: skip
+
+
 def laws_for(flights: Flights) -> list[Variant]:
-    """Every law of the readings that tell, of the moment and of the surface."""
+    """Every law of the readings that tell, of the moment, of the surface and of the lift."""
     readings = [flights.channels[c] for c in flights.telling]
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
-    return [*of_readings, *_MOMENTS, *_stops(flights), _RINGING]
+    return [*of_readings, *_MOMENTS, *_stops(flights), _RINGING, lift_memory(flights)]
 
 
 def said(law: Judged) -> str:
