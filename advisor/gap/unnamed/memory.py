@@ -9,7 +9,7 @@ from advisor.gap.unnamed.laws import lift_memory, said
 from advisor.gap.unnamed.leftover import Leftover
 
 _CERTAIN = 15.0
-"""Log likelihood that a memory must bring: a deep stall leaves more of its bend than a few figures describe."""
+"""Log likelihood that a memory must bring: a deep stall leaves more than a few figures describe."""
 
 
 def remembering(problem: Problem, stages: list[Stage]) -> Leftover | None:
