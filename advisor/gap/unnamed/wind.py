@@ -39,6 +39,8 @@ _LAYER_CHANCE = 1e-2
 """Of a layer's gradient, from the plain share on: few manoeuvres tell of a layer, and leaving one of them out
 scatters by much. In 470 flights of four simulators without it no layer explains more than 0.17, but for one
 whose attitude was wrong."""
+_UNDENIABLE_SHARE = 0.4
+"""Far beyond all of these: then few manoeuvres may have met the layer."""
 _ALONG, _ABOVE_NOISE = 0.015, 3.0
 """Swing of the air speed in a usual manoeuvre, relative, and beside its white noise."""
 _ALONE = 1e-3
@@ -91,7 +93,8 @@ def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     layers = [_gradient(paths, low, high) for low, high in between if high - low >= _THINNEST_M]
     likeliest = max(layers, key=lambda s: s.share, default=everywhere)
     there = likeliest.share >= _PLAIN_SHARE and likeliest.is_agreed(_LAYER_CHANCE)
-    return likeliest if there else None
+    undeniable = likeliest.share >= _UNDENIABLE_SHARE and abs(likeliest.gradient_per_s) >= _LEAST_PER_S
+    return likeliest if there or undeniable else None
 
 
 def blows_along(maneuvers: Sequence[Maneuver]) -> bool:
