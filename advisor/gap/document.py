@@ -8,6 +8,12 @@ from advisor.gap.result import Cause, Diagnosis, Value, Yardsticks
 from advisor.problems import Problem
 
 SCHEMA = "advisor.gap/1"
+_NOTHING: Mapping[str, Any] = {
+    "verdict": None, "sentence": None, "maneuvers": [], "gap": None, "where": None, "causes": [],
+    "shrink": None, "waterfall": [], "cannot_see": [], "model": None, "reference_airspeed_m_s": None,
+    "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
+}  # fmt: skip
+"""What stands in a document without a diagnosis."""
 
 
 def gap_document(
@@ -20,8 +26,7 @@ def gap_document(
         "problems": [{"code": p.code, "text": p.text, "fix": p.fix} for p in problems],
     }
     if diagnosis is None:
-        return {**document, "verdict": None, "gap": None, "where": None, "causes": [], "shrink": None,
-                "waterfall": [], "cannot_see": [], "improved_model": None}  # fmt: skip
+        return {**document, **_NOTHING}
     d, gap = diagnosis, diagnosis.gap
     document |= {
         "verdict": d.verdict,

@@ -23,3 +23,7 @@ def test_every_key_of_the_diagnosis_is_explained():
     section = page.split("\n## ")[0] + page.split("`advisor.gap/1`")[1].split("\n## ")[0]
     explained = set(re.findall(r"[A-Za-z_0-9]+", section))
     assert keys_in(gap_document(diagnosis())) - explained == {"schema"}
+
+
+def test_a_document_without_a_diagnosis_has_the_same_keys():
+    assert gap_document(None).keys() == gap_document(diagnosis()).keys()

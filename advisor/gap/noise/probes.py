@@ -137,8 +137,6 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
 class Course:
     """The likeliest course of a block's disturbance."""
 
-    size: float
-    """Its standard deviation beforehand."""
     knots: tuple[FloatArray, ...]
     """Per manoeuvre: its value at each knot."""
     lefts: tuple[FloatArray, ...]
@@ -163,8 +161,7 @@ def disturbance_courses(
             found = solved(chol, A.T @ (fitted.left[i] * w))
             courses[k].append(np.asarray(colour @ found[-free:]))
             lefts[k].append(np.asarray(fitted.left[i] - both @ found))
-    found_of = zip(sizes, courses, lefts, strict=True)
-    return [Course(size, tuple(knots), tuple(left)) for size, knots, left in found_of]
+    return [Course(tuple(knots), tuple(left)) for knots, left in zip(courses, lefts, strict=True)]
 
 
 def _colour(flight: Flight) -> FloatArray:

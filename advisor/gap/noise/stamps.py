@@ -11,7 +11,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem, counts
-from advisor.gap.records.prepare import STEP_S
+from advisor.gap.records.grid import STEP_S
 from advisor.gap.simulator.layout import ENTRIES
 
 _LEAST = {"q": 0.3, "a_z": 0.45}

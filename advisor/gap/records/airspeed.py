@@ -11,6 +11,7 @@ import numpy as np
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.motion import integrated, speed_rate
+from advisor.gap.records.grid import smooth
 
 _SLOWEST_M_S = 1.0
 """Air speed at which nothing flies."""
@@ -20,6 +21,8 @@ _LEAST_SPARE = 10
 """... and in all, beyond three a manoeuvre, for its noise to be known."""
 _LONGEST_MEMORY = 0.95
 """Correlation from one sample to the next that is taken for the instrument's: beyond it is the aircraft's."""
+_READ_OVER_S = 0.5
+"""Over which an air speed is averaged, where the motion does not say how it changed between readings."""
 _SLOW_S = 1.0
 """Over which the thrust's excess is averaged: quicker than the speed it changes, slower than the noise."""
 
@@ -34,8 +37,9 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
     """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,)."""
     found = maneuver.channels
     t, y = found["airspeed"].t - start_s, found["airspeed"].y
+    as_read = smooth(np.interp(grid, t, y), _READ_OVER_S)
     if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
-        return _smoothed(grid, t, y)
+        return as_read
 
     def at(name: str) -> FloatArray:
         return np.interp(grid, found[name].t - start_s, found[name].y)
@@ -43,12 +47,12 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
     shape = integrated(grid, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha")))
     inside = (t >= grid[0]) & (t <= grid[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
-        return _smoothed(grid, t, y)
+        return as_read
     drift = np.polyfit(t[inside], y[inside] - np.interp(t[inside], grid, shape), 2)
     rebuilt = shape + np.polyval(drift, grid)
     apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
     # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
-    return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else _smoothed(grid, t, y)
+    return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else as_read
 
 
 def speed_doubts(
@@ -91,11 +95,4 @@ def along_the_path(grid: FloatArray, maneuver: Maneuver, start_s: float) -> Floa
     t = found["a_z"].t
     alpha, a_x = (np.interp(t, found[name].t, found[name].y) for name in ("alpha", "a_x"))
     along = a_x * np.cos(alpha) + found["a_z"].y * np.sin(alpha)
-    return _smoothed(grid, t - start_s, along, seconds=_SLOW_S)
-
-
-def _smoothed(grid: FloatArray, t: FloatArray, y: FloatArray, seconds: float = 0.5) -> FloatArray:
-    """Moving mean of the linear interpolation."""
-    fine = np.interp(grid, t, y)
-    width = max(1, round(seconds / float(grid[1] - grid[0]))) | 1
-    return np.convolve(np.pad(fine, width // 2, mode="edge"), np.full(width, 1.0 / width), mode="valid")
+    return smooth(np.interp(grid, t - start_s, along), _SLOW_S)

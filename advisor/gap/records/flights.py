@@ -115,7 +115,8 @@ class Flights:
     alpha_is_smoothed: bool
     """α was filtered before it was stored, as an estimate is: its roughness is no measure of its errors."""
     has: frozenset[str]
-    """Slow channels that were measured: airspeed, a_x, bank, throttle, height."""
+    """Slow channels that were measured: airspeed (or an instrument that reads nothing), a_x, bank, throttle,
+    height, climb_rate."""
     white: FloatArray
     """Shape (channels,): standard deviation of the white part, robust against edges of the motion."""
     peaks: FloatArray

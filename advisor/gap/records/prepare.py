@@ -16,6 +16,7 @@ from advisor.gap.records.airspeed import (
 )
 from advisor.gap.records.edges import edges_of, held_from
 from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.records.grid import STEP_S, smooth
 from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
@@ -23,8 +24,6 @@ from advisor.gap.records.usable import outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SPEED, THETA_FROM, THRUST
 from advisor.gravity import GRAVITY_M_S2
 
-STEP_S = 0.005
-"""Grid of the simulation: a hundredth of the fastest short period, as fine as stamps are known."""
 ASSUMED_M_S = 20.0
 """Air speed where neither log nor file nor motion has one: then only the weight's part of α̇ knows of it."""
 
@@ -150,10 +149,3 @@ def _with_rows(flight: Flight, channels: Sequence[str]) -> Flight:
     times = [flight.outputs[c].t for c in channels]
     output = np.repeat([OUTPUTS.index(c) for c in channels], [len(t) for t in times])
     return replace(flight, stamps=np.concatenate(times), output=output.astype(np.int64))
-
-
-def smooth(y: FloatArray, seconds: float) -> FloatArray:
-    """Centred moving average over ``seconds`` of a series on the grid."""
-    width = max(1, round(seconds / STEP_S)) | 1
-    padded = np.pad(y, width // 2, mode="edge")
-    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")

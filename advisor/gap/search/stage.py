@@ -21,7 +21,8 @@ class Stage:
     fitted: Fitted
     held_out: HeldOut
     considered: tuple[Judged, ...]
-    """Candidates for the next addition, best first."""
+    """Candidates for the next addition, best first; of a stage that was put elsewhere, those of its addition,
+    and none where no more names were asked for."""
     added: Judged | None
     """What was added to this stage's model to reach the next one."""
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.records.flights import Flight, Flights
-from advisor.gap.records.prepare import smooth
+from advisor.gap.records.grid import smooth
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THROTTLE, THRUST
 from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.recursion import accumulated
