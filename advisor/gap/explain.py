@@ -47,7 +47,7 @@ from advisor.gap.unnamed.swing import swinging, swings_the_aircraft
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
 from advisor.gap.unnamed.unnamed_law import unnamed_law
-from advisor.gap.unnamed.wander import wandering_sensor
+from advisor.gap.unnamed.wander import wandering_attitude, wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
 
 _FAR_ABOVE = 2.0
@@ -81,7 +81,9 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     stages = as_measured(problem, stages)
     floor = _floor(problem, stages[-1], tolerance)
     leftover = law or drifting(problem, stages) or remembering(problem, stages)
-    leftover = leftover or stepping(problem, stages[-1].fitted)
+    leftover = (
+        leftover or stepping(problem, stages[-1].fitted) or wandering_attitude(problem, stages[-1].fitted)
+    )
     leftover = leftover or _without_a_name(problem, stages, air, tolerance, floor)
     if leftover is None and air is not None and only_resemble(stages):
         stages = reduced_to(problem, stages, [])

@@ -14,6 +14,7 @@ from advisor.gap.noise.quiet import only
 from advisor.gap.noise.stamps import rates_of, stamp_jitter
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
+from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.innovations import DIFFUSE, AirModel, cost_of, gains_of
 from tests.gap.generator import Setup, fly
 
@@ -160,6 +161,20 @@ def test_an_instrument_that_wanders_alone_is_unknown_and_no_noise(channel, block
     assert (found.verdict, found.where.block) == ("unknown", block)
     assert found.gap.before > 0.5
     assert any("wanders by itself" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("seed", [14, 15])
+def test_an_attitude_that_accelerations_pull_and_that_forgets_is_unknown(seed):
+    """An estimator of a gain that is too high: it leans towards what a plumb line would show, and returns."""
+    flown = []
+    for maneuver in fly(Setup(maneuvers=6, seed=seed)):
+        read, felt = maneuver.channels["theta"], maneuver.channels["a_x"]
+        plumb = np.arcsin(np.interp(read.t, felt.t, felt.y) / GRAVITY_M_S2) - read.y
+        keep = np.exp(-np.median(np.diff(read.t)) / 2.0)
+        pulled = replace(read, y=read.y + 0.5 * lfilter([1.0 - keep], [1.0, -keep], plumb - plumb[0]))
+        flown.append(replace(maneuver, channels={**maneuver.channels, "theta": pulled}))
+    found = diagnose(flown, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "attitude_sensor")
 
 
 @pytest.mark.parametrize(("share", "memory_s", "others"), [(0.06, 0.1, 0.0), (0.03, 1.0, 0.02)])

@@ -6,22 +6,26 @@ noise. One alone that wanders by a good part of what it measures is at fault, th
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.whitening import Filters
 from advisor.gap.noise.probes import SENSOR_CHANNELS
 from advisor.gap.unnamed.leftover import Leftover
-from advisor.oem.innovations import CHANNELS
 
 _OF_PEAK = 0.04
 """Share of a channel's peak that its error must reach ..."""
 _OF_WHITE = 3.0
 """... and how many times its white noise ..."""
 _OF_OTHERS = 5.0
-"""... and how many times any other channel's slow share ..."""
+"""... and how many times what any other channel has beyond its white noise ..."""
 _MEMORY_S = 0.5
 """... with a memory that no instrument's noise has."""
+
+
+def wandering_attitude(problem: Problem, last: Fitted) -> Leftover | None:
+    """The same of the attitude, beside any names: nothing but its instrument parts it from the pitch rate."""
+    found = wandering_sensor(problem, last)
+    return found if found is not None and found.block == "attitude_sensor" else None
 
 
 def wandering_sensor(problem: Problem, last: Fitted) -> Leftover | None:
@@ -31,14 +35,14 @@ def wandering_sensor(problem: Problem, last: Fitted) -> Leftover | None:
     airs, peaks = problem.whitening.airs, problem.flights.peaks
     if float(np.median([air.memory_s for air in airs])) < _MEMORY_S:
         return None
-    index = [CHANNELS.index(c) for c in problem.channels]
-    slow: FloatArray = np.median([air.coloured[index] for air in airs], axis=0) / peaks
+    errors, white = rms_of(problem, last.left), problem.flights.white
+    slow = np.sqrt(np.maximum(errors**2 - white**2, 0.0)) / peaks
     worst = int(np.argmax(slow))
-    error = float(rms_of(problem, last.left)[worst])
     others = np.delete(slow, worst)
     if worst not in problem.flights.telling or slow[worst] < _OF_OTHERS * float(np.max(others, initial=0.0)):
         return None
-    if error < max(_OF_PEAK * peaks[worst], _OF_WHITE * problem.flights.white[worst]):
+    error = float(errors[worst])
+    if error < max(_OF_PEAK * peaks[worst], _OF_WHITE * white[worst]):
         return None
     block = next(b for b, channel in SENSOR_CHANNELS.items() if channel == problem.channels[worst])
     percent = 100.0 * error / peaks[worst]
