@@ -14,6 +14,7 @@ from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import covariance, worth
 from advisor.gap.foresight.foresee import unseen_effects
+from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, Verdict, Where
 from advisor.gap.search.merit import LEAST_SIGMA
 from advisor.gap.simulator.layout import DERIVATIVES
@@ -52,7 +53,8 @@ def answer(
     before = over_maneuvers(problem, before, kept)
     if e.air is not None:
         # From here on the air is one of the causes: the floor is the instruments' noise without its motion.
-        last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, e.air.instruments))
+        least = np.maximum(e.air.instruments, tolerance_of(problem.flights))
+        last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, least))
     gap = gap_numbers(problem, e.floor, before, last)
     shrink = None
     if verdict in ("effect", "parameters"):
