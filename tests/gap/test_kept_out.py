@@ -4,13 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter1d
 
 from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import rms_of
 from advisor.gap.fitting.holdout import hold_out, measured_in
+from advisor.gap.records.floor import TOLERANCE, prefiltered
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.simulator.layout import OUTPUTS
 from advisor.gap.verdict.kept_out import over_maneuvers
 from tests.gap.generator import Setup, fly
 
@@ -52,3 +55,22 @@ def test_what_only_a_manoeuvre_kept_out_could_tell_is_measured_there():
         found = diagnose(flown, Aircraft(), holdout)
         assert found.causes[0].effect == "thrust_moment"
         assert found.shrink.percent > 90.0
+
+
+@pytest.mark.parametrize("smoothed", [False, True])
+def test_in_moving_air_the_gap_is_held_against_instruments_and_never_against_next_to_nothing(smoothed):
+    flown = []
+    for maneuver in fly(Setup(maneuvers=6, gust_std=0.4, noise=0.002 if smoothed else 0.01, seed=34)):
+        channels = {
+            name: replace(c, y=gaussian_filter1d(c.y, 2.0)) if smoothed and name in OUTPUTS else c
+            for name, c in maneuver.channels.items()
+        }
+        flown.append(replace(maneuver, channels=channels))
+    found = diagnose(flown, Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["turbulence"]
+    assert found.shrink.percent > 90.0
+    assert (found.gap.after > 0.0) != smoothed
+    flights = prepare(flown, Aircraft())
+    assert all(prefiltered(flights).values()) == smoothed
+    for channel, peak in zip(flights.channels, flights.peaks, strict=True):
+        assert found.gap.floor[channel] > (0.5 * TOLERANCE * peak if smoothed else 0.0)
