@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft import Aircraft
 from advisor.diagnosis import maneuvers_of
 from advisor.gap.diagnose import diagnose
-from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.gap.simulator.layout import EFFECT_ENTRIES, ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
 from sim.effects.fitting import flight_of
 from sim.record import record
@@ -16,6 +16,14 @@ from sim.scenario import read_scenario
 from tests.gap.generator import Setup, fly
 
 H, SMALL, DURATION = 0.005, 2e-5, 0.8
+OF_THE_SURFACE = (
+    "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
+    "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
+)  # fmt: skip
+
+
+def test_what_the_surface_reads_stands_first_so_that_entries_added_later_do_not_move_it():
+    assert EFFECT_ENTRIES[: len(OF_THE_SURFACE)] == OF_THE_SURFACE
 
 
 def in_small_steps(t_u, u, held, late, rate, lag, play, dead):

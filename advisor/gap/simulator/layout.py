@@ -14,8 +14,9 @@ NUISANCES = ("alpha_start", "q_start", "Z_trim", "M_trim")
 """Free in every manoeuvre: deviation of α and q at its start, and the trim terms of Eqs. (1)-(2)
 at the trimmed α and δe instead of at zero."""
 EFFECT_ENTRIES = (
-    # input
-    "delay_s", "lag_s", "lag_damping", "slowness_s_rad",
+    # input: first, for the surface's compiled code, which may be older than this list, knows them by place;
+    # the latency is the few milliseconds between a command's stamp and its effect, in every model
+    "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
     "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
     # moment equation
     "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_alpha_dot", "M_h",
@@ -30,8 +31,6 @@ EFFECT_ENTRIES = (
     "mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping", "imu_arm_m",
     # stamps
     "alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s",
-    # few milliseconds between a command's stamp and its effect, in every model
-    "latency_s",
     # instruments whose reading is a scaled or bent one, and has no name for it
     "a_z_scale", "theta_scale", "a_z_read2", "a_z_read3", "alpha_read2", "alpha_read3", "q_pull", "q_pull2",
     # error of the air speed: a parabola in time over the record, from -1 to 1
