@@ -6,7 +6,7 @@ from numba import njit
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.layout import INDEX
 
-# Compiled code is kept as long as this file is the same: the entries it reads stand first, whatever comes later.
+# Compiled code is kept as long as this file is the same: the entries it reads stand first in the layout.
 _READ = tuple(INDEX[name] for name in (
     "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
     "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
