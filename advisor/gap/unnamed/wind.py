@@ -40,7 +40,9 @@ _LAYER_CHANCE = 1e-2
 scatters by much. In 470 flights of four simulators without it no layer explains more than 0.17, but for one
 whose attitude was wrong."""
 _UNDENIABLE_SHARE = 0.4
-"""Far beyond all of these: then few manoeuvres may have met the layer."""
+"""Far beyond all of these: then few manoeuvres may have met the layer ..."""
+_NOT_ONE_ALONE = 1.5
+"""... but not one, left out without which nothing of a gradient stays: it is its own scatter then."""
 _ALONG, _ABOVE_NOISE = 0.015, 3.0
 """Swing of the air speed in a usual manoeuvre, relative, and beside its white noise."""
 _ALONE = 1e-3
@@ -93,7 +95,10 @@ def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
     layers = [_gradient(paths, low, high) for low, high in between if high - low >= _THINNEST_M]
     likeliest = max(layers, key=lambda s: s.share, default=everywhere)
     there = likeliest.share >= _PLAIN_SHARE and likeliest.is_agreed(_LAYER_CHANCE)
-    undeniable = likeliest.share >= _UNDENIABLE_SHARE and abs(likeliest.gradient_per_s) >= _LEAST_PER_S
+    gradient = abs(likeliest.gradient_per_s)
+    undeniable = likeliest.share >= _UNDENIABLE_SHARE and gradient >= max(
+        _LEAST_PER_S, _NOT_ONE_ALONE * likeliest.std
+    )
     return likeliest if there or undeniable else None
 
 
