@@ -80,11 +80,14 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     tolerance = tolerance_of(problem.flights)
     stages = as_measured(problem, stages)
     floor = _floor(problem, stages[-1], tolerance)
-    leftover = law or drifting(problem, stages) or remembering(problem, stages)
     leftover = (
-        leftover or stepping(problem, stages[-1].fitted) or wandering_attitude(problem, stages[-1].fitted)
+        law
+        or drifting(problem, stages)
+        or remembering(problem, stages)
+        or stepping(problem, stages[-1].fitted)
+        or wandering_attitude(problem, stages[-1].fitted)
+        or _without_a_name(problem, stages, air, tolerance, floor)
     )
-    leftover = leftover or _without_a_name(problem, stages, air, tolerance, floor)
     if leftover is None and air is not None and only_resemble(stages):
         stages = reduced_to(problem, stages, [])
         air, floor = moving_air(problem, stages[0].fitted), _floor(problem, stages[0], tolerance)
