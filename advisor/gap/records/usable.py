@@ -62,7 +62,8 @@ def _moves(m: Maneuver) -> bool:
         return False
     if len(found["elevator"].cut(*recorded(m))) < LEAST_SAMPLES or "q" not in outputs_of(m):
         return False
-    return "alpha" not in found or float(np.ptp(found["alpha"].y)) < DEPARTED_RAD
+    alpha = found.get("alpha")
+    return alpha is None or len(alpha) == 0 or float(np.ptp(alpha.y)) < DEPARTED_RAD
 
 
 def _steps_seen(m: Maneuver) -> bool:
