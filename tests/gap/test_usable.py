@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
-from advisor.gap.records.usable import usable_of
+from advisor.gap.records.usable import condensed, usable_of
 from advisor.problems import UnusableInputError
 from tests.gap.generator import Setup, fly
 
@@ -49,3 +49,20 @@ def test_with_a_single_one_left_the_answer_is_what_to_fly():
     flown = [FLOWN[0], ending(FLOWN[1], "q", 0.1), without(FLOWN[2], "elevator")]
     with pytest.raises(UnusableInputError, match="1 usable manoeuvre in the log"):
         diagnose(flown, Aircraft())
+
+
+def test_what_comes_faster_than_it_need_is_averaged_between_neighbours_only():
+    t = np.concatenate([np.arange(0.0, 0.5, 0.01), np.arange(0.6, 1.0, 0.01)])
+    there, read = condensed(t, 3.0 * t)
+    assert len(there) == len(t) // 2
+    assert read == pytest.approx(3.0 * there)
+    assert not np.any((there > 0.5) & (there < 0.6))
+    slow = np.arange(0.0, 1.0, 0.02)
+    assert condensed(slow, slow)[0] is slow
+
+
+def test_a_log_of_twice_the_rate_tells_the_same():
+    setups = (Setup(maneuvers=6, switches={"delay": 0.05}, rate_hz=rate, seed=72) for rate in (50.0, 100.0))
+    once, twice = (diagnose(fly(setup), Aircraft()).causes[0] for setup in setups)
+    assert once.effect == twice.effect == "transport_delay"
+    assert twice.parameters["delay_s"].value == pytest.approx(0.05, abs=0.003)
