@@ -20,8 +20,8 @@ from advisor.flight.motion import integrated, speed_rate
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
 """Of the air speed in a manoeuvre, beyond the parabola's three."""
-_LEAST_PER_S = 0.1
-"""Change of the wind, m/s per metre, from which on it is felt: a knot in five metres."""
+_LEAST_PER_S = 0.08
+"""Change of the wind, m/s per metre, from which on it is felt: a knot in six metres."""
 _LEAST_MANEUVERS = 4
 """That must agree on a gradient."""
 _CHANCE = 1e-3
