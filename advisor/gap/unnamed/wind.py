@@ -37,7 +37,7 @@ _SURE_CHANCE = 1e-4
 """... or where manoeuvres agree as they would with this chance."""
 _LAYER_CHANCE, _LAYER_SHARE = 1e-2, 0.3
 """Of a layer's gradient: few manoeuvres tell of a layer, and leaving one of them out scatters by much. In 770
-flights of simulators without it two layers explain 0.25 and none more, but for one whose attitude was wrong."""
+flights of simulators without it two layers explain 0.25 and none more, but where an attitude was wrong."""
 _UNDENIABLE_SHARE = 0.4
 """Far beyond all of these: then few manoeuvres may have met the layer ..."""
 _NOT_ONE_ALONE = 1.5
