@@ -36,6 +36,22 @@ def test_every_effect_of_the_catalogue_is_foreseen_in_its_order(foreseen):
     assert tuple(foreseen) == tuple(BLOCK_OF)
 
 
+@pytest.mark.parametrize(
+    ("known", "sought"),
+    [
+        ({"unsteady_lift": {"share": 0.3, "lag_s": 0.2}}, False),
+        ({"structural_mode": {"frequency_hz": 5.0, "damping": 0.1, "gain": 0.5}}, False),
+        ({"transport_delay": {"delay_s": 0.05}}, True),
+    ],
+)
+def test_what_the_aircraft_file_has_is_foreseen_beyond_it_or_taken_as_it_stands(known, sought):
+    found = {f.effect: f for f in foresee_plan(replace(PLANE, effects=known), PLAN, 50.0, 2.0)}
+    assert tuple(found) == tuple(BLOCK_OF)
+    effect = found[next(iter(known))]
+    assert np.isfinite(effect.smallest) == sought
+    assert ("in the aircraft file" in effect.add) != sought
+
+
 def test_what_the_plan_cannot_show_says_what_to_add(foreseen):
     assert not np.isfinite(foreseen["ground_effect"].smallest)
     assert "low and high" in foreseen["ground_effect"].add

@@ -35,6 +35,8 @@ TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "th
 """Standard deviations taken for instruments nobody has measured yet."""
 SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
 """Channels that a plan may do without."""
+_IN_FILE = "it is in the aircraft file, and taken as it stands there"
+"""Of an effect with a shape: more or less of it is not looked for."""
 _APART_S = 30.0
 _HIGHEST_RATE_HZ, _LARGEST_STEP_DEG = 1000.0, 60.0
 """No telemetry is faster, and no elevator moves further."""
@@ -109,11 +111,15 @@ def foresee_flights(
     fitted = Fitted(point, noise, 0.0, left, left, step.information, linear, 0)
     marks = Marks(problem, fitted, noise)
     apart = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []
+    wanted = beyond_known(aircraft.effects, variants)
     found = [
-        *foresee(problem, fitted, beyond_known(aircraft.effects, variants), noise, apart),
+        *foresee(problem, fitted, wanted, noise, apart),
         *foresee_air(problem, fitted, marks, unit_s),
         foresee_offset(problem, noise),
     ]
+    sought = {v.effect for v in wanted}
+    in_file = {v.effect: v.names[0] for v in variants if v.effect not in sought}
+    found += [Foreseen(effect, name, float("inf"), (), _IN_FILE) for effect, name in in_file.items()]
     by_effect = {f.effect: f for f in found}
     return [by_effect.get(effect) or impossible(effect, flights) for effect in BLOCK_OF]
 
