@@ -46,6 +46,7 @@ from advisor.gap.unnamed.steps import stepping
 from advisor.gap.unnamed.swing import swinging, swings_the_aircraft
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
+from advisor.gap.unnamed.unnamed_air import unnamed_air
 from advisor.gap.unnamed.unnamed_law import unnamed_law
 from advisor.gap.unnamed.wander import wandering_attitude, wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
@@ -92,6 +93,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         stages = reduced_to(problem, stages, [])
         air, floor = moving_air(problem, stages[0].fitted), _floor(problem, stages[0], tolerance)
         leftover = _without_a_name(problem, stages, air, tolerance, floor)
+    if leftover is None and air is not None:
+        leftover = unnamed_air(air, stages, floor)
     if leftover is None and not (air is not None and air.gust):
         leftover = sloshing(problem, stages[-1].fitted)
     file_model = _file_model(problem, stages[0].fitted)
@@ -113,8 +116,9 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         if leftover.in_quiet is not None:
             least = np.maximum(stated_floor(problem.flights), tolerance)
             floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
+    named = _file_model(problem, stages[-1].fitted) if len(stages) > 1 else None
     speed = at_constant_speed(problem, stages[-1].fitted)
-    return Evidence(problem, stages, leftover, air, floor, file_model, speed, true_speed)
+    return Evidence(problem, stages, leftover, air, floor, file_model, named, speed, true_speed)
 
 
 def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> Variant:
@@ -196,15 +200,15 @@ def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:
     return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)
 
 
-def _file_model(problem: Problem, baseline: Fitted) -> HeldOut | None:
+def _file_model(problem: Problem, fitted: Fitted) -> HeldOut | None:
     """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
     if problem.believed is None:
         return None
-    point = replace(baseline.point, derivatives=problem.believed)
+    point = replace(fitted.point, derivatives=problem.believed)
     lefts: list[FloatArray] = []
     for _ in range(3):
         linear = linearise(problem, point)
-        owns = solve_blocks(problem, linear, 1.0 / baseline.noise, point).free
+        owns = solve_blocks(problem, linear, 1.0 / fitted.noise, point).free
         still = np.zeros(len(point.shared))
         lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
         point = replace(point, own=point.own + np.array([o[:4] for o in owns]))

@@ -222,6 +222,11 @@ class Setup:
     """Height of each manoeuvre above ground, in turn, and logged; none: far above it."""
     gust_std: float = 0.0
     gust_pulse: float = 0.0
+    wake: bool = False
+    """A pulse is followed by its opposite, as behind a wing tip."""
+    wave_m_s: float = 0.0
+    wave_s: float = 3.0
+    """Air that rises and sinks all the time: how fast, and its period."""
     cg_drift: float = 0.0
     """Relative change of Cm_α from first to last manoeuvre."""
     cg_step: float = 0.0
@@ -300,6 +305,10 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
             at = start + rng.uniform(0.5, 5.0)
             inside = (t > at) & (t < at + 0.8)
             gust = gust + setup.gust_pulse * 0.5 * (1 - np.cos(2 * np.pi * (t - at) / 0.8)) * inside
+            if setup.wake:
+                gust = gust - np.interp(t - 0.8, t, gust)
+        if setup.wave_m_s:
+            gust = gust + setup.wave_m_s * np.sin(2 * np.pi * t / setup.wave_s + 2.1 * i)
         out = np.zeros((8, n))
         _integrate(n, command, gust, wave, body, sw, 2.4 * i, out)
         result.append(_measure(setup, rng, i, t, command, out, start))

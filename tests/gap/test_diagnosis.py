@@ -78,6 +78,17 @@ def test_moving_air_is_called_turbulence_and_not_an_effect_of_the_aircraft():
     assert found.where.block == "air"
 
 
+def test_a_name_that_explains_the_gap_with_the_files_own_numbers_is_likelier_than_numbers_that_imitate_it():
+    sound = diagnose(fly(Setup(maneuvers=5, noise=0.005, seed=9)), Aircraft())
+    model = {name: number.value for name, number in sound.model.items()}
+    nearly = {**model, "M_q": 0.8 * model["M_q"], "Z_alpha": 1.08 * model["Z_alpha"]}
+    plane = Aircraft(model=nearly, reference_airspeed_m_s=sound.reference_airspeed_m_s)
+    behind = Setup(maneuvers=6, switches={"acc_arm": -2.5}, noise=0.002, seed=18)
+    found = diagnose(fly(behind), plane)
+    assert (found.verdict, found.causes[0].effect) == ("effect", "accelerometer_offset")
+    assert found.causes[0].parameters["arm_m"].value == pytest.approx(-2.5, rel=0.05)
+
+
 def test_wrong_numbers_in_the_file_are_told_from_missing_structure():
     wrong = Aircraft(model={**MODEL, "M_alpha": -25.0})
     found = diagnose(fly(Setup(maneuvers=6, seed=4)), wrong)

@@ -53,6 +53,19 @@ def test_an_air_speed_that_is_off_is_not_blamed_on_the_aircraft_and_may_be_the_a
     assert any("accelerometer that reads as much too low looks the same" in note for note in found.notes)
 
 
+@pytest.mark.parametrize("setup", [HARD, Setup(maneuvers=6, seed=39)], ids=["hard", "clean"])
+def test_an_elevator_that_loses_power_in_flight_is_no_mass_and_no_ice(setup):
+    flown = fly(setup)
+    for i, maneuver in enumerate(flown[4:], start=4):
+        sent = maneuver.channels["elevator"]
+        # What moves a surface by two thirds of what is sent.
+        channels = {**maneuver.channels, "elevator": replace(sent, y=1.5 * sent.y - 0.5 * sent.y[0])}
+        flown[i] = replace(maneuver, channels=channels)
+    found = diagnose(flown, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "input")
+    assert any("elevator's power changed by -3" in note for note in found.notes)
+
+
 @pytest.mark.parametrize(("channel", "reading", "block"), [
     ("alpha", lambda y: np.minimum(y, np.median(y) + 0.04), "alpha_sensor"),
     pytest.param("a_z", lambda y: np.maximum(y, -14.0), "accelerometer", marks=pytest.mark.study),

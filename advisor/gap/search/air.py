@@ -61,6 +61,8 @@ class Air:
     """Largest departure of the air's angle there, rad."""
     gust_at_s: float
     """Vehicle time of its peak."""
+    course: tuple[FloatArray, ...]
+    """Per manoeuvre, shape (knots,): its likeliest angle, rad, every ``KNOTS_S``."""
     left: FloatArray
     """Shape (channels,): mean square that stays when the likeliest course of the air is taken out."""
     lefts: tuple[FloatArray, ...]
@@ -120,7 +122,8 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
         gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
-        left=left, lefts=course.lefts, instruments=instruments, power=float(np.mean(taken / floor**2)),
+        course=course.knots, left=left, lefts=course.lefts,
+        instruments=instruments, power=float(np.mean(taken / floor**2)),
     )  # fmt: skip
 
 

@@ -11,13 +11,15 @@ from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import worth
-from advisor.gap.search.merit import LEAST_GAIN, Judged
+from advisor.gap.search.merit import LEAST_GAIN
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage, only, rebuilt
 
 _CLEARLY = 20.0
-"""Cost by which another companion must beat the one that was found first."""
+"""Cost by which a pair of names must beat those that were found first."""
+_PROMISING = 0.5
+"""Share of what the first effect brings that the screening must promise of another companion."""
 _SEVERAL = 2
 """Streams that are late, from which on the command may be, and another stream early."""
 
@@ -34,10 +36,13 @@ def other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Va
         return stages
     alone = only(problem, second.fitted, [second.effect])
     held = hold_out(problem, alone)
-    companions = judge(problem, alone, held, candidates_for(problem, alone, variants))
+    independent = worth(problem, second.fitted.innovations)
+    same = addition(problem, alone, held, second.fitted, first.effect, independent)
+    others = candidates_for(problem, alone, [v for v in variants if v.effect != first.effect])
+    near = [c for c in others if 0.5 * (alone.cost - c.cost) + c.belief > _PROMISING * same.gain]
+    companions = judge(problem, alone, held, near)
     best = next((j for j in companions if j.worth_naming), None)
-    same = next((j for j in companions if j.effect == first.effect), None)
-    if best is None or best.effect == first.effect or not _clearly_better(best, same, second):
+    if best is None or best.gain < same.gain + LEAST_GAIN:
         return stages
     independent = worth(problem, best.fitted.innovations)
     only_second = addition(problem, stages[0].fitted, stages[0].held_out, alone, second.effect, independent)
@@ -45,18 +50,9 @@ def other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Va
     return [
         # Its rivals were those beside the first, which the companion has replaced.
         Stage(stages[0].fitted, stages[0].held_out, stages[1].considered, only_second),
-        Stage(alone, held, tuple(companions), best),
+        Stage(alone, held, (*companions, same), best),
         Stage(best.fitted, best.held_out, tuple(after), None),
     ]
-
-
-def _clearly_better(best: Judged, same: Judged | None, second: Judged) -> bool:
-    """Whether a companion beats the first effect beside the second: by what it brings, or by its fit."""
-    if same is not None:
-        # From the second alone a search for the first may end before it comes to where both have been.
-        short = max(0.5 * (same.fitted.cost - second.fitted.cost), 0.0)
-        return best.gain > same.gain + short + LEAST_GAIN
-    return best.fitted.cost < second.fitted.cost - _CLEARLY
 
 
 def one_early(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:

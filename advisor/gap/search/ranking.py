@@ -79,7 +79,8 @@ def judge(
     for one in evened(problem, judged):
         best.setdefault(one.effect, one)
     first, *rest = best.values()
-    if first.gain > _GROSS and np.any(first.held_out.mean_square > (_LEFT * problem.flights.white) ** 2):
+    explained = 0.5 * (before.cost - first.fitted.cost)
+    if explained > _GROSS and np.any(first.held_out.mean_square > (_LEFT * problem.flights.white) ** 2):
         hidden = _HIDES if is_plain(before) else frozenset()
         alike = [c.variant for c in candidates if c.variant.effect in {first.effect, *hidden}]
         again = [
@@ -96,15 +97,22 @@ def judge(
 
 
 def _restarted(problem: Problem, before: Fitted, best: Fitted, variants: Sequence[Variant]) -> list[Fitted]:
-    """Full fits from every start: of a kink, a screening with the plain model sees little."""
+    """Full fits from every start: of a kink, a screening with the plain model sees little.
+
+    What is gross has bent the plain model's derivatives: searches begin with the aircraft file's, too.
+    """
     fits: list[Fitted] = []
-    for variant in variants:
-        if len(variant.starts) < _SEVERAL or variant.sides is not None:
-            continue
+    several = [v for v in variants if len(v.starts) >= _SEVERAL and v.sides is None]
+    for variant in (described for v in several for described in (v, *v.likewise)):
+        same = variant.effect == best.point.effects[-1].effect
         for start in variant.starts:
             point = before.point.with_effect(variant, start)
             lost = _no_rival(before, [best, *fits])
             fits.append(fit(problem, point, before.noise, _TO_THE_END, 0.5, beaten_by=lost))
+            if same and problem.believed is not None and is_plain(before):
+                # Far from the plain model: that the search begins with more left than there says nothing.
+                there = replace(point, derivatives=problem.believed)
+                fits.append(fit(problem, there, before.noise, _TO_THE_END, 0.5))
     return fits
 
 

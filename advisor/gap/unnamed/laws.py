@@ -1,9 +1,9 @@
-"""Simple laws that have no name in the catalogue: readings out of proportion, moments that bend, a memory.
+"""Simple laws that have no name in the catalogue: readings out of proportion, moments that bend, losses.
 
 α and q may be scaled by name; a_z and θ may not, no reading may be bent, and no gyro feel an acceleration.
 A moment may bend by name with the deflection and with α, but not with the pitch rate, nor with products. A
 servo may lag or run at its limit, but neither overshoot nor meet a stop. Lift may bend and come late, but not
-come back another way than it went.
+come back another way than it went. Ice takes of the wing and the elevator, but nothing of the elevator alone.
 """
 
 from collections.abc import Sequence
@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.between import steps_in
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 from advisor.gap.search.merit import Judged
@@ -35,6 +36,7 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
 
 
 _PULLED, _STOP, _RINGS, _MEMORY = "gyro_pulled", "surface_stop", "servo_rings", "lift_memory"
+_WEAKER = "elevator_loss"
 PLAIN = frozenset({_PULLED, _STOP, _RINGS})
 """Laws that leave little where they are the truth: what they resemble is of another kind."""
 _TRIMMED_RAD = 0.002
@@ -78,6 +80,7 @@ _SAID = {
     _STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no further.",
     _RINGS: "The surface overshoots its command: a servo of second order that is hardly damped.",
     _MEMORY: "The lift is another on the way up than on the way down: a stall that lets go late.",
+    _WEAKER: "In flight the elevator's power changed by {percent:+.0f} %: a horn slipped, or a part is gone.",
     _PULLED: "The pitch rate feels the acceleration.",
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
@@ -123,11 +126,24 @@ def lift_memory(flights: Flights) -> Variant:
     )  # fmt: skip
 
 
+def _weaker(flights: Flights) -> list[Variant]:
+    """An elevator that does less from some manoeuvre on, whatever else stays."""
+    if len(flights) < 3:
+        return []
+    columns = [INDEX["Z_delta_e"], INDEX["M_delta_e"]]
+
+    def lose(p: FloatArray, values: Values, share: FloatArray) -> None:
+        p[:, columns] *= (1.0 + values[0] * share)[:, None]
+
+    one = Variant(_WEAKER, "input", ("step",), ((0.0,),), (0.005,), ((-0.9, 2.0),), 0.02)
+    return steps_in(flights, one, lose)
+
+
 def laws_for(flights: Flights) -> list[Variant]:
     """Every law of the readings that tell, of the moment, of the surface and of the lift."""
     readings = [flights.channels[c] for c in flights.telling]
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
-    return [*of_readings, *_MOMENTS, *_stops(flights), _RINGING, lift_memory(flights)]
+    return [*of_readings, *_MOMENTS, *_stops(flights), _RINGING, lift_memory(flights), *_weaker(flights)]
 
 
 def said(law: Judged) -> str:

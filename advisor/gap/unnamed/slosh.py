@@ -37,7 +37,12 @@ _VISIBLE = 0.03
 
 
 def sloshing(problem: Problem, last: Fitted) -> Leftover | None:
-    """A mass that the pitching sets swinging, with a note that says how fast; None without one."""
+    """A mass that the pitching sets swinging, with a note that says how fast; None without one.
+
+    In records that were filtered on the ground it is not sought: edges that a filter rounded ring as well.
+    """
+    if problem.flights.alpha_is_smoothed:
+        return None
     noise = noise_of(problem)
     coarse = _gains(problem, last, noise, [(hz, _DAMPING) for hz in _HZ])
     gains = [trial[0] for trial in coarse]

@@ -25,7 +25,9 @@ class Evidence:
     floor: FloatArray
     """Shape (channels,): noise as it is where nothing was flown."""
     file_model: HeldOut | None
-    """The aircraft file's own parameters, unfitted."""
+    """The aircraft file's own parameters, unfitted ..."""
+    file_and_names: HeldOut | None
+    """... and the same with everything that was named; None where nothing was."""
     constant_speed: HeldOut | None
     """The final model without the change of air speed."""
     true_speed: TrueSpeed | None = None

@@ -33,6 +33,8 @@ _MOSTLY = 0.98
 """Share of the gap that wrong numbers make, from which on they are the answer whatever is there besides: what
 leaves the file right, and is imitated by other numbers, is imitated by nine tenths at most, but for the one
 that they imitate exactly, if with it they are nearer to the file's."""
+_BY_NAMES = 0.8
+"""Share of the gap that names must explain beside the file's own derivatives, if these are to be right."""
 _BY_FAR = 0.985
 """The same beside something without a name in the equations that they belong to."""
 _EQUATIONS = frozenset({"force_equation", "moment_equation"})
@@ -107,6 +109,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     verdict: Verdict = "none"
     # An aircraft may bend a little besides: what makes the gap is the answer.
     imitated = any(judged.variant.twin is not None and judged.belief > 0.0 for judged in named)
+    imitated = imitated or _need_no_numbers(e, floor)
     mostly = wrong_values and not imitated and beyond > _MOSTLY * (beyond + max(removed, 0.0))
     # Moving air comes with the day, wrong numbers stay; but the larger part of the gap is the answer.
     larger = by_numbers > of_the_air
@@ -132,6 +135,19 @@ def _beyond_fitted_numbers(e: Evidence, floor: FloatArray) -> float:
     if e.file_model is None:
         return 0.0
     return float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / floor**2))
+
+
+def _need_no_numbers(e: Evidence, floor: FloatArray) -> bool:
+    """Whether what was named explains the gap with the file's own derivatives, too.
+
+    One name that does so is likelier than six wrong numbers that happen to imitate it.
+    """
+    if e.file_model is None or e.file_and_names is None:
+        return False
+    was, named, left = (
+        whole_gap(held.mean_square, floor) for held in (e.file_model, e.file_and_names, e.stages[-1].held_out)
+    )
+    return was - named > _BY_NAMES * (was - left)
 
 
 def _at_constant_speed(problem: Problem, before: HeldOut, constant: HeldOut, last: HeldOut) -> HeldOut:

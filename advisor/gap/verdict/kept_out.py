@@ -47,6 +47,7 @@ def keep_out(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
         stages=stages,
         constant_speed=speed and over_maneuvers(e.problem, speed, kept),
         file_model=e.file_model and over_maneuvers(e.problem, e.file_model, kept),
+        file_and_names=e.file_and_names and over_maneuvers(e.problem, e.file_and_names, kept),
     ), kept
 
 
