@@ -7,9 +7,12 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.diagnosis import maneuvers_of
+from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
+from advisor.gap.fitting.fit import fit
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.search.command import is_likelier_held
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario
@@ -43,6 +46,24 @@ def test_a_servo_that_moves_no_faster_is_no_later_for_a_command_that_was_held(tm
     )
     assert cause.effect == "actuator_rate_limit"
     assert cause.parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.03)
+
+
+def test_a_limit_that_steps_meet_for_less_than_an_interval_is_no_sign_of_a_held_command(tmp_path):
+    (tmp_path / "uav.yaml").write_text(f"{UAV}input: held\n")
+    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
+    maneuvers = maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers
+    held, plain = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
+    linear = replace(held, held=False)
+    read_as_linear = fit(linear, plain.point, plain.noise)
+    limit = next(v for v in variants_for(held.flights) if v.effect == "actuator_rate_limit")
+
+    def is_held_with(rate_rad_s: float) -> bool:
+        limited = plain.point.with_effect(limit, (1.0 / rate_rad_s,))
+        return is_likelier_held(linear, read_as_linear, held, replace(plain, point=limited))
+
+    # The fits are the same but for the limit: steps of 4 deg take 70 ms there, and 7 ms here.
+    assert is_held_with(1.0)
+    assert not is_held_with(10.0)
 
 
 @pytest.mark.parametrize("early_s", [0.012, pytest.param(0.016, marks=pytest.mark.study)])

@@ -108,9 +108,21 @@ def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: 
     more = evidence_of(held, named_held) - evidence_of(linear, named)
     fewer = len(named.point.effects) - len(named_held.point.effects)
     bends = any(effect.effect in _BEND for effect in named_held.point.effects)
+    bends = bends and not _is_the_ramp(held, named_held)
     return (bends and more < -_LIKELIER) or (
         fewer > 0 and more < fewer * float(np.log(np.sum(counts(linear))))
     )
+
+
+def _is_the_ramp(held: Problem, fitted: Fitted) -> bool:
+    """Whether a servo at its limit takes no longer for a usual step than from one stamp to the next.
+
+    That is what a linear command does by itself.
+    """
+    effects = zip(fitted.point.effects, fitted.point.values, strict=True)
+    slowness_s_rad = next((float(v[0]) for e, v in effects if e.effect == "actuator_rate_limit"), np.inf)
+    steps, intervals = np.vstack([flight.edges[:, 1:3] for flight in held.flights.flights]).T
+    return float(np.median(np.abs(steps) / intervals**2)) * slowness_s_rad < 1.0
 
 
 def _other_times_of(fitted: Fitted) -> list[float]:

@@ -42,7 +42,11 @@ def other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Va
     near = [c for c in others if 0.5 * (alone.cost - c.cost) + c.belief > _PROMISING * same.gain]
     companions = judge(problem, alone, held, near)
     best = next((j for j in companions if j.worth_naming), None)
-    if best is None or best.gain < same.gain + LEAST_GAIN:
+    if best is None:
+        return stages
+    # What one sample is worth depends on the fit that says so: both are held against the same.
+    likewise = addition(problem, alone, held, best.fitted, best.effect, independent)
+    if likewise.gain < same.gain + LEAST_GAIN:
         return stages
     independent = worth(problem, best.fitted.innovations)
     only_second = addition(problem, stages[0].fitted, stages[0].held_out, alone, second.effect, independent)

@@ -12,6 +12,7 @@ from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE, Cause, Value, Verdict
+from advisor.gap.search.merit import Judged
 from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, speed_is_unasked
 from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
@@ -79,19 +80,17 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
     # Noise that the air makes hides nothing from a simulator that knows the air's motion.
     still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
-    beyond, by_numbers = _beyond_fitted_numbers(e, floor), _beyond_fitted_numbers(e, still)
-    of_the_air = whole_gap(first.mean_square, still) if e.air is not None else 0.0
-    # Fitted numbers bend to the air's motion, and take up a part of it.
-    plainly = beyond > PLAIN and by_numbers > _FAR_MORE * of_the_air
-    wrong_values = beyond > VISIBLE and file_is_off(problem, stages[-1].fitted, plainly)
+    numbers = _wrong_numbers(e, named, still)
+    removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
+    names = max(removed, 0.0)
     # What bends a little in an equation whose numbers are far off is told beside them.
-    little = e.leftover is not None and e.leftover.block in _EQUATIONS and beyond > _BY_FAR * (beyond + left)
-    only_numbers = wrong_values and not named and e.air is None and little
+    little = e.leftover is not None and e.leftover.block in _EQUATIONS
+    little = little and numbers.gap > _BY_FAR * (numbers.gap + names + left)
+    only_numbers = numbers.are_wrong and not numbers.are_imitated and e.air is None and little
     unknown = e.leftover is not None and late is None and not only_numbers
     apart = tuple(c for c in (_air_cause(e), bias, late) if c is not None)
-    removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
-    outweighs = _speed_outweighs(e, max(beyond, removed))
-    told = (named or bias or late or wrong_values) and not outweighs
+    outweighs = _speed_outweighs(e, max(numbers.gap, removed))
+    told = (named or bias or late or numbers.are_wrong) and not outweighs
     judge_speed = speed_is_unasked if told else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         apart = (speed, *apart)
@@ -102,20 +101,17 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     causes = _merge(causes, apart)
     if bias is not None and not unknown and not problem.flights.alpha_is_derived:
         offset = (bias.parameters["bias_rad"].value / floor[problem.channels.index("alpha")]) ** 2
-        if float(offset) / len(floor) > max(removed, 0.0):
+        if float(offset) / len(floor) > names:
             causes = _put_first(causes, bias)
     if speed is not None and speed in apart and outweighs:
         causes = _put_first(causes, speed)
     verdict: Verdict = "none"
     # An aircraft may bend a little besides: what makes the gap is the answer.
-    imitated = any(judged.variant.twin is not None and judged.belief > 0.0 for judged in named)
-    imitated = imitated or _need_no_numbers(e, floor)
-    mostly = wrong_values and not imitated and beyond > _MOSTLY * (beyond + max(removed, 0.0))
-    # Moving air comes with the day, wrong numbers stay; but the larger part of the gap is the answer.
-    larger = by_numbers > of_the_air
+    mostly = not numbers.are_imitated and numbers.gap > _MOSTLY * (numbers.gap + names)
+    wrong = numbers.are_wrong and numbers.outweigh_the_air and (mostly or not named)
     if unknown:
         verdict = "unknown"
-    elif wrong_values and (mostly or not named) and larger and not (bias or late or speed in apart):
+    elif wrong and not (bias or late or speed in apart):
         verdict = "parameters"
     elif any(c.present for c in causes):
         verdict = "effect"
@@ -127,7 +123,31 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     before = e.file_model if e.file_model is not None else first
     if e.constant_speed is not None and speed in apart:
         before = _at_constant_speed(problem, before, e.constant_speed, last)
-    return Judgement(verdict, causes, apart, speed, bias, before, wrong_values)
+    return Judgement(verdict, causes, apart, speed, bias, before, numbers.are_wrong)
+
+
+@dataclass(frozen=True)
+class _Numbers:
+    """What the file's derivatives do to the gap."""
+
+    gap: float
+    """What they leave beyond fitted ones, mean square over the floor's."""
+    are_wrong: bool
+    are_imitated: bool
+    """What was named leaves the file right: that other numbers explain the gap, too, is a likeness."""
+    outweigh_the_air: bool
+    """Moving air comes with the day, wrong numbers stay; but the larger part of the gap is the answer."""
+
+
+def _wrong_numbers(e: Evidence, named: Sequence[Judged], still: FloatArray) -> _Numbers:
+    """``still`` is the floor without what the air does, shape (channels,)."""
+    gap, beside_air = _beyond_fitted_numbers(e, e.floor), _beyond_fitted_numbers(e, still)
+    of_the_air = whole_gap(e.stages[0].held_out.mean_square, still) if e.air is not None else 0.0
+    # Fitted numbers bend to the air's motion, and take up a part of it.
+    plainly = gap > PLAIN and beside_air > _FAR_MORE * of_the_air
+    are_wrong = gap > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted, plainly)
+    told_by_file = any(judged.variant.twin is not None and judged.belief > 0.0 for judged in named)
+    return _Numbers(gap, are_wrong, told_by_file or _need_no_numbers(e), beside_air > of_the_air)
 
 
 def _beyond_fitted_numbers(e: Evidence, floor: FloatArray) -> float:
@@ -137,7 +157,7 @@ def _beyond_fitted_numbers(e: Evidence, floor: FloatArray) -> float:
     return float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / floor**2))
 
 
-def _need_no_numbers(e: Evidence, floor: FloatArray) -> bool:
+def _need_no_numbers(e: Evidence) -> bool:
     """Whether what was named explains the gap with the file's own derivatives, too.
 
     One name that does so is likelier than six wrong numbers that happen to imitate it.
@@ -145,7 +165,7 @@ def _need_no_numbers(e: Evidence, floor: FloatArray) -> bool:
     if e.file_model is None or e.file_and_names is None:
         return False
     was, named, left = (
-        whole_gap(held.mean_square, floor) for held in (e.file_model, e.file_and_names, e.stages[-1].held_out)
+        whole_gap(h.mean_square, e.floor) for h in (e.file_model, e.file_and_names, e.stages[-1].held_out)
     )
     return was - named > _BY_NAMES * (was - left)
 
