@@ -71,7 +71,7 @@ def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain
 
 def test_beside_turbulence_that_explains_far_more_only_what_is_plain_is_not_its_shape(late):
     *_, judged = late
-    strong = Air(0.01, 1000.0, False, 1, 0.02, 0.0, np.zeros(4), (), np.zeros(4), 100.0)
+    strong = Air(0.01, 1000.0, False, 1, 0.02, 0.0, (), np.zeros(4), (), np.zeros(4), 100.0)
     thrust = replace(judged.variant, effect="thrust_moment")
     plain = replace(judged, variant=thrust, gain=18.0, removed=20.0 * judged.least, belief=0.0)
     assert not strong.may_be(plain)
