@@ -34,6 +34,7 @@ from advisor.gap.unnamed.leftover import (
 )
 from advisor.gap.unnamed.memory import remembering
 from advisor.gap.unnamed.remainder import (
+    bends_as_any,
     is_all_named,
     is_of_no_use,
     of_the_input,
@@ -89,7 +90,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         or wandering_attitude(problem, stages[-1].fitted)
         or _without_a_name(problem, stages, air, tolerance, floor)
     )
-    if leftover is None and air is not None and only_resemble(stages):
+    as_any = bends_as_any(problem, stages, floor)
+    if leftover is None and air is not None and (only_resemble(stages) or as_any):
         stages = reduced_to(problem, stages, [])
         air, floor = moving_air(problem, stages[0].fitted), _floor(problem, stages[0], tolerance)
         leftover = _without_a_name(problem, stages, air, tolerance, floor)
@@ -100,7 +102,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     file_model = _file_model(problem, stages[0].fitted)
     if leftover is None and air is None:
         leftover = remainder(problem, stages, floor)
-        needless = is_of_no_use(problem, stages, file_model, floor)
+        needless = is_of_no_use(problem, stages, file_model, floor) or as_any
         if leftover is None and (needless or only_numbers(problem, stages, file_model, floor)):
             stages = reduced_to(problem, stages, [])
         elif leftover is None and len(stages) == 1:

@@ -77,7 +77,7 @@ def test_wrong_numbers_that_make_nearly_all_of_a_gap_are_the_answer_though_a_mom
     _, right = sound
     model = {name: value.value for name, value in right.model.items()}
     wrong = Aircraft(model={**model, "M_alpha": 0.6 * model["M_alpha"], "M_q": 1.3 * model["M_q"]})
-    found = diagnose(fly(Setup(maneuvers=6, switches={"cm_a2": 0.8}, seed=5)), wrong)
+    found = diagnose(fly(Setup(maneuvers=6, switches={"cm_a2": 1.6}, seed=5)), wrong)
     assert [c.effect for c in found.causes if c.present] == ["nonlinear_pitching_moment"]
     assert found.verdict == "parameters"
     assert "wrong numbers" in found.sentence

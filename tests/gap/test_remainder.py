@@ -7,12 +7,14 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.records.floor import stated_floor
 from advisor.gap.records.prepare import prepare
+from advisor.gap.result import VISIBLE
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage
@@ -141,3 +143,13 @@ def test_what_play_leaves_beside_most_of_a_gap_is_the_inputs_unless_its_law_is_k
     hardly = [replace(stages[0], held_out=stages[1].held_out), *stages[1:]]
     assert of_the_input(elsewhere, hardly, None, floor) == elsewhere
     assert of_the_input(elsewhere, hardly, much, floor).block == "input"
+
+
+def test_a_bend_that_every_airframe_has_is_no_cause_where_it_stays_below_the_noise():
+    bent = Setup(maneuvers=6, noise=0.002, seed=23)
+    slightly = diagnose(fly(replace(bent, switches={"cm_a2": -0.3})), Aircraft())
+    assert slightly.verdict == "none"
+    assert slightly.gap.before > VISIBLE
+    assert not any(c.present for c in slightly.causes)
+    more = diagnose(fly(replace(bent, switches={"cm_a2": -1.2})), Aircraft())
+    assert (more.verdict, more.causes[0].effect) == ("effect", "nonlinear_pitching_moment")

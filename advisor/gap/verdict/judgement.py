@@ -120,6 +120,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     if verdict in ("none", "parameters"):
         keeps = _BEHIND if named else _REFUTED
         causes = tuple(replace(c, probability=keeps * c.probability) for c in causes)
+        causes = tuple(sorted(causes, key=lambda c: -c.probability))
     before = e.file_model if e.file_model is not None else first
     if e.constant_speed is not None and speed in apart:
         before = _at_constant_speed(problem, before, e.constant_speed, last)
