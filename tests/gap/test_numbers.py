@@ -76,7 +76,7 @@ def test_a_file_without_the_terms_at_zero_angles_has_wrong_numbers_all_the_same(
 def test_wrong_numbers_that_make_nearly_all_of_a_gap_are_the_answer_though_a_moment_bends_a_little(sound):
     _, right = sound
     model = {name: value.value for name, value in right.model.items()}
-    wrong = Aircraft(model={**model, "M_alpha": 0.6 * model["M_alpha"], "M_q": 1.3 * model["M_q"]})
+    wrong = Aircraft(model={**model, "M_alpha": 0.45 * model["M_alpha"], "M_q": 1.3 * model["M_q"]})
     found = diagnose(fly(Setup(maneuvers=6, switches={"cm_a2": 1.6}, seed=5)), wrong)
     assert [c.effect for c in found.causes if c.present] == ["nonlinear_pitching_moment"]
     assert found.verdict == "parameters"
