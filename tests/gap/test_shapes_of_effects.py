@@ -57,6 +57,20 @@ def test_lift_that_hardly_comes_at_all_at_first_is_found_from_the_aircraft_files
     assert found.causes[0].parameters["lag_s"].value == pytest.approx(0.12, rel=0.1)
 
 
+def test_a_wing_that_is_stalled_throughout_is_no_wrong_number_of_the_file():
+    sound = diagnose(fly(Setup(maneuvers=5, noise=0.005, seed=9)), Aircraft())
+    model = {name: number.value for name, number in sound.model.items()}
+    plane = Aircraft(model=model, reference_airspeed_m_s=sound.reference_airspeed_m_s)
+    # It flies at 0.07 rad: what is left of its lift slope is a sixth, and hardly curves.
+    stalled = {"stall_at": 0.03, "stall_sharpness": 25.0}
+    found = diagnose(fly(Setup(maneuvers=6, switches=stalled, noise=0.005, seed=21)), plane)
+    assert (found.verdict, found.causes[0].effect) == ("effect", "nonlinear_lift")
+    assert found.causes[0].parameters["stall_rad"].value == pytest.approx(0.03, abs=0.02)
+    weaker = Aircraft(model={**model, "Z_alpha": 1.6 * model["Z_alpha"]}, reference_airspeed_m_s=22.0)
+    sound_again = fly(Setup(maneuvers=6, noise=0.005, seed=22))
+    assert diagnose(sound_again, weaker).verdict == "parameters"
+
+
 def test_a_lift_slope_that_grows_near_the_ground_is_the_ground():
     found = diagnose(
         fly(Setup(maneuvers=6, heights_m=(6.0, 9.0, 60.0), switches={"ground": 0.3}, seed=13)), Aircraft()

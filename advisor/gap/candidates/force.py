@@ -112,6 +112,8 @@ def _stall(flights: Flights) -> list[Variant]:
             ((0.0, 1.0), (2.0, 200.0)),
             0.0,
             entries=("stall_rad", "stall_sharpness"),
+            # A wing that has stalled already where the aircraft is trimmed.
+            beside_the_file=(0.65 * trim, 25.0) if trim > 0.0 else None,
         )
     ]
 

@@ -49,6 +49,8 @@ class Variant:
     """For what derivatives imitate exactly: how all shared numbers, shape (k,), change per unit of the size
     while the motion stays the same, given the derivatives, the effects in the model and the reference speed.
     It is fitted with the aircraft file's derivatives trusted."""
+    beside_the_file: Values | None = None
+    """For what fitted derivatives hide altogether: where the search begins beside the aircraft file's."""
     likewise: "tuple[Variant, ...]" = ()
     """Other descriptions, so near to this one that the full fit alone decides ..."""
     carried: Callable[[FloatArray], Values] | None = None

@@ -1,6 +1,6 @@
 """Which: every effect is screened, the few worth it are fitted fully, and the best judgement comes first."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +13,7 @@ from advisor.gap.fitting.problem import Point, Problem, counts
 from advisor.gap.fitting.uncertainty import belief_in, covariance, worth
 from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN, Judged, size_of
 from advisor.gap.search.score import addition, is_plain, predict_alike, smallest_of
-from advisor.gap.search.screen import Screen, Screened
+from advisor.gap.search.screen import Screen, Screened, likeliest_first
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _PROMISE = 0.7
@@ -55,7 +55,27 @@ def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]
             return 0.0
         return log_belief(point.derivatives, known, problem.believed) - plain
 
-    return Screen(problem, fitted).try_all([v for v in variants if v.effect not in present], believed)
+    others = [v for v in variants if v.effect not in present]
+    found = Screen(problem, fitted).try_all(others, believed)
+    hidden = _beside_the_file(problem, fitted, others, believed)
+    return likeliest_first([*found, *hidden], float(np.sum(independent))) if hidden else found
+
+
+def _beside_the_file(
+    problem: Problem, plain: Fitted, variants: Sequence[Variant], believed: Callable[[Point], float]
+) -> list[Screened]:
+    """Effects that fitted numbers hide, from where the aircraft file's are right; none where those are near.
+
+    A wing that is stalled throughout has another lift slope, and next to nothing else to show for it.
+    """
+    if problem.believed is None or not is_plain(plain):
+        return []
+    file = replace(plain.point, derivatives=problem.believed)
+    if believed(file) < LEAST_BELIEF:
+        return []
+    points = [file.with_effect(v, v.beside_the_file) for v in variants if v.beside_the_file is not None]
+    fits = [fit(problem, point, plain.noise, _TO_THE_END, 0.5) for point in points]
+    return [Screened(f.point.effects[-1], f.point, f.cost, f.noise, believed(f.point)) for f in fits]
 
 
 def judge(

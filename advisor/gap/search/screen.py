@@ -52,8 +52,7 @@ class Screen:
         ``believed`` gives the log probability that a point gains from what the aircraft file says.
         """
         found = [replace(s, belief=believed(s.point)) for s in self.quick_fits(variants)]
-        price = float(np.sum(self.around.count))
-        return sorted(found, key=lambda s: s.cost - 2.0 * s.belief + penalty(s.variant, price))
+        return likeliest_first(found, float(np.sum(self.around.count)))
 
     def quick_fits(self, variants: Sequence[Variant]) -> list[Screened]:
         """The best of each variant's starts, where one of them leads anywhere."""
@@ -125,6 +124,11 @@ class Screen:
         change, missed = per_unit[: len(believed)] / scale, (believed - plain.derivatives) / scale
         value = float(np.clip(change @ missed / (change @ change), *variant.bounds[0]))
         return plain.moved(plain.shared + value * per_unit, plain.own).with_effect(variant, (value,))
+
+
+def likeliest_first(found: Sequence[Screened], samples: float) -> list[Screened]:
+    """In order of what they explain, what the aircraft file says and how many numbers they take."""
+    return sorted(found, key=lambda s: s.cost - 2.0 * s.belief + penalty(s.variant, samples))
 
 
 def penalty(variant: Variant, samples: float) -> float:

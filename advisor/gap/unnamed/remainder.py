@@ -118,10 +118,13 @@ def is_of_no_use(
 def bends_as_any(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> bool:
     """Whether all that was named are bends so small that linear equations hardly describe a motion better.
 
-    That is below the noise, and below what any aircraft bends by. ``floor`` as for ``remainder``.
+    That is below the noise, and below what any aircraft bends by; but for what brings derivatives back to the
+    file's. ``floor`` as for ``remainder``.
     """
-    named = {s.added.effect for s in stages if s.added is not None}
-    if not named or not named <= _OF_ANY_AIRFRAME or whole_gap(stages[0].held_out.mean_square, floor) > 1.0:
+    named = [s.added for s in stages if s.added is not None]
+    if not named or any(j.effect not in _OF_ANY_AIRFRAME or j.belief >= LEAST_BELIEF for j in named):
+        return False
+    if whole_gap(stages[0].held_out.mean_square, floor) > 1.0:
         return False
     lefts = zip(stages[0].held_out.left, stages[-1].held_out.left, strict=True)
     return bool(np.all(rms_of(problem, [a - b for a, b in lefts]) < _LITTLE * problem.flights.peaks))
