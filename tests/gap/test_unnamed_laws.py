@@ -53,7 +53,9 @@ def test_an_air_speed_that_is_off_is_not_blamed_on_the_aircraft_and_may_be_the_a
     assert any("accelerometer that reads as much too low looks the same" in note for note in found.notes)
 
 
-@pytest.mark.parametrize("setup", [HARD, Setup(maneuvers=6, seed=39)], ids=["hard", "clean"])
+@pytest.mark.parametrize(
+    "setup", [pytest.param(HARD, marks=pytest.mark.study), Setup(maneuvers=6, seed=39)], ids=["hard", "clean"]
+)
 def test_an_elevator_that_loses_power_in_flight_is_no_mass_and_no_ice(setup):
     flown = fly(setup)
     for i, maneuver in enumerate(flown[4:], start=4):
