@@ -7,6 +7,8 @@ import numpy as np
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
+from advisor.flight.motion import bank_at, gravity_in_plane
+from advisor.gravity import GRAVITY_M_S2
 
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
 """The beginning of a record; share of itself that an offset may lack there, in the mean of all manoeuvres;
@@ -38,7 +40,7 @@ def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
     Parameters
     ----------
     maneuver
-        With channels ``alpha`` and ``theta``.
+        With channels ``alpha`` and ``theta``; ``bank`` is heeded where it has one.
     airspeed_m_s
         Speed to use when the log has none.
     """
@@ -53,7 +55,8 @@ def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
     speed = speed_at(climb.t, maneuver, airspeed_m_s)
     assert speed is not None
     speed = np.maximum(speed, 1.0)
-    apart = at("alpha") - (at("theta") - np.arcsin(np.clip(climb.y / speed, -0.9, 0.9)))
+    up, size = gravity_in_plane(at("theta"), bank_at(climb.t, found))
+    apart = at("alpha") - (up - np.arcsin(np.clip(climb.y / speed * GRAVITY_M_S2 / size, -0.9, 0.9)))
     # The climb rate is slow and smoothed: count one independent reading a second.
     independent = max(2.0, climb.t[-1] - climb.t[0])
     change = float(np.mean(apart) - np.mean(apart[climb.t <= climb.t[0] + _BEGIN_S]))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from advisor.flight.clocks import place
 from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.motion import gravity_in_plane
 from advisor.flight.surfaces import Surface, driven
 from advisor.gravity import GRAVITY_M_S2
 
@@ -133,15 +134,15 @@ def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
     return _decoded("alpha", f"NAMED_VALUE_FLOAT.{name}", "vane", t, y, columns)
 
 
-def derived_alpha(hud: Columns, t: FloatArray, theta: FloatArray, airspeed: float | None) -> Decoded:
-    """Angle of attack in still air, θ − γ with sin γ = climb rate / air speed.
+def derived_alpha(hud: Columns, t: FloatArray, attitude: FloatArray, airspeed: float | None) -> Decoded:
+    """Angle of attack in still air, θ − γ with sin γ = climb rate / air speed; in a bank, what makes that γ.
 
     Parameters
     ----------
     hud
         VFR_HUD messages.
-    t, theta
-        Shape (n,), their vehicle time and the pitch angle (rad) at that time.
+    t, attitude
+        Shapes (n,) and (n, 2): their vehicle time, and pitch and roll (rad) at that time.
     airspeed
         Used where the message has none, m/s.
     """
@@ -150,7 +151,9 @@ def derived_alpha(hud: Columns, t: FloatArray, theta: FloatArray, airspeed: floa
         v = np.where(v > SLOWEST_FLIGHT_M_S, v, airspeed)
     flying = v > SLOWEST_FLIGHT_M_S
     sine = np.divide(hud.fields["climb"], v, out=np.zeros_like(v), where=flying)
-    alpha = np.where(flying, theta - np.arcsin(np.clip(sine, -1.0, 1.0)), np.nan)
+    up, size = gravity_in_plane(attitude[:, 0], attitude[:, 1])
+    path = np.arcsin(np.clip(sine * GRAVITY_M_S2 / size, -1.0, 1.0))
+    alpha = np.where(flying, up - path, np.nan)
     return _decoded("alpha", DERIVED_ALPHA, "derived", t, alpha, hud)
 
 

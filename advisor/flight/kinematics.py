@@ -16,7 +16,7 @@ from advisor.flight.alpha_offset import UNKNOWN, AlphaOffset, mean_offset, offse
 from advisor.flight.coloured import coloured_covariance
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import integrated
+from advisor.flight.motion import bank_at, gravity_in_plane, integrated
 from advisor.flight.renewal import renewed
 from advisor.gravity import GRAVITY_M_S2
 
@@ -107,11 +107,9 @@ def check_alpha(
         alpha = alpha + vane_arm_m * np.interp(t_alpha, t, q / speed)
     a_x = at("a_x") if "a_x" in found and len(found["a_x"]) > 1 else GRAVITY_M_S2 * np.sin(theta)
     alpha_now = np.interp(t, t_alpha, alpha)
-    rate = (
-        q
-        + (a_z * np.cos(alpha_now) - a_x * np.sin(alpha_now) + GRAVITY_M_S2 * np.cos(theta - alpha_now))
-        / speed
-    )
+    up, size = gravity_in_plane(theta, bank_at(t, found))
+    force = a_z * np.cos(alpha_now) - a_x * np.sin(alpha_now) + size * np.cos(up - alpha_now)
+    rate = q + force / speed
     rebuilt = integrated(t, rate)
     commanded = _followers(t, at("elevator")) if "elevator" in found else None
     return _compare(t, rebuilt, rate, commanded, t_alpha, alpha, offset_of(maneuver, airspeed_m_s))

@@ -1,17 +1,51 @@
-"""What holds for any aircraft, whatever its aerodynamics: how speed follows from specific force."""
+"""What holds for any aircraft, whatever its aerodynamics: gravity, and how the speed changes."""
+
+from collections.abc import Mapping
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.flight.record import Channel
 from advisor.gravity import GRAVITY_M_S2
 
 
-def speed_rate(a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray) -> FloatArray:
+def bank_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
+    """Bank angle at times ``t`` in s, shape (n,), rad; level where it was not logged."""
+    bank = channels.get("bank")
+    return np.zeros(len(t)) if bank is None or len(bank) == 0 else np.interp(t, bank.t, bank.y)
+
+
+def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Gravity in the aircraft's plane of symmetry: where up is in it, and how large it is.
+
+    In a bank the rest pulls sideways. Along the path it is −size · sin(up − α), across it size · cos(up − α);
+    with level wings ``up`` is the pitch angle.
+
+    Parameters
+    ----------
+    theta, bank
+        Attitude in rad, shape (n,).
+
+    Returns
+    -------
+    up
+        Shape (n,), rad from the body's x axis.
+    size
+        Shape (n,), m/s².
+    """
+    along, down = np.sin(theta), np.cos(theta) * np.cos(bank)
+    return np.arctan2(along, down), GRAVITY_M_S2 * np.hypot(along, down)
+
+
+def speed_rate(
+    a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray, bank: FloatArray
+) -> FloatArray:
     """Rate of the speed, m/s², that the accelerometers know of: in air that moves steadily.
 
-    V̇ = a_x cos α + a_z sin α − g sin(θ − α); specific force in m/s², angles in rad, all of shape (n,).
+    V̇ = a_x cos α + a_z sin α − g sin γ; specific force in m/s², angles in rad, all of shape (n,).
     """
-    return a_x * np.cos(alpha) + a_z * np.sin(alpha) - GRAVITY_M_S2 * np.sin(theta - alpha)
+    up, size = gravity_in_plane(theta, bank)
+    return np.asarray(a_x * np.cos(alpha) + a_z * np.sin(alpha) - size * np.sin(up - alpha))
 
 
 def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:

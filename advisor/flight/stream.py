@@ -85,7 +85,7 @@ class FlightStream:
         self._first_s = np.nan
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
-        self._theta = np.nan
+        self._attitude = np.full((1, 2), np.nan)
 
     @property
     def vehicle(self) -> Vehicle | None:
@@ -214,7 +214,7 @@ class FlightStream:
         self._tracks.forget(max(self._watch.newest_s, self._master_s) - KEEP_S)
         orders = np.concatenate(([-1], master.order))
         clock = np.concatenate(([self._master_s], master.t))
-        pitch = _last_finite(np.concatenate(([self._theta], master.theta)))
+        attitude = _last_finite(np.concatenate((self._attitude, master.attitude)))
         elevator: list[Decoded] = []
         for columns in part:
             if columns.component != vehicle.component and columns.name != "NAMED_VALUE_FLOAT":
@@ -223,22 +223,22 @@ class FlightStream:
             t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
-            for new in self._decode(columns, t, pitch[now], vehicle):
+            for new in self._decode(columns, t, attitude[now], vehicle):
                 if new.channel == "elevator":
                     elevator.append(new)
                 else:
                     self._tracks.append(new)
         if np.isnan(self._first_s) and len(master.t):
             self._first_s = float(master.t[0])
-        self._master_s, self._theta = float(clock[-1]), float(pitch[-1])
+        self._master_s, self._attitude = float(clock[-1]), attitude[-1:]
         return self._feed_elevator(elevator)
 
     def _decode(
-        self, columns: Columns, t: FloatArray, theta: FloatArray, vehicle: Vehicle
+        self, columns: Columns, t: FloatArray, attitude: FloatArray, vehicle: Vehicle
     ) -> Iterator[Decoded]:
         yield from quantities(columns, t)
         if columns.name == "VFR_HUD":
-            yield derived_alpha(columns, t, theta, self._aircraft.airspeed_m_s)
+            yield derived_alpha(columns, t, attitude, self._aircraft.airspeed_m_s)
         elif columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
             yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))
         elif columns.name in _OUTPUTS:
@@ -273,6 +273,6 @@ class FlightStream:
 
 
 def _last_finite(values: FloatArray) -> FloatArray:
-    """Each value, or where it is NaN the last one before it that is not."""
-    index = np.where(np.isfinite(values), np.arange(len(values)), 0)
+    """Each row, or where it has a NaN the last one before it that has none."""
+    index = np.where(np.all(np.isfinite(values), axis=1), np.arange(len(values)), 0)
     return values[np.maximum.accumulate(index)]

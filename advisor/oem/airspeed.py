@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import integrated, speed_rate
+from advisor.flight.motion import bank_at, integrated, speed_rate
 from advisor.flight.record import Channel
 from advisor.oem.problem import Signal
 
@@ -72,7 +72,7 @@ def _shape(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
     def at(name: str) -> FloatArray:
         return np.interp(t, channels[name].t, channels[name].y)
 
-    return integrated(t, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha")))
+    return integrated(t, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"), bank_at(t, channels)))
 
 
 def _joined(

@@ -56,14 +56,14 @@ SWITCHES = {
     "q_abs": 0.0, "cm_aq": 0.0, "tail_chords": 0.0, "change_t": 1e9, "cg_after": 0.0, "mass_after": 0.0,
     "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9, "stop_low": -9.0, "stop_high": 9.0,
     "ring_hz": 0.0, "ring_zeta": 0.2, "stall_at": 9.0, "stall_sharpness": 40.0,
-    "lets_go_at": 9.0, "holds_below": -9.0, "lost_cl": 0.0,
+    "lets_go_at": 9.0, "holds_below": -9.0, "lost_cl": 0.0, "bank": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, MLAGS, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
  MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST, RINGHZ,
- RINGZETA, STALLAT, STALLS, LETSGO, HOLDS, LOST) = range(len(SWITCHES))  # fmt: skip
+ RINGZETA, STALLAT, STALLS, LETSGO, HOLDS, LOST, BANK) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -73,10 +73,15 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
     # Trim: α for lift = weight at level flight, thrust for drag, elevator taken as zero there.
     qs = 0.5 * rho * speed * speed * area
     # Mach number or bending wings: lift and moments go with another power of the speed than V².
-    a0 = (mass * G / (qs * (speed / sw[FROM]) ** sw[POWER]) - cl0) / cla
-    cm0 = -cma * a0
-    trim_thrust = qs * (cd0 + induced * (mass * G / qs) ** 2)
-    u, w, q, th = speed * np.cos(a0), speed * np.sin(a0), 0.0, a0
+    # In a turn with no sideslip the wing carries more, and the aircraft pitches all the time.
+    sb, cb = np.sin(sw[BANK]), np.cos(sw[BANK])
+    load, pitching = 1.0 / cb, G * sb * sb / (cb * speed)
+    a0 = (
+        load * mass * G / (qs * (speed / sw[FROM]) ** sw[POWER]) - cl0 - clq * pitching * chord / (2 * speed)
+    ) / cla
+    cm0 = -cma * a0 - cmq * pitching * chord / (2 * speed)
+    trim_thrust = qs * (cd0 + induced * (load * mass * G / qs) ** 2)
+    u, w, q, th = speed * np.cos(a0), speed * np.sin(a0), pitching, np.arctan(np.tan(a0) * cb)
     de, link, lag_state, valve = 0.0, 0.0, 0.0, 0.0
     x_lift, vane = a0, a0
     eta, deta = 0.0, 0.0
@@ -183,14 +188,16 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
         else:
             vane = a - sw[VARM] * q / V
         out[0, k], out[1, k], out[2, k], out[3, k] = vane, q + deta / om, az - sw[AARM] * qdot, th
-        out[4, k], out[5, k], out[6, k], out[7, k] = V, ax, u * np.sin(th) - w * np.cos(th), de
+        r = G * np.cos(th) * sb / u
+        out[4, k], out[5, k], out[6, k], out[7, k] = V, ax, u * np.sin(th) - w * np.cos(th) * cb, de
+        out[8, k] = r
         udot = ax - q * w - G * np.sin(th)
-        wdot = az + q * u + G * np.cos(th)
+        wdot = az + q * u + G * np.cos(th) * cb
         alphadot = (wdot * u - w * udot) / (u * u + w * w)
         u += H * udot
         w += H * wdot
         q += H * qdot
-        th += H * q
+        th += H * (q * cb - r * sb)
         height += H * out[6, k]
 
 
@@ -218,6 +225,8 @@ class Setup:
     """... so many times a second."""
     logs_throttle: bool = False
     """Also where nobody moves it."""
+    banks_deg: tuple[float, ...] = ()
+    """Bank in which each manoeuvre is flown, in turn; none: wings level."""
     heights_m: tuple[float, ...] = ()
     """Height of each manoeuvre above ground, in turn, and logged; none: far above it."""
     gust_std: float = 0.0
@@ -282,6 +291,8 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
         sw[ICET] = 1e9 if i < setup.ice_after else -1.0
         if setup.heights_m:
             sw[HEIGHT] = setup.heights_m[i % len(setup.heights_m)]
+        if setup.banks_deg:
+            sw[BANK] = np.radians(setup.banks_deg[i % len(setup.banks_deg)])
         halfway = i >= setup.maneuvers // 2
         if setup.comes_at_s and i == setup.maneuvers // 2:
             halfway = False
@@ -309,7 +320,7 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
                 gust = gust - np.interp(t - 0.8, t, gust)
         if setup.wave_m_s:
             gust = gust + setup.wave_m_s * np.sin(2 * np.pi * t / setup.wave_s + 2.1 * i)
-        out = np.zeros((8, n))
+        out = np.zeros((9, n))
         _integrate(n, command, gust, wave, body, sw, 2.4 * i, out)
         result.append(_measure(setup, rng, i, t, command, out, start))
     return result
@@ -389,6 +400,10 @@ def _measure(setup, rng, i, t, command, out, start) -> Maneuver:
     add("airspeed", out[4], 10.0, 0.1)
     add("climb_rate", out[6], 10.0, 0.05)
     add("elevator", command, rate, 0.0)
+    if setup.banks_deg:
+        bank = np.radians(setup.banks_deg[i % len(setup.banks_deg)])
+        add("bank", np.full(len(t), bank), rate, 0.002)
+        add("r", out[8], rate, 0.002)
     if setup.heights_m:
         height = setup.heights_m[i % len(setup.heights_m)] + np.cumsum(out[6]) * H
         add("height", height, 10.0, 0.02)

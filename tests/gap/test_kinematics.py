@@ -52,6 +52,13 @@ def test_the_climb_rate_shows_a_constant_offset():
     assert checked(alpha_bias=0.01).offset.rad == pytest.approx(0.01, abs=0.001)
 
 
+@pytest.mark.parametrize("late_s", [0.0, 0.03])
+def test_a_turn_spoils_neither_the_lag_nor_the_offset_of_alpha(late_s):
+    found = checked(banks_deg=(25.0, -18.0, 10.0), alpha_bias=0.01, skew={"alpha": late_s})
+    assert found.offset.rad == pytest.approx(0.01, abs=0.001)
+    assert abs(found.lag_s - late_s) < 0.002 + 3 * found.lag_std_s
+
+
 @pytest.mark.parametrize(("offset", "named"), [(0.002, False), (0.004, True)])
 def test_an_offset_below_what_any_zero_is_set_to_gets_no_name(offset, named):
     found = alpha_bias_cause(

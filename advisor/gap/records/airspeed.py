@@ -1,6 +1,6 @@
 """The air speed during a manoeuvre: the slow, noisy instrument made smooth by the accelerometers.
 
-V̇ = a_x cos α + a_z sin α − g sin(θ − α) is integrated; a parabola in time, fitted to the measured
+V̇ = a_x cos α + a_z sin α − g sin γ is integrated; a parabola in time, fitted to the measured
 air speed, takes the integral's drift out. The instrument gives the level, the accelerometers the shape.
 """
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import integrated, speed_rate
+from advisor.flight.motion import bank_at, integrated, speed_rate
 from advisor.gap.records.grid import smooth
 
 _SLOWEST_M_S = 1.0
@@ -44,7 +44,9 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
     def at(name: str) -> FloatArray:
         return np.interp(grid, found[name].t - start_s, found[name].y)
 
-    shape = integrated(grid, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha")))
+    shape = integrated(
+        grid, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"), bank_at(grid + start_s, found))
+    )
     inside = (t >= grid[0]) & (t <= grid[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return as_read

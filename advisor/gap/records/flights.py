@@ -44,7 +44,7 @@ class Flight:
     """The elevator command at its stamps, rad."""
     u_trim: float
     slow: FloatArray
-    """Shape (6, n): speed, a_x, bank, throttle, height, and thrust less drag over weight, on the grid."""
+    """Shape (7, n) on the grid: speed, a_x, bank, throttle, height, thrust less drag over weight, r sin φ."""
     trim: FloatArray
     """Shape (4,): α and θ at the start, reference speed, 1 when derivatives scale with speed."""
     outputs: Mapping[str, Measured]

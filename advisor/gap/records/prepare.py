@@ -122,7 +122,10 @@ def _ready(m: Maneuver, reference: float, level: float | None) -> Flight:
     throttle = on_grid("throttle", 0.0)
     height = on_grid("height", 1e3)
     along = along_the_path(grid, m, start) / GRAVITY_M_S2
-    slow = np.vstack([speed, a_x, bank, throttle - float(np.mean(throttle[:20])), height, along])
+    # Without a yaw rate in the log a bank is a coordinated turn.
+    yaw_rate = smooth(on_grid("r", 0.0), 0.1) if "r" in m.channels else GRAVITY_M_S2 / speed * np.sin(bank)
+    turn = yaw_rate * np.sin(bank)
+    slow = np.vstack([speed, a_x, bank, throttle - float(np.mean(throttle[:20])), height, along, turn])
     outputs = outputs_of(m)
     t_u, u = m.channels["elevator"].t - start, m.channels["elevator"].y
     lead = (t_u >= 0.0) & (t_u < max(first - 0.02, 0.1))

@@ -11,8 +11,7 @@ import numpy as np
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import integrated, speed_rate
-from advisor.gravity import GRAVITY_M_S2
+from advisor.flight.motion import bank_at, gravity_in_plane, integrated, speed_rate
 
 _BLOCK_S = 1.0
 """Over which errors of the motion are one and the same: an offset's remainder, a gust."""
@@ -108,7 +107,7 @@ def speed_without_instrument(
     def at(name: str) -> FloatArray:
         return np.interp(grid, found[name].t - start_s, found[name].y)
 
-    rate = speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"))
+    rate = speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"), bank_at(grid + start_s, found))
     trimmed = grid < maneuver.span.start_s - start_s
     if not np.any(trimmed):
         return level
@@ -129,7 +128,8 @@ def _turned_and_pushed(
     t, alpha = found["alpha"].t, found["alpha"].y
     q, a_z, theta = (np.interp(t, found[name].t, found[name].y) for name in ("q", "a_z", "theta"))
     a_x = np.interp(t, found["a_x"].t, found["a_x"].y) if "a_x" in found else np.zeros(len(t))
-    force = a_z * np.cos(alpha) - a_x * np.sin(alpha) + GRAVITY_M_S2 * np.cos(theta - alpha)
+    up, size = gravity_in_plane(theta, bank_at(t, found))
+    force = a_z * np.cos(alpha) - a_x * np.sin(alpha) + size * np.cos(up - alpha)
     if level_m_s is not None:
         force = force * level_m_s / speed_without_instrument(t - t[0], maneuver, float(t[0]), level_m_s)
     line = np.linalg.qr(np.vander(t - t[0], 2))[0]

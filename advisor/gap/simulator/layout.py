@@ -46,7 +46,7 @@ OUTPUTS = ("alpha", "q", "a_z", "theta")
 SKEWS = ("alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s")
 """Entry that shifts the stamps of each output."""
 
-SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST = range(6)
+SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST, TURN = range(7)
 """Rows of the slow inputs, one value a step."""
 DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = range(4)
 """Rows of the disturbances, one value a step: added to δ, α̇, q̇ and to the angle of the air."""

@@ -8,7 +8,7 @@ of the candidate effects are in the same loop, each switched off by a zero (``ad
     N  = v (1 + k_h e^(−h/b)) (Z_trim + Z_α Δα_e + Z_δe Δδ + ...) + Z_q q       normal force over m·V
     α̇ = q + G + N,   G = (g/V)(cos α cos θ cos φ + sin α sin θ)
     q̇ = v² (M_trim + M_α Δα + M_δe Δδ + ...) + v (M_q q + M_|q| |q| + M_α̇ α̇) + M_T ΔT + M_P (1 − v²)
-    θ̇ = q cos φ,   a_z cos α = V N + a_x sin α
+    θ̇ = q cos φ − r sin φ,   a_z cos α = V N + a_x sin α
 
 Where forces do not go with V², lift and all moments of α and δ are multiplied by v^n besides. V is what was
 measured, and a parabola in time that it may be wrong by. The last is the exact
@@ -39,6 +39,7 @@ from advisor.gap.simulator.layout import (
     THETA_FROM,
     THROTTLE,
     THRUST,
+    TURN,
 )  # fmt: skip
 from advisor.gravity import GRAVITY_M_S2
 
@@ -124,8 +125,8 @@ def simulate(
     delta
         Shape (packs, n, LANES). Mean deflection over each step relative to trim, from ``surfaces``.
     slow
-        Shape (6, n). Speed m/s, a_x m/s², bank rad, throttle relative to its start, height m, and thrust
-        less drag over weight, less its mean.
+        Shape (7, n). Speed m/s, a_x m/s², bank rad, throttle relative to its start, height m, thrust less
+        drag over weight, less its mean, and what a turn takes from θ̇, r sin φ, rad/s.
     disturbance
         Shape (4, n), or (4, 0) for none: added to δ, α̇, q̇ and the angle of the air.
     doses
@@ -159,7 +160,7 @@ def simulate(
         for i in range(n + 1):
             j = min(i, n - 1)
             before = max(j - 1, 0)
-            a_x, cb = slow[A_X, j], level[j]
+            a_x, cb, turning = slow[A_X, j], level[j], slow[TURN, j]
             along = 2.0 * j / n - 1.0
             for m in range(lanes):
                 off = x[SPEED_LEVEL, m] + along * (x[SPEED_SLOPE, m] + along * x[SPEED_BOW, m])
@@ -262,7 +263,7 @@ def simulate(
                 # A search may try an unstable aircraft: its motion stays finite, and is rejected by its cost.
                 x[ALPHA, m] = min(max(alpha + h * x[KA, m], -1.5), 1.5)
                 x[Q, m] = min(max(q + h * x[KQ, m], -15.0), 15.0)
-                x[THETA, m] = theta + 0.5 * h * (q + x[Q, m]) * cb
+                x[THETA, m] = theta + h * (0.5 * (q + x[Q, m]) * cb - turning)
                 keep = x[LIFT_DECAY, m]
                 x[LIFT, m] = keep * x[LIFT, m] + (1.0 - keep) * (0.5 * (alpha + x[ALPHA, m]) + air)
                 followed = max(x[FOLLOWED, m], x[ALPHA, m] + air - x[MEMORY, m])

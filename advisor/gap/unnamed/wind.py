@@ -15,7 +15,8 @@ from scipy.special import stdtrit
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import integrated, speed_rate
+from advisor.flight.motion import bank_at, gravity_in_plane, integrated, speed_rate
+from advisor.gravity import GRAVITY_M_S2
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
@@ -163,8 +164,10 @@ def _path_of(maneuver: Maneuver) -> _Path | None:
     a_x, theta, alpha, speed = (
         np.interp(t, found[c].t, found[c].y) for c in ("a_x", "theta", "alpha", "airspeed")
     )
-    known = integrated(t, speed_rate(a_x, found["a_z"].y, theta, alpha))
-    climbed = integrated(t, speed * np.sin(theta - alpha))
+    bank = bank_at(t, found)
+    known = integrated(t, speed_rate(a_x, found["a_z"].y, theta, alpha, bank))
+    up, size = gravity_in_plane(theta, bank)
+    climbed = integrated(t, speed * size / GRAVITY_M_S2 * np.sin(up - alpha))
     stamps = found["airspeed"].t
     inside = (stamps >= t[0]) & (stamps <= t[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:

@@ -1,0 +1,54 @@
+"""Manoeuvres flown in turns: the pitch angle is not the integral of the pitch rate there."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.flight.channels import derived_alpha
+from advisor.flight.messages import Columns
+from advisor.flight.motion import gravity_in_plane
+from advisor.gap.diagnose import diagnose
+from advisor.gravity import GRAVITY_M_S2
+from tests.gap.generator import Setup, fly
+
+BANKS = (-8.0, 14.0, 3.0, -20.0, 25.0)
+
+
+def test_manoeuvres_flown_in_turns_leave_no_gap():
+    assert diagnose(fly(Setup(maneuvers=5, banks_deg=BANKS)), Aircraft()).verdict == "none"
+
+
+def test_a_pitch_rate_that_is_off_is_measured_in_turns_as_in_level_flight():
+    found = diagnose(fly(Setup(maneuvers=5, banks_deg=BANKS, q_bias=0.01)), Aircraft())
+    assert [cause.effect for cause in found.causes][:1] == ["pitch_rate_bias"]
+    assert found.causes[0].parameters["bias_rad_s"].value == pytest.approx(0.01, abs=0.001)
+
+
+def test_without_a_yaw_rate_in_the_log_a_bank_is_a_coordinated_turn():
+    flown = fly(Setup(maneuvers=5, banks_deg=BANKS))
+    without = []
+    for m in flown:
+        channels = {name: channel for name, channel in m.channels.items() if name != "r"}
+        without.append(type(m)(m.number, m.boot, m.span, channels, m.mode))
+    assert diagnose(without, Aircraft()).verdict == "none"
+
+
+def test_gravity_in_the_plane_of_symmetry_is_the_down_axis_without_its_sideways_part():
+    theta, bank, alpha = np.array([0.2, -0.1, 0.3]), np.array([0.5, -0.3, 0.0]), np.array([0.1, 0.05, 0.2])
+    up, size = gravity_in_plane(theta, bank)
+    down = GRAVITY_M_S2 * np.array([-np.sin(theta), np.cos(theta) * np.cos(bank)])
+    across = down[1] * np.cos(alpha) - down[0] * np.sin(alpha)
+    along = down[0] * np.cos(alpha) + down[1] * np.sin(alpha)
+    np.testing.assert_allclose(size * np.cos(up - alpha), across)
+    np.testing.assert_allclose(-size * np.sin(up - alpha), along)
+
+
+def test_in_a_bank_alpha_is_what_brings_that_path_about():
+    alpha, theta, bank, speed = 0.08, 0.11, 0.5, 25.0
+    sine = np.cos(alpha) * np.sin(theta) - np.sin(alpha) * np.cos(bank) * np.cos(theta)
+    hud = Columns(
+        "VFR_HUD", 1, 1, np.arange(1), np.zeros(1),
+        {"airspeed": np.array([speed]), "climb": np.array([speed * sine])},
+    )  # fmt: skip
+    found = derived_alpha(hud, np.zeros(1), np.array([[theta, bank]]), None)
+    assert found.y[0] == pytest.approx(alpha, abs=1e-9)
