@@ -74,6 +74,24 @@ def _attached(beyond: float) -> float:
     return float(0.25 * (1.0 + np.sqrt(chord)) ** 2)
 
 
+@njit(cache=True)
+def _between(earlier: float, before: float, after: float, later: float) -> float:
+    """Value between the second and the third of four steps, from their means.
+
+    Of the two the flatter one tells: a jump within the other leaves it as it was, or already is.
+    """
+    left, right = 0.5 * _lesser(before - earlier, after - before), 0.5 * _lesser(after - before, later - after)
+    return before + left if abs(left) <= abs(right) else after - right
+
+
+@njit(cache=True)
+def _lesser(one: float, other: float) -> float:
+    """The smaller of two differences of one sign; zero where they differ in sign."""
+    if one * other <= 0.0:
+        return 0.0
+    return one if abs(one) < abs(other) else other
+
+
 @njit(cache=True, error_model="numpy")
 def _begin(
     x: FloatArray, lane: int, p: FloatArray, dose: float, h: float, speed: float, trim: FloatArray
@@ -205,8 +223,11 @@ def simulate(
                     + pressure * x[M_H, m] * x[NEAR, m] + x[M_THROTTLE, m] * x[ENGINE, m]
                     + x[M_THRUST, m] * (1.0 - vv) + x[DOSE, m] * d_moment
                 )  # fmt: skip
-                # Outputs belong to the start of the step: there the deflection lies between the means of two.
-                ahead = 0.5 * (delta[k, j, m] - delta[k, before, m])
+                # Outputs belong to the start of the step, and the deflection there to the flatter of two steps.
+                ahead = delta[k, j, m] - _between(
+                    delta[k, max(j - 2, 0), m], delta[k, before, m], delta[k, j, m],
+                    delta[k, min(j + 1, n - 1), m],
+                )  # fmt: skip
                 x[NORMAL_0, m], x[QDOT_0, m] = -lifting * z_d * ahead, -m_d * ahead
                 x[KA, m], x[KQ, m] = 0.0, 0.0
             # The midpoint rule: at a hundredth of the period a step its error is far below any derivative's.
