@@ -86,7 +86,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         law
         or drifting(problem, stages)
         or remembering(problem, stages)
-        or stepping(problem, stages[-1].fitted)
+        or stepping(problem, stages[0].fitted, stages[-1].fitted)
         or wandering_attitude(problem, stages[-1].fitted)
         or _without_a_name(problem, stages, air, tolerance, floor)
     )

@@ -50,3 +50,10 @@ def test_errors_that_go_up_and_down_with_a_reading_that_may_be_anything_are_no_s
 def test_steps_as_fine_as_a_messages_resolution_are_none():
     flown = fly(Setup(maneuvers=6, noise=0.005, seed=71))
     assert diagnose(rounded(flown, "q", 0.001), Aircraft()).verdict == "none"
+
+
+def test_beside_an_effect_that_explains_nearly_all_a_coarse_reading_is_no_riddle():
+    iced = fly(Setup(maneuvers=6, noise=0.002, switches={"ice": 0.35}, ice_after=3, seed=71))
+    found = diagnose(rounded(iced, "alpha", 0.002), Aircraft())
+    assert found.verdict == "effect"
+    assert found.causes[0].effect == "icing"

@@ -7,7 +7,7 @@ quiet such a reading rests on one step or hops between two, which passes for noi
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import SENSOR_CHANNELS
 from advisor.gap.unnamed.leftover import OF_PEAK, Leftover
@@ -32,12 +32,18 @@ _GATHERED = 0.5
 """How much the readings must gather on the steps, 1 where they are nowhere else: noise after the rounding
 spreads them from a fifth of a step on. A surface that sticks, and a stall, leave errors that go up and down
 with a reading, too, but readings everywhere."""
+_FINE = 0.1
+"""Share of a channel's error without any name from which on what is left of it is worth a riddle."""
 _NONE = (0.0, 0.0, 0.0)
 
 
-def stepping(problem: Problem, last: Fitted) -> Leftover | None:
-    """The instrument that reads in steps, with a note that says how coarse; None where none does."""
-    found = [(_steps(problem, last, c), c) for c in problem.flights.telling]
+def stepping(problem: Problem, first: Fitted, last: Fitted) -> Leftover | None:
+    """The instrument that reads in steps, with a note that says how coarse; None where none does.
+
+    Beside what was named, where that took nearly all, it is how finely a sound instrument reads.
+    """
+    taken = rms_of(problem, last.left) ** 2 < _FINE * rms_of(problem, first.left) ** 2
+    found = [(_steps(problem, last, c), c) for c in problem.flights.telling if not taken[c]]
     (gain, step, power), c = max(found, key=lambda pair: pair[0][0], default=(_NONE, 0))
     if gain < _GAIN:
         return None
