@@ -17,7 +17,7 @@ from advisor.gap.result import Cause, Value
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.score import price_of_edges
 from advisor.gap.search.screen import Screen
-from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.gap.simulator.layout import ENTRIES, INDEX, OUTPUTS
 from advisor.gap.verdict.causes import with_doubt
 from tests.gap.generator import Setup, fly
 
@@ -90,6 +90,19 @@ def test_the_coarser_grid_of_the_screening_tells_what_the_fits_own_grid_does(set
     assert told[0] == pytest.approx(due[0], abs=0.5)
     assert due[1] > plain.cost + 1000.0
     assert told[1] - plain.cost == pytest.approx(due[1] - plain.cost, rel=0.02)
+
+
+@pytest.mark.parametrize("late_s", [0.0, 0.0013, 0.0037])
+def test_a_jump_of_a_held_command_is_where_it_is_and_not_spread_over_the_grid(settled, late_s):
+    problem, plain = settled
+    held = replace(problem, held=True)
+    flight = problem.flights.flights[0]
+    fine = replace(flight, h=flight.h / 8.0, n=8 * flight.n, slow=np.repeat(flight.slow, 8, axis=1))
+    [p] = held.driving(plain.point)[:1]
+    p[INDEX["latency_s"]], p[INDEX["lag_s"]] = late_s, 0.0
+    a_z, due = held.fly(flight, p)[OUTPUTS.index("a_z")], held.fly(fine, p)[OUTPUTS.index("a_z")][::8]
+    assert np.max(np.abs(np.diff(due))) > 0.5
+    np.testing.assert_allclose(a_z, due, atol=0.03)
 
 
 def test_a_simulator_without_the_delay_pays_for_the_edges_it_shifts():

@@ -53,7 +53,7 @@ def test_steps_as_fine_as_a_messages_resolution_are_none():
 
 
 def test_beside_an_effect_that_explains_nearly_all_a_coarse_reading_is_no_riddle():
-    iced = fly(Setup(maneuvers=6, noise=0.002, switches={"ice": 0.35}, ice_after=3, seed=71))
-    found = diagnose(rounded(iced, "alpha", 0.002), Aircraft())
+    iced = fly(Setup(maneuvers=6, noise=0.002, switches={"ice": 0.4}, ice_after=3, seed=71))
+    found = diagnose(rounded(iced, "alpha", 0.003), Aircraft())
     assert found.verdict == "effect"
     assert found.causes[0].effect == "icing"

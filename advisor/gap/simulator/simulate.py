@@ -80,7 +80,8 @@ def _between(earlier: float, before: float, after: float, later: float) -> float
 
     Of the two the flatter one tells: a jump within the other leaves it as it was, or already is.
     """
-    left, right = 0.5 * _lesser(before - earlier, after - before), 0.5 * _lesser(after - before, later - after)
+    jump = after - before
+    left, right = 0.5 * _lesser(before - earlier, jump), 0.5 * _lesser(jump, later - after)
     return before + left if abs(left) <= abs(right) else after - right
 
 
@@ -223,7 +224,7 @@ def simulate(
                     + pressure * x[M_H, m] * x[NEAR, m] + x[M_THROTTLE, m] * x[ENGINE, m]
                     + x[M_THRUST, m] * (1.0 - vv) + x[DOSE, m] * d_moment
                 )  # fmt: skip
-                # Outputs belong to the start of the step, and the deflection there to the flatter of two steps.
+                # Outputs belong to the start of the step; of the steps beside it the flatter one tells δ.
                 ahead = delta[k, j, m] - _between(
                     delta[k, max(j - 2, 0), m], delta[k, before, m], delta[k, j, m],
                     delta[k, min(j + 1, n - 1), m],
