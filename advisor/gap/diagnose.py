@@ -18,7 +18,8 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.unnamed.leftover import Leftover, of_the_wind
-from advisor.gap.unnamed.weight import weight_carried
+from advisor.gap.unnamed.true_speed import true_speed_of
+from advisor.gap.unnamed.weight import Weight, weight_carried
 from advisor.gap.unnamed.wind import blows_along, wind_shear
 from advisor.gap.verdict.amid import is_told_without, torn_by_a_change
 from advisor.gap.verdict.answer import answer
@@ -85,8 +86,13 @@ def _explained(
     least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * kinematics.offset.std_rad)
     if kinematics.offset.stays and abs(kinematics.offset.rad) > least:
         # What the climb rate shows is taken out first, else the trim would carry it into the lift.
-        flights = prepare([_without_offset(m, kinematics.offset.rad) for m in maneuvers], aircraft)
+        maneuvers = [_without_offset(m, kinematics.offset.rad) for m in maneuvers]
+        flights = prepare(maneuvers, aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
+    true_speed = true_speed_of(problem, baseline)
+    if true_speed is not None and true_speed.is_indicated(weight_carried(flown, flights.reference_m_s)):
+        flights = prepare(maneuvers, aircraft, 1.0 + true_speed.scale)
+        problem, baseline = fit_baseline(flights, aircraft)
     return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown), kinematics
 
 
@@ -130,7 +136,9 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
 
 def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver]) -> Evidence:
     """What air speed and accelerometer are off by beside the path, without any aerodynamics."""
-    shear = wind_shear(flown)
+    weight = weight_carried(flown, e.problem.flights.reference_m_s)
+    is_indicated = e.true_speed is not None and e.true_speed.is_indicated(weight)
+    shear = wind_shear(flown, 1.0 + e.true_speed.scale if e.true_speed and is_indicated else 1.0)
     if shear is not None and not _feigns_wind(e.leftover):
         # Air that moves swings the air speed, too: beside it what is not plain is worth a note, no more.
         is_there = e.air is None or shear.is_plain
@@ -138,12 +146,19 @@ def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver]) -> Evidence:
     if e.leftover is not None and e.leftover.block == "force_equation" and blows_along(flown):
         # A wind that changes is felt as lift that comes and goes.
         e = replace(e, leftover=of_the_wind(e.leftover))
-    weight = weight_carried(flown, e.problem.flights.reference_m_s)
+    is_off = weight is not None and weight.is_off
     # What an accelerometer reads wrong looks like a force, too: a name for one is no other explanation.
     elsewhere = any(s.added is not None and BLOCK_OF[s.added.effect] != "force_equation" for s in e.stages)
-    if weight is not None and e.leftover is None and not elsewhere:
+    if e.leftover is None and ((is_off and not elsewhere) or _reads_another_speed(e, weight)):
         e = replace(e, leftover=Leftover("accelerometer", 1.0, (("accelerometer", 1.0),)))
-    return replace(e, weight=weight)
+    return replace(e, weight=weight if is_off else None)
+
+
+def _reads_another_speed(e: Evidence, weight: Weight | None) -> bool:
+    """Whether air speed and accelerometer are too far apart for any air speed, and nothing else was named."""
+    # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
+    alone = len(e.stages) == 1 and not (e.air is not None and e.air.gust)
+    return alone and e.true_speed is not None and e.true_speed.is_wrong(e.air is not None, weight)
 
 
 def _feigns_wind(leftover: Leftover | None) -> bool:

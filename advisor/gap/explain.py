@@ -109,10 +109,6 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
             leftover = wandering_sensor(problem, stages[-1].fitted)
     # A model without the law that was found bends its air speed to it.
     true_speed = true_speed_of(problem, stages[-1].fitted) if law is None else None
-    # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
-    alone = len(stages) == 1 and not (air is not None and air.gust)
-    if leftover is None and alone and true_speed is not None and true_speed.is_wrong(air is not None):
-        leftover = Leftover("accelerometer", 1.0, (("accelerometer", 1.0),))
     if leftover is not None:
         leftover = of_the_input(leftover, stages, file_model, floor)
         if leftover.in_quiet is not None:

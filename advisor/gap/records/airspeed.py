@@ -33,8 +33,13 @@ def measures_speed(maneuver: Maneuver) -> bool:
     return speed is not None and len(speed) > 1 and float(np.min(speed.y)) > _SLOWEST_M_S
 
 
-def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
-    """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,)."""
+def airspeed_on(
+    grid: FloatArray, maneuver: Maneuver, start_s: float, true_over_read: float = 1.0
+) -> FloatArray:
+    """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), as it is read.
+
+    Accelerometers show how the true one changes: ``true_over_read`` times as much as one that is indicated.
+    """
     found = maneuver.channels
     t, y = found["airspeed"].t - start_s, found["airspeed"].y
     as_read = smooth(np.interp(grid, t, y), _READ_OVER_S)
@@ -44,9 +49,9 @@ def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatAr
     def at(name: str) -> FloatArray:
         return np.interp(grid, found[name].t - start_s, found[name].y)
 
-    shape = integrated(
-        grid, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"), bank_at(grid + start_s, found))
-    )
+    bank = bank_at(grid + start_s, found)
+    rate = speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"), bank)
+    shape = integrated(grid, rate) / true_over_read
     inside = (t >= grid[0]) & (t <= grid[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return as_read

@@ -1,7 +1,7 @@
 """Do air speed and accelerometer fit together? Both tell how the path bends; every model lets them differ.
 
-By a few per cent they always do: an indicated air speed is not the true one, and a static port reads what
-the wing makes of the pressure there. By more one of the two is wrong.
+By a few per cent they always do: a static port reads what the wing makes of the pressure there. By more one
+of the two is wrong; but an air speed may be indicated, and the true one above it in thin air.
 """
 
 from dataclasses import dataclass
@@ -10,9 +10,16 @@ from advisor.gap.candidates.sensors import TRUE_AIR_SPEED
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import shared_std, worth
+from advisor.gap.unnamed.weight import Weight
 
 _WORTH_SAYING, _WRONG = 0.02, 0.06
 """Relative difference from which on it is said, and from which on something is wrong ..."""
+_FELT = 0.03
+"""... from which on it is felt that an indicated air speed changes by less than the true one ..."""
+_INDICATED = 0.25
+"""... which is the most that thin air makes of an indicated air speed, at 4,000 m and above ..."""
+_ITS_OWN = 0.5
+"""... where the accelerometer does not carry the weight wrongly by this share of it ..."""
 _SIGMAS = 5.0
 """... and the standard deviations it must have ..."""
 _SIGMAS_IN_GUSTS = 8.0
@@ -26,9 +33,17 @@ class TrueSpeed:
     scale: float
     std: float
 
-    def is_wrong(self, moving_air: bool) -> bool:
-        """Whether no air speed indicator of an aircraft is that far off."""
-        return abs(self.scale) > max(_WRONG, _SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
+    def is_wrong(self, moving_air: bool, weight: Weight | None) -> bool:
+        """Whether no air speed indicator of an aircraft is that far off.
+
+        ``weight``: what the accelerometer reads of it, where that is known.
+        """
+        least = _INDICATED if self.is_indicated(weight) else _WRONG
+        return abs(self.scale) > max(least, _SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
+
+    def is_indicated(self, weight: Weight | None) -> bool:
+        """Whether it may be an indicated air speed in thin air, for the accelerometer reads its weight."""
+        return weight is not None and self.scale > max(_FELT, (weight.share - 1.0) / _ITS_OWN)
 
     @property
     def sentence(self) -> str:

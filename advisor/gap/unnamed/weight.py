@@ -35,6 +35,11 @@ class Weight:
     std: float
 
     @property
+    def is_off(self) -> bool:
+        """Whether it is plainly not one, by more than the offset of any accelerometer."""
+        return abs(self.share - 1.0) > max(_LEAST, _SIGMAS * self.std)
+
+    @property
     def sentence(self) -> str:
         """For the reader of the diagnosis."""
         return (
@@ -44,7 +49,7 @@ class Weight:
 
 
 def weight_carried(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> Weight | None:
-    """The share that is read, where it is plainly not one; None otherwise.
+    """The share that is read; None where too few manoeuvres tell.
 
     ``airspeed_m_s`` is taken where none was logged.
     """
@@ -53,9 +58,7 @@ def weight_carried(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> Weight
         return None
     read, due = np.array(pairs).T
     shares = read / due
-    found = Weight(float(np.mean(shares)), float(np.std(shares, ddof=1) / np.sqrt(len(shares))))
-    off = abs(found.share - 1.0)
-    return found if off > max(_LEAST, _SIGMAS * found.std) else None
+    return Weight(float(np.mean(shares)), float(np.std(shares, ddof=1) / np.sqrt(len(shares))))
 
 
 def _means(maneuver: Maneuver, airspeed_m_s: float) -> tuple[float, float] | None:

@@ -47,6 +47,8 @@ _ALONG, _ABOVE_NOISE = 0.015, 3.0
 """Swing of the air speed in a usual manoeuvre, relative, and beside its white noise."""
 _ALONE = 1e-3
 """Share of the heights' changes that all manoeuvres but one must hold."""
+_LATE_S = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
+"""By which an air speed may be late: a long line to the tube, and a filter."""
 _HEIGHTS = 14
 _THINNEST_M = 2.0
 """Heights between which a layer is sought, as many in every part of what was flown; and the least of one."""
@@ -76,14 +78,25 @@ class Shear:
         return abs(self.gradient_per_s) >= max(_LEAST_PER_S, scatter)
 
 
-def wind_shear(maneuvers: Sequence[Maneuver]) -> Shear | None:
+def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Shear | None:
     """The gradient of the wind when it is there; None when the air speed follows from the accelerations.
 
     Wind may change in a layer only: then the height of every sample says what it does.
+
+    Parameters
+    ----------
+    maneuvers
+        With the channels that the path is computed from; others do not count.
+    true_over_read
+        How many times the air speed that is read the true one is.
     """
-    paths = [p for p in map(_path_of, maneuvers) if p is not None]
-    if len(paths) < _LEAST_MANEUVERS:
+    by_lateness = [
+        [p for p in (_path_of(m, true_over_read, late_s) for m in maneuvers) if p is not None]
+        for late_s in _LATE_S
+    ]
+    if len(by_lateness[0]) < _LEAST_MANEUVERS:
         return None
+    paths = min(by_lateness, key=_unexplained)
     everywhere = _gradient(paths)
     chance = _PLAIN_CHANCE if everywhere.share >= _PLAIN_SHARE else _CHANCE
     if everywhere.share >= _LEAST_SHARE and everywhere.is_agreed(chance):
@@ -155,8 +168,14 @@ def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf
     return Shear(gradient, std, gradient * float(np.sum(products)) / max(power, 1e-300), n)
 
 
-def _path_of(maneuver: Maneuver) -> _Path | None:
-    """What a manoeuvre tells; None without the channels, or with too few samples."""
+def _unexplained(paths: Sequence[_Path]) -> float:
+    """Power of the air speed that neither accelerations nor a wind that changes with height explain."""
+    power = sum(float(p.speed @ p.speed) for p in paths)
+    return power * (1.0 - max(_gradient(paths).share, 0.0))
+
+
+def _path_of(maneuver: Maneuver, true_over_read: float = 1.0, late_s: float = 0.0) -> _Path | None:
+    """What a manoeuvre tells, by an instrument that is late; None without channels, or with few samples."""
     found = maneuver.channels
     if not all(name in found and len(found[name]) > _LEAST_SAMPLES for name in _NEEDED):
         return None
@@ -165,11 +184,11 @@ def _path_of(maneuver: Maneuver) -> _Path | None:
         np.interp(t, found[c].t, found[c].y) for c in ("a_x", "theta", "alpha", "airspeed")
     )
     bank = bank_at(t, found)
-    known = integrated(t, speed_rate(a_x, found["a_z"].y, theta, alpha, bank))
+    rate = speed_rate(a_x, found["a_z"].y, theta, alpha, bank) / true_over_read
     up, size = gravity_in_plane(theta, bank)
     climbed = integrated(t, speed * size / GRAVITY_M_S2 * np.sin(up - alpha))
     stamps = found["airspeed"].t
-    inside = (stamps >= t[0]) & (stamps <= t[-1])
+    inside = (stamps >= t[0] + late_s) & (stamps <= t[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return None
     stamps, measured = stamps[inside], found["airspeed"].y[inside]
@@ -177,7 +196,7 @@ def _path_of(maneuver: Maneuver) -> _Path | None:
     height, begun = found.get("height"), np.nan
     if height is not None and len(height):
         begun = float(np.mean(height.y - np.interp(height.t, t, climbed)))
-    climbed = np.interp(stamps, t, climbed)
+    known, climbed = (np.interp(stamps - late_s, t, y) for y in (integrated(t, rate), climbed))
     parabola = np.linalg.qr(np.vander((stamps - stamps[0]) / (stamps[-1] - stamps[0]), 3))[0]
-    path = _Path(climbed + begun, climbed, measured - np.interp(stamps, t, known), parabola)
+    path = _Path(climbed + begun, climbed, measured - known, parabola)
     return replace(path, climbed=path.freed(climbed), speed=path.freed(path.speed))
