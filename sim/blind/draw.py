@@ -23,6 +23,9 @@ SHARES = (0.34, 0.20, 0.08, 0.18, 0.04, 0.10, 0.06)
 SMALLEST_GAP = 0.05
 """An effect that leaves less above the noise is drawn again: nobody could be asked to see it."""
 
+IN_TURNS, STEEPEST_DEG = 0.3, 25.0
+"""Share of the flights whose manoeuvres are flown in turns, and the steepest bank."""
+
 ATTEMPTS = 10
 OFFSETS = ("alpha_bias", "pitch_rate_bias")
 """Offsets hide among a manoeuvre's own unknowns; only kinematics show them, so their size alone counts."""
@@ -100,6 +103,7 @@ def _scenario(
     span = 1.0 if engine == "jsbsim" else hangar.AIRFRAMES[aircraft][0].span
     low = "ground_effect" in names or (engine == "bundled" and generator.random() < 0.2)
     fast = generator.random() < 0.15
+    turning = engine == "bundled" and generator.random() < IN_TURNS
     background: list[str] = []
     air, clock, instruments, colour = Air(), Clock(boot_s=float(uniform(20.0, 900.0))), Instruments(), 0.0
     if hard:
@@ -117,6 +121,7 @@ def _scenario(
             throttle_change=float(uniform(-0.2, 0.2))
             if generator.random() < 0.4 and engine == "bundled"
             else 0.0,
+            bank_deg=float(uniform(-STEEPEST_DEG, STEEPEST_DEG)) if turning else 0.0,
         )
         for name in generator.permutation(order)
     )
