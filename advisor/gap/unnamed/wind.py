@@ -78,6 +78,24 @@ class Shear:
         return abs(self.gradient_per_s) >= max(_LEAST_PER_S, scatter)
 
 
+@dataclass(frozen=True)
+class _Path:
+    """What one manoeuvre tells, shape (n,) each, at the stamps of the air speed."""
+
+    height: FloatArray
+    """m; NaN where none was measured."""
+    climbed: FloatArray
+    """m, without the parabola."""
+    speed: FloatArray
+    """Air speed beyond the accelerations, m/s, without the parabola."""
+    parabola: FloatArray
+    """Shape (n, 3): orthonormal."""
+
+    def freed(self, y: FloatArray) -> FloatArray:
+        """A course without its parabola."""
+        return np.asarray(y - self.parabola @ (self.parabola.T @ y))
+
+
 def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Shear | None:
     """The gradient of the wind when it is there; None when the air speed follows from the accelerations.
 
@@ -90,13 +108,18 @@ def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Sh
     true_over_read
         How many times the air speed that is read the true one is.
     """
-    by_lateness = [
-        [p for p in (_path_of(m, true_over_read, late_s) for m in maneuvers) if p is not None]
-        for late_s in _LATE_S
-    ]
-    if len(by_lateness[0]) < _LEAST_MANEUVERS:
+    found = _shear_of(_paths_of(maneuvers))
+    if found is None:
         return None
-    paths = min(by_lateness, key=_unexplained)
+    # An instrument that is late, or indicates less than the true speed, feigns wind as well.
+    as_it_may_read = (_paths_of(maneuvers, true_over_read, late_s) for late_s in _LATE_S)
+    return _shear_of(min(as_it_may_read, key=_unexplained))
+
+
+def _shear_of(paths: Sequence[_Path]) -> Shear | None:
+    """The gradient everywhere, or in the likeliest layer; None where there is none."""
+    if len(paths) < _LEAST_MANEUVERS:
+        return None
     everywhere = _gradient(paths)
     chance = _PLAIN_CHANCE if everywhere.share >= _PLAIN_SHARE else _CHANCE
     if everywhere.share >= _LEAST_SHARE and everywhere.is_agreed(chance):
@@ -133,24 +156,6 @@ def blows_along(maneuvers: Sequence[Maneuver]) -> bool:
     return enough and bool(np.median(slow) > _ALONG and np.median(plain) > _ABOVE_NOISE)
 
 
-@dataclass(frozen=True)
-class _Path:
-    """What one manoeuvre tells, shape (n,) each, at the stamps of the air speed."""
-
-    height: FloatArray
-    """m; NaN where none was measured."""
-    climbed: FloatArray
-    """m, without the parabola."""
-    speed: FloatArray
-    """Air speed beyond the accelerations, m/s, without the parabola."""
-    parabola: FloatArray
-    """Shape (n, 3): orthonormal."""
-
-    def freed(self, y: FloatArray) -> FloatArray:
-        """A course without its parabola."""
-        return np.asarray(y - self.parabola @ (self.parabola.T @ y))
-
-
 def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf) -> Shear:
     """The gradient over all manoeuvres, of a wind that changes between two heights only."""
     whole = not np.isfinite(high - low)
@@ -166,6 +171,10 @@ def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf
     std = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
     power = sum(float(p.speed @ p.speed) for p in paths)
     return Shear(gradient, std, gradient * float(np.sum(products)) / max(power, 1e-300), n)
+
+
+def _paths_of(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0, late_s: float = 0.0) -> list[_Path]:
+    return [p for p in (_path_of(m, true_over_read, late_s) for m in maneuvers) if p is not None]
 
 
 def _unexplained(paths: Sequence[_Path]) -> float:
