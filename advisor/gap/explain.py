@@ -101,7 +101,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         leftover = sloshing(problem, stages[-1].fitted)
     file_model = _file_model(problem, stages[0].fitted)
     if leftover is None and air is None:
-        leftover = remainder(problem, stages, floor)
+        leftover = None if as_any else remainder(problem, stages, floor)
         needless = is_of_no_use(problem, stages, file_model, floor) or as_any
         if leftover is None and (needless or only_numbers(problem, stages, file_model, floor)):
             stages = reduced_to(problem, stages, [])

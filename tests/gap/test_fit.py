@@ -54,6 +54,18 @@ def test_a_search_that_is_out_of_reach_of_another_is_given_up_and_no_other(settl
     assert far.iterations == 1
 
 
+def test_manoeuvres_that_are_set_aside_have_no_say(settled):
+    problem, plain = settled
+    flights = replace(problem.flights, flights=problem.flights.flights[:2])
+    two = replace(problem, flights=flights, base=problem.base[:2])
+    point = replace(plain.point, derivatives=1.1 * plain.point.derivatives)
+    alone = fit(two, replace(point, own=point.own[:2]), plain.noise, 25, 1e-3)
+    aside = fit(problem, point, plain.noise, 25, 1e-3, aside=(2,))
+    told, due, of_all = (f.point.derivatives for f in (aside, alone, plain))
+    np.testing.assert_allclose(told, due, rtol=3e-3)
+    assert np.any(np.abs(due / of_all - 1.0) > 1e-2)
+
+
 def test_products_of_columns_tell_the_squares_that_rows_do(settled):
     problem, fitted = settled
     random = np.random.default_rng(3)

@@ -59,7 +59,7 @@ def test_a_turn_spoils_neither_the_lag_nor_the_offset_of_alpha(late_s):
     assert abs(found.lag_s - late_s) < 0.002 + 3 * found.lag_std_s
 
 
-@pytest.mark.parametrize(("offset", "named"), [(0.002, False), (0.004, True)])
+@pytest.mark.parametrize(("offset", "named"), [(0.007, False), (0.01, True)])
 def test_an_offset_below_what_any_zero_is_set_to_gets_no_name(offset, named):
     found = alpha_bias_cause(
         KinematicCheck("consistent", "", offset=AlphaOffset(offset, 1e-4)), [], sparse_estimate(), 0.0

@@ -6,8 +6,8 @@ state, trim, offsets and uncertain edges of the command, which are eliminated ma
 at every step, which minimises det R of Eqs. (7)-(8) for a diagonal R.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -88,13 +88,19 @@ def fit(
     iterations: int = 12,
     tolerance: float = 0.1,
     beaten_by: float = np.inf,
+    aside: Collection[int] = (),
 ) -> Fitted:
     """Minimise det R from a start. The first noise decides the weights of the first step.
 
-    ``beaten_by``: a cost that this search is given up for as soon as it is out of reach.
+    Parameters
+    ----------
+    beaten_by
+        A cost that this search is given up for as soon as it is out of reach.
+    aside
+        Manoeuvres that have no say: the cost is that of the others.
     """
     point = start
-    linear = linearise(problem, point)
+    linear = _without(linearise(problem, point), aside)
     weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
     kept = _settled(problem, point, linear, weights)
     length, done = 1.0, 1
@@ -107,7 +113,8 @@ def fit(
         point = kept.point.moved(
             kept.point.shared + change, kept.point.own + np.array([o[: len(NUISANCES)] for o in owns])
         )
-        here = _settled(problem, point, linearise(problem, point), kept.weights)
+        linear = _without(linearise(problem, point), aside)
+        here = _settled(problem, point, linear, kept.weights)
         done += 1
         if here.cost < kept.cost:
             kept, length = here, 1.0
@@ -119,6 +126,14 @@ def fit(
     )
     information = solve_blocks(problem, kept.linear, 1.0 / kept.noise, kept.point).information
     return Fitted(kept.point, kept.noise, kept.cost, kept.left, measured, information, kept.linear, done)
+
+
+def _without(linear: tuple[Linear, ...], aside: Collection[int]) -> tuple[Linear, ...]:
+    """The same with nothing left, and nothing that depends on the shared numbers, in some manoeuvres."""
+    return tuple(
+        replace(block, left=0.0 * block.left, shared=0.0 * block.shared) if i in aside else block
+        for i, block in enumerate(linear)
+    )
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,10 @@ _CERTAIN = 30.0
 _PLAIN_GAIN, _PLAIN_CHANGE = 100.0, 10.0
 """Log likelihood, and changes of the least size, from which on twice the physical minimum is enough."""
 LEAST_OFFSET_RAD = 0.003
-"""Smaller offsets get no name: neither a vane's zero nor the attitude's, from which the path is taken, is set
-much better."""
+"""Smaller offsets of α are not taken out before the fit."""
+NAMED_OFFSET_RAD = 0.0087
+"""Smaller ones get no name: neither a vane's zero nor an attitude reference, from which the path is taken, is
+set much better than within half a degree."""
 OFFSET_SIGMAS = 8.0
 """Standard deviations that an offset of α must have to be named."""
 LEAST_BELIEF = 8.0

@@ -33,6 +33,8 @@ _LEFT = 2.0
 """How many times an instrument's white noise the best must leave, if its other starts are to be tried ..."""
 _SEVERAL = 2
 """... and how many it must have to have more than one optimum."""
+_WILD = 4.0
+"""Power that a manoeuvre leaves, beside the median of all, from which on it may nearly have diverged."""
 _HIDES = frozenset({"actuator_deadband"})
 """Effects that are tried then, too, while nothing was named: where most of the motion is missing, other
 numbers imitate it so well that no screening leads to them."""
@@ -103,9 +105,13 @@ def judge(
     if explained > _GROSS and np.any(first.held_out.mean_square > (_LEFT * problem.flights.white) ** 2):
         hidden = _HIDES if is_plain(before) else frozenset()
         alike = [c.variant for c in candidates if c.variant.effect in {first.effect, *hidden}]
+        same = [c.variant for c in candidates if c.variant.effect == first.effect]
         again = [
             addition(problem, before, held_before, f, f.point.effects[-1].effect, independent)
-            for f in _restarted(problem, before, first.fitted, alike)
+            for f in (
+                *_restarted(problem, before, first.fitted, alike),
+                *_led_by_the_calm(problem, before, first.fitted, same),
+            )
         ]
         found, first = first, max((first, *again), key=lambda judged: judged.gain)
         rest = [j for j in (found, *rest) if j.effect != first.effect]
@@ -134,6 +140,24 @@ def _restarted(problem: Problem, before: Fitted, best: Fitted, variants: Sequenc
                 there = replace(point, derivatives=problem.believed)
                 fits.append(fit(problem, there, before.noise, _TO_THE_END, 0.5))
     return fits
+
+
+def _led_by_the_calm(
+    problem: Problem, before: Fitted, best: Fitted, variants: Sequence[Variant]
+) -> list[Fitted]:
+    """A full fit that begins without the manoeuvres of which the best leaves by far most.
+
+    Where a response nearly diverges, it does so at the next step of any search, which gets no further: the
+    other manoeuvres lead to where it does not.
+    """
+    power = np.array([float(np.mean(e**2)) for e in best.innovations])
+    wild = np.flatnonzero(power > _WILD * np.median(power)).tolist()
+    points = [before.point.with_effect(v, start) for v in variants if v.sides is None for start in v.starts]
+    if not wild or not points:
+        return []
+    calm = [fit(problem, point, before.noise, _TO_THE_END, 0.5, aside=wild) for point in points]
+    led = min(calm, key=lambda f: f.cost)
+    return [fit(problem, led.point, before.noise, _TO_THE_END, 0.5)]
 
 
 def _no_rival(before: Fitted, fits: Sequence[Fitted]) -> float:

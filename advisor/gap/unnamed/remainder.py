@@ -28,10 +28,15 @@ _USE = 0.1
 """Share of the gap that names must take away."""
 _OF_THE_NUMBERS = 0.01
 """Share of what fitted numbers take away without them below which names only polish wrong numbers."""
-_OF_ANY_AIRFRAME = frozenset({"nonlinear_lift", "nonlinear_pitching_moment", "elevator_nonlinearity"})
-_LITTLE = 0.008
-"""Bends that every airframe has, and the RMS that they must change of some channel's peak to be a cause: of
-125 that outside authors had put in none changes less, of 89 that they had not (JSBSim's own, too) 40 do."""
+_OF_ANY_AIRFRAME = frozenset(
+    {
+        "nonlinear_lift", "nonlinear_pitching_moment", "elevator_nonlinearity",
+        "mass_change", "cg_shift", "thrust_moment",
+    }
+)  # fmt: skip
+_LITTLE, _NEAR_THE_NOISE = 0.01, 2.0
+"""What every airframe has: bends, fuel that is burnt, thrust that misses the centre of gravity; the RMS that
+they must change of some channel's peak to be a cause, and the gap from which on they are one."""
 _BENT_BY_INPUT = frozenset({"moment_equation", "force_equation", "air"})
 """Where that seems to be: what an instrument does is told by other signs."""
 _BENDS = frozenset({"actuator_backlash", "actuator_deadband"})
@@ -124,7 +129,7 @@ def bends_as_any(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -
     named = [s.added for s in stages if s.added is not None]
     if not named or any(j.effect not in _OF_ANY_AIRFRAME or j.belief >= LEAST_BELIEF for j in named):
         return False
-    if whole_gap(stages[0].held_out.mean_square, floor) > 1.0:
+    if whole_gap(stages[0].held_out.mean_square, floor) > _NEAR_THE_NOISE:
         return False
     lefts = zip(stages[0].held_out.left, stages[-1].held_out.left, strict=True)
     return bool(np.all(rms_of(problem, [a - b for a, b in lefts]) < _LITTLE * problem.flights.peaks))

@@ -30,6 +30,8 @@ _REFUTED, _RIVAL = 0.05, 0.2
 companion of what was named."""
 _BEHIND = 0.08
 """The same of everything behind what makes the larger part of the gap, an offset or wrong numbers."""
+_MOUNTED_RAD = 0.02
+"""Offset of α up to which what is named beside it comes first: that of an instrument's mounting."""
 _MOSTLY = 0.98
 """Share of the gap that wrong numbers make, from which on they are the answer whatever is there besides: what
 leaves the file right, and is imitated by other numbers, is imitated by nine tenths at most, but for the one
@@ -99,7 +101,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
         with_doubt(cause, problem) for cause in causes_of(stages, floor, unexplained, problem.channels)
     )
     causes = _merge(causes, apart)
-    if bias is not None and not unknown and not problem.flights.alpha_is_derived:
+    if bias is not None and not unknown and not problem.flights.alpha_is_derived and _is_plain(bias, named):
         offset = (bias.parameters["bias_rad"].value / floor[problem.channels.index("alpha")]) ** 2
         if float(offset) / len(floor) > names:
             causes = _put_first(causes, bias)
@@ -125,6 +127,11 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     if e.constant_speed is not None and speed in apart:
         before = _at_constant_speed(problem, before, e.constant_speed, last)
     return Judgement(verdict, causes, apart, speed, bias, before, numbers.are_wrong)
+
+
+def _is_plain(bias: Cause, named: Sequence[Judged]) -> bool:
+    """Whether an offset is more than a mounting leaves, or nothing that the stick shows was named."""
+    return not named or abs(bias.parameters["bias_rad"].value) > _MOUNTED_RAD
 
 
 @dataclass(frozen=True)
