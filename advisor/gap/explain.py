@@ -49,6 +49,7 @@ from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
 from advisor.gap.unnamed.unnamed_air import unnamed_air
 from advisor.gap.unnamed.unnamed_law import unnamed_law
+from advisor.gap.unnamed.unsteady import unsteady
 from advisor.gap.unnamed.wander import wandering_attitude, wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
 
@@ -107,6 +108,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
             stages = reduced_to(problem, stages, [])
         elif leftover is None and len(stages) == 1:
             leftover = wandering_sensor(problem, stages[-1].fitted)
+        leftover = leftover or unsteady(problem, stages[-1].fitted, floor)
     # A model without the law that was found bends its air speed to it.
     true_speed = true_speed_of(problem, stages[-1].fitted) if law is None else None
     if leftover is not None:
