@@ -7,8 +7,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import BLOCK_OF
-from advisor.gap.fitting.fit import rms_of
-from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.holdout import HeldOut, mean_squares
 from advisor.gap.fitting.measure import gap_of, whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
@@ -29,14 +28,11 @@ _USE = 0.1
 _OF_THE_NUMBERS = 0.01
 """Share of what fitted numbers take away without them below which names only polish wrong numbers."""
 _OF_ANY_AIRFRAME = frozenset(
-    {
-        "nonlinear_lift", "nonlinear_pitching_moment", "elevator_nonlinearity",
-        "mass_change", "cg_shift", "thrust_moment",
-    }
-)  # fmt: skip
+    {"nonlinear_lift", "nonlinear_pitching_moment", "elevator_nonlinearity", "mass_change", "cg_shift"}
+)
 _LITTLE, _NEAR_THE_NOISE = 0.01, 2.0
-"""What every airframe has: bends, fuel that is burnt, thrust that misses the centre of gravity; the RMS that
-they must change of some channel's peak to be a cause, and the gap from which on they are one."""
+"""What every airframe has: bends, and fuel that is burnt; the RMS that they must change of some channel's
+peak in some manoeuvre to be a cause, and the gap from which on they are one."""
 _BENT_BY_INPUT = frozenset({"moment_equation", "force_equation", "air"})
 """Where that seems to be: what an instrument does is told by other signs."""
 _BENDS = frozenset({"actuator_backlash", "actuator_deadband"})
@@ -132,7 +128,8 @@ def bends_as_any(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -
     if whole_gap(stages[0].held_out.mean_square, floor) > _NEAR_THE_NOISE:
         return False
     lefts = zip(stages[0].held_out.left, stages[-1].held_out.left, strict=True)
-    return bool(np.all(rms_of(problem, [a - b for a, b in lefts]) < _LITTLE * problem.flights.peaks))
+    changes = np.sqrt(mean_squares(problem, [a - b for a, b in lefts]))
+    return bool(np.all(changes < _LITTLE * problem.flights.peaks))
 
 
 def only_numbers(
