@@ -18,7 +18,7 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.unnamed.leftover import Leftover, of_the_wind
-from advisor.gap.unnamed.true_speed import true_speed_of
+from advisor.gap.unnamed.true_speed import true_over_read, true_speed_of
 from advisor.gap.unnamed.weight import Weight, weight_carried
 from advisor.gap.unnamed.wind import blows_along, wind_shear
 from advisor.gap.verdict.amid import is_told_without, torn_by_a_change
@@ -89,11 +89,12 @@ def _explained(
         maneuvers = [_without_offset(m, kinematics.offset.rad) for m in maneuvers]
         flights = prepare(maneuvers, aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
-    true_speed = true_speed_of(problem, baseline)
-    if true_speed is not None and true_speed.is_indicated(weight_carried(flown, flights.reference_m_s)):
-        flights = prepare(maneuvers, aircraft, 1.0 + true_speed.scale)
-        problem, baseline = fit_baseline(flights, aircraft)
-    return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown), kinematics
+    weight = weight_carried(flown, flights.reference_m_s)
+    over_read = true_over_read(true_speed_of(problem, baseline), weight)
+    if over_read > 1.0:
+        # An indicated air speed changes by less than the accelerometers say.
+        problem, baseline = fit_baseline(prepare(maneuvers, aircraft, over_read), aircraft)
+    return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
 
 
 def _refuse(flights: Flights) -> None:
@@ -134,11 +135,9 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
     return replace(maneuver, channels=channels)
 
 
-def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver]) -> Evidence:
+def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver], weight: Weight | None) -> Evidence:
     """What air speed and accelerometer are off by beside the path, without any aerodynamics."""
-    weight = weight_carried(flown, e.problem.flights.reference_m_s)
-    is_indicated = e.true_speed is not None and e.true_speed.is_indicated(weight)
-    shear = wind_shear(flown, 1.0 + e.true_speed.scale if e.true_speed and is_indicated else 1.0)
+    shear = wind_shear(flown, true_over_read(e.true_speed, weight))
     if shear is not None and not _feigns_wind(e.leftover):
         # Air that moves swings the air speed, too: beside it what is not plain is worth a note, no more.
         is_there = e.air is None or shear.is_plain

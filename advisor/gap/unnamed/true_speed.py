@@ -57,6 +57,11 @@ class TrueSpeed:
         )
 
 
+def true_over_read(found: TrueSpeed | None, weight: Weight | None) -> float:
+    """How many times the air speed that is read the true one is, where it may be an indicated one; else 1."""
+    return 1.0 + found.scale if found is not None and found.is_indicated(weight) else 1.0
+
+
 def true_speed_of(problem: Problem, fitted: Fitted) -> TrueSpeed | None:
     """What the fitted model says of it; None where that is next to nothing, or no channel shows it."""
     point = fitted.point
