@@ -16,7 +16,7 @@ from tests.gap.generator import UAV, Setup, fly
     [
         ("nonlinear_pitching_moment", {"cm_a2": 3.0}, 0.15),
         pytest.param("nonlinear_pitching_moment", {"cm_a3": -40.0}, 0.22, marks=pytest.mark.study),
-        ("nonlinear_lift", {"cl_a3": -150.0}, 0.15),
+        pytest.param("nonlinear_lift", {"cl_a3": -150.0}, 0.15, marks=pytest.mark.study),
     ],
 )
 @pytest.mark.parametrize("about_rad", [0.08, None])

@@ -28,7 +28,9 @@ def through_a_vane(setup, lags_s):
 
 
 @pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), pytest.param(HARD, marks=pytest.mark.study)])
-@pytest.mark.parametrize(("channel", "block"), [("alpha", "timing"), ("a_z", "timing")])
+@pytest.mark.parametrize(
+    ("channel", "block"), [("alpha", "timing"), pytest.param("a_z", "timing", marks=pytest.mark.study)]
+)
 def test_a_clock_that_runs_off_is_unknown_in_the_time_stamps(setup, channel, block):
     found = diagnose(late_by(fly(setup), channel, np.linspace(0.0, 0.06, 8)), Aircraft())
     assert found.verdict == "unknown"

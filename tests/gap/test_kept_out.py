@@ -47,6 +47,7 @@ def test_over_some_manoeuvres_innovations_count_as_their_errors_do(filtered):
     assert not np.allclose(some.innovation_square, some.mean_square)
 
 
+@pytest.mark.study
 def test_what_only_a_manoeuvre_kept_out_could_tell_is_measured_there():
     flown = fly(
         Setup(maneuvers=6, thrust_amplitude=0.6, thrust_moves_in=(5,), switches={"thrust_arm": 0.3}, seed=77)

@@ -20,7 +20,7 @@ def plane() -> Aircraft:
     return Aircraft(model=model, reference_airspeed_m_s=sound.reference_airspeed_m_s)
 
 
-@pytest.mark.parametrize(("kink_rad", "seed"), [(0.07, 11), (0.10, 12)])
+@pytest.mark.parametrize(("kink_rad", "seed"), [(0.07, 11), pytest.param(0.10, 12, marks=pytest.mark.study)])
 def test_flow_that_separates_within_a_degree_or_two_is_lift_that_curves_and_no_gust(kink_rad, seed):
     found = diagnose(fly(Setup(maneuvers=6, switches={"kink_at": kink_rad}, seed=seed)), Aircraft())
     assert found.verdict == "effect"
@@ -62,6 +62,7 @@ def test_lift_that_hardly_comes_at_all_at_first_is_found_from_the_aircraft_files
     assert found.causes[0].parameters["lag_s"].value == pytest.approx(0.12, rel=0.1)
 
 
+@pytest.mark.study
 def test_a_wing_that_is_stalled_throughout_is_no_wrong_number_of_the_file(plane):
     # It flies at 0.07 rad: what is left of its lift slope is a sixth, and hardly curves.
     stalled = {"stall_at": 0.03, "stall_sharpness": 25.0}
@@ -80,6 +81,7 @@ def test_a_lift_slope_that_grows_near_the_ground_is_the_ground():
     assert found.verdict == "effect"
 
 
+@pytest.mark.study
 def test_a_large_aircraft_feels_the_ground_from_higher_up():
     large = replace(LIGHT_AIRCRAFT, chord=3.0, mass=6000.0, iyy=25000.0, area=40.0, speed=70.0)
     for share in (0.1, 0.2):
@@ -89,6 +91,7 @@ def test_a_large_aircraft_feels_the_ground_from_higher_up():
         assert found.causes[0].effect == "ground_effect"
 
 
+@pytest.mark.study
 def test_stability_that_drops_by_a_third_with_nothing_else_is_the_centre_of_gravity_and_no_ice():
     found = diagnose(fly(Setup(maneuvers=6, cg_step=-0.35, seed=16)), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["cg_shift"]

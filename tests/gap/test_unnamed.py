@@ -116,6 +116,7 @@ def test_two_effects_are_both_named_the_larger_one_first():
     assert present == ["transport_delay", "alpha_scale"]
 
 
+@pytest.mark.study
 def test_three_streams_that_are_late_alike_are_a_late_command_and_one_stream_that_is_early():
     late = Setup(maneuvers=6, noise=0.005, switches={"delay": 0.06}, skew={"alpha": -0.06}, seed=40)
     found = diagnose(fly(late), Aircraft())
@@ -234,6 +235,7 @@ def test_of_two_arms_alike_in_the_data_the_one_that_the_file_leaves_open_is_name
     assert diagnose(flown, vane_known).causes[0].effect == "accelerometer_offset"
 
 
+@pytest.mark.study
 def test_a_place_of_the_accelerometer_that_the_file_leaves_open_is_named_after_any_other_effect():
     flown = fly(Setup(maneuvers=6, switches={"acc_arm": 0.8, "delay": 0.02}, seed=32))
     vane_known = Aircraft(alpha=Alpha(vane_arm_m=0.0))
@@ -260,6 +262,7 @@ def test_an_angle_renewed_faster_than_an_autopilot_estimates_it_comes_from_an_in
     assert prepare([called_derived(m, 3) for m in smooth], Aircraft()).alpha_is_derived
 
 
+@pytest.mark.study
 def test_a_gyro_that_saturates_is_no_gyro_that_reads_low():
     flown = fly(Setup(maneuvers=6, seed=21))
     most = 0.15 * max(float(np.max(np.abs(m.channels["q"].y))) for m in flown)
@@ -334,6 +337,7 @@ def test_a_scale_that_drifts_is_unknown_in_the_sensor():
     assert (found.verdict, found.where.block) == ("unknown", "pitch_rate_sensor")
 
 
+@pytest.mark.study
 def test_an_attitude_that_leans_with_the_pitch_rate_is_no_wind():
     def leaning(k, theta):
         late = lfilter([0.03], [1.0, -0.97], theta.y - theta.y[0])

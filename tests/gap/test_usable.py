@@ -61,6 +61,7 @@ def test_what_comes_faster_than_it_need_is_averaged_between_neighbours_only():
     assert condensed(slow, slow)[0] is slow
 
 
+@pytest.mark.study
 def test_a_log_of_twice_the_rate_tells_the_same():
     setups = (Setup(maneuvers=6, switches={"delay": 0.05}, rate_hz=rate, seed=72) for rate in (50.0, 100.0))
     once, twice = (diagnose(fly(setup), Aircraft()).causes[0] for setup in setups)

@@ -147,9 +147,9 @@ class Problem:
         The disturbance, shape (4, n), enters each simulation by its dose, shape (k,).
         """
         stamps = flight.t_held if self.held else flight.t_u
-        delta = surfaces(flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim, p, LANES)
+        delta, above = surfaces(flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim, p, LANES)
         doses = np.zeros(len(p)) if doses is None else doses
-        return simulate(flight.h, delta, flight.slow, disturbance, doses, flight.trim, p)
+        return simulate(flight.h, delta, above, flight.slow, disturbance, doses, flight.trim, p)
 
     def read_all(self, flight: Flight, packs: FloatArray, p: FloatArray) -> FloatArray:
         """Shape (rows, k): of every simulation all channels at their own stamps, one after another."""

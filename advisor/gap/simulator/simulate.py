@@ -74,25 +74,6 @@ def _attached(beyond: float) -> float:
     return float(0.25 * (1.0 + np.sqrt(chord)) ** 2)
 
 
-@njit(cache=True)
-def _between(earlier: float, before: float, after: float, later: float) -> float:
-    """Value between the second and the third of four steps, from their means.
-
-    Of the two the flatter one tells: a jump within the other leaves it as it was, or already is.
-    """
-    jump = after - before
-    left, right = 0.5 * _lesser(before - earlier, jump), 0.5 * _lesser(jump, later - after)
-    return before + left if abs(left) <= abs(right) else after - right
-
-
-@njit(cache=True)
-def _lesser(one: float, other: float) -> float:
-    """The smaller of two differences of one sign; zero where they differ in sign."""
-    if one * other <= 0.0:
-        return 0.0
-    return one if abs(one) < abs(other) else other
-
-
 @njit(cache=True, error_model="numpy")
 def _begin(
     x: FloatArray, lane: int, p: FloatArray, dose: float, h: float, speed: float, trim: FloatArray
@@ -129,6 +110,7 @@ def _begin(
 def simulate(
     h: float,
     delta: FloatArray,
+    above: FloatArray,
     slow: FloatArray,
     disturbance: FloatArray,
     doses: FloatArray,
@@ -143,6 +125,8 @@ def simulate(
         Step in s.
     delta
         Shape (packs, n, LANES). Mean deflection over each step relative to trim, from ``surfaces``.
+    above
+        Shape (packs, n, LANES). What that is above the deflection at the step's start.
     slow
         Shape (7, n). Speed m/s, a_x m/s², bank rad, throttle relative to its start, height m, thrust less
         drag over weight, less its mean, and what a turn takes from θ̇, r sin φ, rad/s.
@@ -178,7 +162,6 @@ def simulate(
             other_power = other_power or p[j, SPEED_POWER] != 0.0
         for i in range(n + 1):
             j = min(i, n - 1)
-            before = max(j - 1, 0)
             a_x, cb, turning = slow[A_X, j], level[j], slow[TURN, j]
             along = 2.0 * j / n - 1.0
             for m in range(lanes):
@@ -224,11 +207,8 @@ def simulate(
                     + pressure * x[M_H, m] * x[NEAR, m] + x[M_THROTTLE, m] * x[ENGINE, m]
                     + x[M_THRUST, m] * (1.0 - vv) + x[DOSE, m] * d_moment
                 )  # fmt: skip
-                # Outputs belong to the start of the step; of the steps beside it the flatter one tells δ.
-                ahead = delta[k, j, m] - _between(
-                    delta[k, max(j - 2, 0), m], delta[k, before, m], delta[k, j, m],
-                    delta[k, min(j + 1, n - 1), m],
-                )  # fmt: skip
+                # Outputs belong to the start of the step.
+                ahead = above[k, j, m]
                 x[NORMAL_0, m], x[QDOT_0, m] = -lifting * z_d * ahead, -m_d * ahead
                 x[KA, m], x[KQ, m] = 0.0, 0.0
             # The midpoint rule: at a hundredth of the period a step its error is far below any derivative's.

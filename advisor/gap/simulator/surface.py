@@ -24,27 +24,30 @@ _PARTS = 8
 @njit(cache=True)
 def surfaces(
     h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray, lanes: int
-) -> FloatArray:
+) -> tuple[FloatArray, FloatArray]:
     """Deflections for every row of ``p``, shape (k, entries), in lanes as ``simulate`` takes them.
 
-    Shape (packs, n, lanes). Most rows differ in numbers of which the surface knows nothing: those share a
-    deflection. Lanes to spare repeat the last one.
+    Each of shape (packs, n, lanes): the mean over each step, and what that is above the step's start. Most
+    rows differ in numbers of which the surface knows nothing: those share a deflection. Lanes to spare repeat
+    the last one.
     """
     packs = (len(p) + lanes - 1) // lanes
-    different = np.empty((len(p), n))
+    different = np.empty((len(p), 2, n))
     which = np.empty(packs * lanes, dtype=np.int64)
     count = 0
     for j in range(packs * lanes):
         if j == 0 or (j < len(p) and _differ(p[j], p[j - 1])):
-            different[count] = surface(h, n, t_u, u, held, trim, p[j])
+            different[count, 0] = surface(h, n, t_u, u, held, trim, p[j])
+            different[count, 1] = _above_start(different[count, 0])
             count += 1
         which[j] = count - 1
-    out = np.empty((packs, n, lanes))
+    delta, above = np.empty((packs, n, lanes)), np.empty((packs, n, lanes))
     for pack in range(packs):
         for i in range(n):
             for lane in range(lanes):
-                out[pack, i, lane] = different[which[pack * lanes + lane], i]
-    return out
+                delta[pack, i, lane] = different[which[pack * lanes + lane], 0, i]
+                above[pack, i, lane] = different[which[pack * lanes + lane], 1, i]
+    return delta, above
 
 
 @njit(cache=True)
@@ -53,6 +56,32 @@ def _differ(one: FloatArray, other: FloatArray) -> bool:
     for entry in _READ:
         differ = differ or one[entry] != other[entry]
     return differ
+
+
+@njit(cache=True)
+def _above_start(mean: FloatArray) -> FloatArray:
+    """What the mean over each step is above the value at its start.
+
+    Of the two steps that meet there the flatter one tells: a jump within the other leaves the value as it
+    was, or already is.
+    """
+    n = len(mean)
+    out = np.empty(n)
+    for j in range(n):
+        before, here = mean[max(j - 1, 0)], mean[j]
+        jump = here - before
+        left = 0.5 * _lesser(before - mean[max(j - 2, 0)], jump)
+        right = 0.5 * _lesser(jump, mean[min(j + 1, n - 1)] - here)
+        out[j] = jump - left if abs(left) <= abs(right) else right
+    return out
+
+
+@njit(cache=True)
+def _lesser(one: float, other: float) -> float:
+    """The smaller of two differences of one sign; zero where they differ in sign."""
+    if one * other <= 0.0:
+        return 0.0
+    return one if abs(one) < abs(other) else other
 
 
 @njit(cache=True)
