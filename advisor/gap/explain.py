@@ -24,6 +24,7 @@ from advisor.gap.search.command import is_likelier_held, may_be_held, read_as_he
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import Progress, as_measured, build_up, reduced_to
+from advisor.gap.unnamed.cross_axis import crossed_axes
 from advisor.gap.unnamed.drift import drifting
 from advisor.gap.unnamed.leftover import (
     Leftover,
@@ -89,6 +90,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         or remembering(problem, stages)
         or stepping(problem, stages[0].fitted, stages[-1].fitted)
         or wandering_attitude(problem, stages[-1].fitted)
+        or crossed_axes(problem, stages[-1].fitted)
         or _without_a_name(problem, stages, air, tolerance, floor)
     )
     as_any = bends_as_any(problem, stages, floor)

@@ -59,6 +59,9 @@ class Flight:
     """Shape (3, 3), m/s, as ``airspeed.speed_doubts`` gives it, or (1, 1) of the level alone; (0, 0) where
     nothing is known of it."""
 
+    roll_rate: FloatArray | None = None
+    """Shape (n,) on the grid, rad/s; None where the log has none."""
+
     @property
     def alpha_trim(self) -> float:
         """Angle of attack at the start, rad."""

@@ -152,7 +152,7 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
         trim[THETA_FROM] = float(np.mean(outputs["theta"].y[:3]))
     return Flight(
         m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, held_from(t_u), u, u_trim,
-        slow, trim, outputs, edges_of(t_u, u),
+        slow, trim, outputs, edges_of(t_u, u), roll_rate=on_grid("p", 0.0) if "p" in m.channels else None,
     )  # fmt: skip
 
 

@@ -28,7 +28,7 @@ LEAST_OFFSET_RAD = 0.003
 NAMED_OFFSET_RAD = 0.0087
 """Smaller ones get no name: neither a vane's zero nor an attitude reference, from which the path is taken, is
 set much better than within half a degree."""
-OFFSET_SIGMAS = 8.0
+OFFSET_SIGMAS = 5.0
 """Standard deviations that an offset of α must have to be named."""
 LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
