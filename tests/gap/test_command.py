@@ -11,6 +11,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
 from advisor.gap.records.prepare import prepare
+from advisor.gap.records.usable import usable_of
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.command import is_likelier_held
 from sim.effects.fitting import flight_of
@@ -113,3 +114,17 @@ def test_a_manoeuvre_with_a_step_in_a_hole_of_the_log_is_left_out_and_said_so():
     found = diagnose(flown, Aircraft())
     assert found.maneuvers == (1, 2, 4, 5, 6)
     assert any("manoeuvre 3" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(("hole_s", "is_hidden"), [((1.45, 2.15), True), ((1.55, 1.75), False)])
+def test_in_a_hole_of_the_log_a_whole_pulse_may_be_hidden_but_not_in_a_short_one(hole_s, is_hidden):
+    flown = fly(Setup(maneuvers=6, seed=5))
+    span = flown[2].span
+    t = np.arange(span.start_s - 1.0, span.end_s, 0.02)
+    ago = t - span.start_s
+    # To and fro for as long as the manoeuvre takes: before the hole the command is what it is after it.
+    command = np.where((ago > 0.0) & (t < span.last_step_s), 0.03 * np.where(ago % 1.0 < 0.5, 1.0, -1.0), 0.0)
+    heard = (ago < hole_s[0]) | (ago > hole_s[1])
+    elevator = replace(flown[2].channels["elevator"], t=t[heard], y=command[heard])
+    flown[2] = replace(flown[2], channels={**flown[2].channels, "elevator": elevator})
+    assert (3 not in [m.number for m in usable_of(flown)]) is is_hidden

@@ -12,6 +12,8 @@ _LOST = 1.5
 """Intervals of the usual length from which on a stamp was lost."""
 _HOLE_S, _HOLE = 0.15, 3.5
 """A hole of the command's log: this long, and so many of its usual intervals."""
+_PULSE_S = 0.25
+"""A hole in which a pulse may have come and gone: those of a fast short period are no longer."""
 
 
 def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:
@@ -38,11 +40,19 @@ def held_from(t: FloatArray) -> FloatArray:
 
 
 def step_unseen(maneuver: Maneuver) -> bool:
-    """Whether the command changed while so many of its stamps were lost that nobody knows when."""
-    t = maneuver.channels["elevator"].t
+    """Whether the command changed, or may have, while so many of its stamps were lost that nobody knows when.
+
+    Between the first and the last step a whole pulse may lie in a hole: before and after it the command is
+    the same.
+    """
+    t, span = maneuver.channels["elevator"].t, maneuver.span
+    interval = np.diff(t)
     edges = edges_of(t, maneuver.channels["elevator"].y)
-    hole = max(_HOLE_S, _HOLE * float(np.median(np.diff(t))))
-    return bool(len(edges)) and float(np.max(edges[:, 2])) > hole
+    hole = max(_HOLE_S, _HOLE * float(np.median(interval)))
+    active = interval[(t[1:] > span.start_s) & (t[:-1] < span.last_step_s)]
+    return float(np.max(edges[:, 2], initial=0.0)) > hole or float(np.max(active, initial=0.0)) > max(
+        hole, _PULSE_S
+    )
 
 
 def _lost(t: FloatArray) -> FloatArray:
