@@ -93,7 +93,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         or crossed_axes(problem, stages[-1].fitted)
         or _without_a_name(problem, stages, air, tolerance, floor)
     )
-    as_any = bends_as_any(problem, stages, floor)
+    file_model = _file_model(problem, stages[0].fitted)
+    as_any = bends_as_any(problem, stages, file_model, floor)
     if leftover is None and air is not None and (only_resemble(stages) or as_any):
         stages = reduced_to(problem, stages, [])
         air, floor = moving_air(problem, stages[0].fitted), _floor(problem, stages[0], tolerance)
@@ -102,7 +103,6 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
         leftover = unnamed_air(air, stages, floor)
     if leftover is None and not (air is not None and air.gust):
         leftover = sloshing(problem, stages[-1].fitted)
-    file_model = _file_model(problem, stages[0].fitted)
     if leftover is None and air is None:
         leftover = None if as_any else remainder(problem, stages, floor)
         needless = is_of_no_use(problem, stages, file_model, floor) or as_any

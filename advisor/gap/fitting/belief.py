@@ -13,6 +13,8 @@ NARROW = 0.03
 """Relative error of derivatives that are right: linearised, at a nearby speed."""
 WIDE = 0.3
 """Relative error of derivatives that are not."""
+HELD = 0.003
+"""The same where they are held at the file's, to see what else would explain the motion."""
 _LEAST = 0.1
 """Size below which a derivative is none, 1/s or 1/s²."""
 _CHI_SQUARE_999, _CHI_SQUARE_500 = 22.46, 5.35
@@ -42,9 +44,9 @@ def scale_of(believed: FloatArray) -> FloatArray:
     )
 
 
-def pull_of(believed: FloatArray, trusted: bool = False) -> FloatArray:
-    """Shape (6,): inverse variances of a file that is off, to decide only what data leave open, or right."""
-    return np.asarray(1.0 / ((NARROW if trusted else WIDE) * scale_of(believed)) ** 2)
+def pull_of(believed: FloatArray, tolerance: float) -> FloatArray:
+    """Shape (6,): inverse variances of the file's derivatives, given their relative error."""
+    return np.asarray(1.0 / (tolerance * scale_of(believed)) ** 2)
 
 
 def log_belief(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray) -> float:

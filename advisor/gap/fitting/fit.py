@@ -131,7 +131,9 @@ def fit(
 def _without(linear: tuple[Linear, ...], aside: Collection[int]) -> tuple[Linear, ...]:
     """The same with nothing left, and nothing that depends on the shared numbers, in some manoeuvres."""
     return tuple(
-        replace(block, left=0.0 * block.left, shared=0.0 * block.shared) if i in aside else block
+        replace(block, columns=block.columns * (np.arange(block.columns.shape[1]) < block.m))
+        if i in aside
+        else block
         for i, block in enumerate(linear)
     )
 

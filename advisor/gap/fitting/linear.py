@@ -30,18 +30,30 @@ _HELD_JITTER_S = 0.0015
 
 @dataclass(frozen=True)
 class Columns:
-    """Residual and sensitivities of one manoeuvre."""
+    """Residual and sensitivities of one manoeuvre, side by side: what is done to them is done at once."""
 
-    left: FloatArray
-    """Shape (rows,): measured minus simulated."""
-    shared: FloatArray
-    """Shape (rows, k)."""
-    own: FloatArray
-    """Shape (rows, m): initial states, trim, offsets (flat priors), then errors of the air speed, edges."""
+    columns: FloatArray
+    """Shape (rows, m + k + 1): own, shared, left."""
+    m: int
+
+    @property
+    def own(self) -> FloatArray:
+        """Shape (rows, m): initial states, trim, offsets (flat priors), then errors of the speed, edges."""
+        return self.columns[:, : self.m]
+
+    @property
+    def shared(self) -> FloatArray:
+        """Shape (rows, k)."""
+        return self.columns[:, self.m : -1]
+
+    @property
+    def left(self) -> FloatArray:
+        """Shape (rows,): measured minus simulated."""
+        return self.columns[:, -1]
 
     def after(self, step: FloatArray, own: FloatArray) -> FloatArray:
         """Residual after a step of the shared and the own numbers."""
-        return np.asarray(self.left - self.shared @ step - self.own @ own)
+        return np.asarray(self.columns @ _stepped(step, own))
 
 
 @dataclass(frozen=True)
@@ -61,19 +73,23 @@ class Linear(Columns):
 
         Every normal equation is a weighted sum of them: weights may change without a look at the rows.
         """
-        columns = np.column_stack([self.own, self.shared, self.left])
-        return np.stack([columns[rows].T @ columns[rows] for rows in self.channels])
+        return np.stack([self.columns[rows].T @ self.columns[rows] for rows in self.channels])
 
     def squares_after(self, step: FloatArray, own: FloatArray) -> FloatArray:
         """Shape (channels,): of the residual after a step of the shared and the own numbers."""
-        after = np.concatenate([-own, -step, [1.0]])
+        after = _stepped(step, own)
         return np.asarray(np.maximum(self.products @ after @ after, 0.0))
+
+
+def _stepped(step: FloatArray, own: FloatArray) -> FloatArray:
+    """What the columns are summed with to give the residual after a step."""
+    return np.concatenate([-own, -step, [1.0]])
 
 
 def as_measured(block: Linear) -> Linear:
     """The same without a filter: in the units of the channels."""
     raw = block.measured
-    return Linear(raw.left, raw.shared, raw.own, block.prior, raw, block.channels)
+    return Linear(raw.columns, raw.m, block.prior, raw, block.channels)
 
 
 def shared_steps(point: Point) -> FloatArray:
@@ -116,20 +132,20 @@ def measured_columns(
     doses[-1] = _PULSE
     packs = problem.fly_all(flight, rows, unit_pulse(flight, DISTURB_INPUT, p[INDEX["lag_s"]]), doses)
     read = problem.read_all(flight, packs, rows[:-1])
-    base, moved = read[:, :1], read[:, 1:]
-    answers = (moved[:, k:] - base) / moves
+    base, shared, answers = read[:, :1], slice(1, k + 1), slice(k + 1, None)
+    read[:, 1:] -= base
+    read[:, shared] /= steps
+    read[:, answers] /= moves
+    own, speeds = read[:, answers][:, : len(NUISANCES)], read[:, answers][:, len(NUISANCES) :]
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
     late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
     begin = flight.edges[:, 0] + late
     if problem.held:
         begin += 0.5 * (flight.edges[:, 2] - flight.edges[:, 3])
-    own = [
-        answers[:, : len(NUISANCES)],
-        _offsets(problem, flight),
-        answers[:, len(NUISANCES) :] @ flight.speed_doubt,
-        _answers_to_edges(problem, flight, pulse, begin, p),
-    ]
-    return Columns(problem.measured(flight) - base[:, 0], (moved[:, :k] - base) / steps, np.hstack(own))
+    doubts, edges = speeds @ flight.speed_doubt, _answers_to_edges(problem, flight, pulse, begin, p)
+    left = problem.measured(flight)[:, None] - base
+    columns = np.hstack([own, _offsets(problem, flight), doubts, edges, read[:, shared], left])
+    return Columns(columns, columns.shape[1] - k - 1)
 
 
 def _answers_to_edges(
@@ -200,10 +216,7 @@ def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:
     blocks = []
     for i, flight in enumerate(problem.flights.flights):
         measured = measured_columns(problem, i, p[i], shifted[i], steps)
-        left, shared, own = measured.left, measured.shared, measured.own
-        prior = _own_prior(problem, flight, own.shape[1])
-        if problem.whitening is not None:
-            e = problem.innovations(i, np.column_stack([left, shared, own]))
-            left, shared, own = e[:, 0], e[:, 1 : len(steps) + 1], e[:, len(steps) + 1 :]
-        blocks.append(Linear(left, shared, own, prior, measured, tuple(problem.rows(flight))))
+        prior = _own_prior(problem, flight, measured.m)
+        columns = problem.innovations(i, measured.columns)
+        blocks.append(Linear(columns, measured.m, prior, measured, tuple(problem.rows(flight))))
     return tuple(blocks)

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.belief import pull_of
+from advisor.gap.fitting.belief import HELD, NARROW, WIDE, pull_of
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES, SKEWS
@@ -80,7 +80,9 @@ class Problem:
     smallest_noise: FloatArray | None = None
     """Shape (channels,): noise of the innovations is never taken to be below this."""
     believed: FloatArray | None = None
-    """Shape (6,): derivatives of the aircraft file, when it has all."""
+    """Shape (6,): derivatives of the aircraft file, when it has all ..."""
+    holds_the_file: bool = False
+    """... and whether fitted ones are held there."""
     arms_in_file: frozenset[str] = frozenset()
     """Effects whose size the aircraft file states: arms of the vane and the accelerometer."""
     jitter_s: float = 0.0
@@ -108,7 +110,8 @@ class Problem:
         inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
         if self.believed is not None:
             trusted = any(effect.twin is not None for effect in point.effects)
-            inverse, expected = [pull_of(self.believed, trusted)], [self.believed]
+            tolerance = HELD if self.holds_the_file else NARROW if trusted else WIDE
+            inverse, expected = [pull_of(self.believed, tolerance)], [self.believed]
         for effect, values in zip(point.effects, point.values, strict=True):
             inverse.append(1.0 / np.array(effect.spread) ** 2 if effect.spread else np.zeros(len(values)))
             expected.append(np.zeros(len(values)))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.belief import is_off, log_belief, pull_of
+from advisor.gap.fitting.belief import NARROW, is_off, log_belief, pull_of
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.records.floor import independent_samples
@@ -61,7 +61,7 @@ def covariance(
     information = (fitted.information - np.diag(expected)) / widened + np.diag(expected)
     if trusted and problem.believed is not None:
         n = len(problem.believed)
-        tolerance = pull_of(problem.believed, trusted=True)
+        tolerance = pull_of(problem.believed, NARROW)
         information[:n, :n] += np.diag(np.maximum(tolerance - expected[:n], 0.0))
     scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
     normal = information / np.outer(scale, scale)

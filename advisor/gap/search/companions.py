@@ -6,20 +6,24 @@ A single effect fitted to the sum of two may be neither.
 from collections.abc import Sequence
 from dataclasses import replace
 
+from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import worth
-from advisor.gap.search.merit import LEAST_GAIN
+from advisor.gap.fitting.uncertainty import belief_in, worth
+from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN
 from advisor.gap.search.ranking import candidates_for, judge
-from advisor.gap.search.score import addition
+from advisor.gap.search.score import addition, price_of
+from advisor.gap.search.screen import Screen
 from advisor.gap.search.stage import Stage, only, rebuilt
 
 _CLEARLY = 20.0
 """Cost by which a pair of names must beat those that were found first."""
 _PROMISING = 0.5
 """Share of what the first effect brings that the screening must promise of another companion."""
+_WORTH_A_FIT = 2
+"""Likeliest candidates that are fitted where the derivatives are held at the file's."""
 _SEVERAL = 2
 """Streams that are late, from which on the command may be, and another stream early."""
 
@@ -78,7 +82,51 @@ def one_early(problem: Problem, stages: list[Stage], variants: Sequence[Variant]
     best = min(pairs, key=lambda f: f.cost, default=last)
     if best.cost > last.cost - _CLEARLY:
         return stages
-    names = [effect.effect for effect in best.point.effects[-2:]]
-    # What was thought of beside the names that these replace is refuted with them.
-    again = rebuilt(problem, first, names, best, dict.fromkeys(names, ()), ())
+    return _replaced(problem, first, best)
+
+
+def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
+    """Other names that explain as much with the file's own derivatives, where those found need other ones.
+
+    Two effects may look like one effect and wrong numbers. Held at the file's numbers, each shows as it is.
+    """
+    names, last = sum(s.added is not None for s in stages), stages[-1].fitted
+    if not names or problem.believed is None:
+        return stages
+    independent = worth(problem, last.innovations)
+    as_filed = replace(last, point=replace(last.point, derivatives=problem.believed))
+    believed = belief_in(problem, last, independent)
+    if belief_in(problem, as_filed, independent) - believed < LEAST_BELIEF:
+        return stages
+    found = _held_at_the_file(replace(problem, holds_the_file=True), stages[0].fitted, variants, names + 1)
+    others = fit(problem, found.point, found.noise, tolerance=0.5, beaten_by=last.cost + 2.0 * LEAST_GAIN)
+    gained = belief_in(problem, others, independent) - believed + 0.5 * (last.cost - others.cost)
+    priced = _price_of_all(others, independent) - _price_of_all(last, independent)
+    return _replaced(problem, stages[0], others) if gained - priced > LEAST_GAIN else stages
+
+
+def _held_at_the_file(held: Problem, plain: Fitted, variants: Sequence[Variant], names: int) -> Fitted:
+    """The model built up by so many names at most, the derivatives held."""
+    assert held.believed is not None
+    model = fit(held, replace(plain.point, derivatives=held.believed), plain.noise, tolerance=0.5)
+    for _ in range(names):
+        present = {effect.effect for effect in model.point.effects}
+        others = [v for v in variants if v.effect not in present]
+        likeliest = Screen(held, model).try_all(others, lambda _: 0.0)[:_WORTH_A_FIT]
+        fits = [fit(held, s.point, s.noise, tolerance=0.5) for s in likeliest]
+        best = min(fits, key=lambda f: f.cost, default=model)
+        if best.cost > model.cost - _CLEARLY:
+            break
+        model = best
+    return model
+
+
+def _price_of_all(fitted: Fitted, independent: FloatArray) -> float:
+    return sum(price_of(v, independent) for v in fitted.point.effects if not v.always)
+
+
+def _replaced(problem: Problem, first: Stage, model: Fitted) -> list[Stage]:
+    """Stages of the names of another model; what was thought of beside those that they replace is refuted."""
+    names = [effect.effect for effect in model.point.effects if not effect.always]
+    again = rebuilt(problem, first, names, model, dict.fromkeys(names, ()), ())
     return [replace(s, considered=(s.added,) if s.added is not None else ()) for s in again]

@@ -32,12 +32,14 @@ _GROSS = 300.0
 _LEFT = 2.0
 """How many times an instrument's white noise the best must leave, if its other starts are to be tried ..."""
 _SEVERAL = 2
-"""... and how many it must have to have more than one optimum."""
+"""... and how many of them, and of numbers, it must have to have more than one optimum."""
 _WILD = 4.0
 """Power that a manoeuvre leaves, beside the median of all, from which on it may nearly have diverged."""
 _HIDES = frozenset({"actuator_deadband"})
 """Effects that are tried then, too, while nothing was named: where most of the motion is missing, other
 numbers imitate it so well that no screening leads to them."""
+_MISSING = 0.03
+"""Share of each channel's peak that the best leaves where so much is missing."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
 """Full fits then, and the share of the best promise that earns one."""
@@ -103,7 +105,9 @@ def judge(
     first, *rest = best.values()
     explained = 0.5 * (before.cost - first.fitted.cost)
     if explained > _GROSS and np.any(first.held_out.mean_square > (_LEFT * problem.flights.white) ** 2):
-        hidden = _HIDES if is_plain(before) else frozenset()
+        left = np.sqrt(first.held_out.mean_square)
+        missing = is_plain(before) and np.all(left > _MISSING * problem.flights.peaks)
+        hidden = _HIDES if missing else frozenset()
         alike = [c.variant for c in candidates if c.variant.effect in {first.effect, *hidden}]
         same = [c.variant for c in candidates if c.variant.effect == first.effect]
         again = [
@@ -128,7 +132,7 @@ def _restarted(problem: Problem, before: Fitted, best: Fitted, variants: Sequenc
     What is gross has bent the plain model's derivatives: searches begin with the aircraft file's, too.
     """
     fits: list[Fitted] = []
-    several = [v for v in variants if len(v.starts) >= _SEVERAL and v.sides is None]
+    several = [v for v in variants if min(len(v.starts), len(v.names)) >= _SEVERAL and v.sides is None]
     for variant in (described for v in several for described in (v, *v.likewise)):
         same = variant.effect == best.point.effects[-1].effect
         for start in variant.starts:

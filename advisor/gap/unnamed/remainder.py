@@ -30,9 +30,11 @@ _OF_THE_NUMBERS = 0.01
 _OF_ANY_AIRFRAME = frozenset(
     {"nonlinear_lift", "nonlinear_pitching_moment", "elevator_nonlinearity", "mass_change", "cg_shift"}
 )
-_LITTLE, _NEAR_THE_NOISE = 0.01, 2.0
-"""What every airframe has: bends, and fuel that is burnt; the RMS that they must change of some channel's
-peak in some manoeuvre to be a cause, and the gap from which on they are one."""
+_BESIDE_IT = frozenset({"thrust_moment"})
+_LITTLE, _NEAR_THE_NOISE = 0.012, 2.0
+"""What every airframe has: bends, and fuel that is burnt; beside them thrust that misses the centre of
+gravity; the RMS that they must change of some channel's peak in some manoeuvre to be a cause, and the gap
+from which on they are one."""
 _BENT_BY_INPUT = frozenset({"moment_equation", "force_equation", "air"})
 """Where that seems to be: what an instrument does is told by other signs."""
 _BENDS = frozenset({"actuator_backlash", "actuator_deadband"})
@@ -116,20 +118,27 @@ def is_of_no_use(
     return len(stages) > 1 and now > (1.0 - _USE) * was
 
 
-def bends_as_any(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> bool:
-    """Whether all that was named are bends so small that linear equations hardly describe a motion better.
+def bends_as_any(
+    problem: Problem, stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray
+) -> bool:
+    """Whether what was named first is a bend, and all names are next to nothing to simulator and file.
 
-    That is below the noise, and below what any aircraft bends by; but for what brings derivatives back to the
-    file's. ``floor`` as for ``remainder``.
+    Linear equations hardly describe a motion better, and any aircraft bends by as much; but for what brings
+    derivatives back to the file's. Arguments as for ``is_of_no_use``.
     """
     named = [s.added for s in stages if s.added is not None]
-    if not named or any(j.effect not in _OF_ANY_AIRFRAME or j.belief >= LEAST_BELIEF for j in named):
+    bends = {j.effect for j in named} & _OF_ANY_AIRFRAME
+    if not bends or named[0].effect not in _OF_ANY_AIRFRAME | _BESIDE_IT:
         return False
-    if whole_gap(stages[0].held_out.mean_square, floor) > _NEAR_THE_NOISE:
+    plain, last = stages[0].held_out, stages[-1].held_out
+    if any(j.belief >= LEAST_BELIEF for j in named) or whole_gap(plain.mean_square, floor) > _NEAR_THE_NOISE:
         return False
-    lefts = zip(stages[0].held_out.left, stages[-1].held_out.left, strict=True)
-    changes = np.sqrt(mean_squares(problem, [a - b for a, b in lefts]))
-    return bool(np.all(changes < _LITTLE * problem.flights.peaks))
+    for before in (plain, plain if file_model is None else file_model):
+        lefts = zip(before.left, last.left, strict=True)
+        changes = np.sqrt(mean_squares(problem, [a - b for a, b in lefts]))
+        if np.any(changes >= _LITTLE * problem.flights.peaks):
+            return False
+    return True
 
 
 def only_numbers(

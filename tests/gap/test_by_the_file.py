@@ -1,0 +1,39 @@
+"""Two effects that look like another one and wrong numbers show as they are beside the file's numbers."""
+
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.diagnose import diagnose
+from tests.gap.generator import Setup, fly
+
+
+@pytest.fixture(scope="module")
+def plane() -> Aircraft:
+    """The aircraft file of what is flown, as a flight with nothing wrong tells it."""
+    sound = diagnose(fly(Setup(maneuvers=6, noise=0.005, seed=24)), Aircraft())
+    model = {name: number.value for name, number in sound.model.items()}
+    return Aircraft(model=model, reference_airspeed_m_s=sound.reference_airspeed_m_s)
+
+
+@pytest.mark.parametrize(
+    ("late_s", "arm_m"), [(0.05, 0.8), pytest.param(0.06, -0.8, marks=pytest.mark.study)]
+)
+def test_a_late_vane_and_an_accelerometer_off_its_place_are_no_scale_with_a_lag_and_wrong_numbers(
+    plane, late_s, arm_m
+):
+    flown = fly(Setup(maneuvers=6, skew={"alpha": late_s}, switches={"acc_arm": arm_m}, noise=0.01, seed=7))
+    found = diagnose(flown, plane)
+    present = {c.effect: c for c in found.causes if c.present}
+    assert set(present) == {"alpha_skew", "accelerometer_offset"}
+    assert present["alpha_skew"].parameters["skew_s"].value == pytest.approx(late_s, abs=0.004)
+    assert present["accelerometer_offset"].parameters["arm_m"].value == pytest.approx(arm_m, abs=0.05)
+
+
+def test_numbers_that_are_wrong_beside_an_effect_stay_wrong(plane):
+    wrong = Aircraft(
+        model={**plane.model, "M_delta_e": 0.75 * plane.model["M_delta_e"]},
+        reference_airspeed_m_s=plane.reference_airspeed_m_s,
+    )
+    found = diagnose(fly(Setup(maneuvers=6, switches={"delay": 0.06}, noise=0.01, seed=7)), wrong)
+    assert [c.effect for c in found.causes if c.present] == ["transport_delay"]
+    assert found.causes[0].parameters["delay_s"].value == pytest.approx(0.06, abs=0.003)
