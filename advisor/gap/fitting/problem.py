@@ -10,14 +10,15 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.belief import HELD, NARROW, WIDE, pull_of
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.records.flights import Flight, Flights
-from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES, SKEWS
-from advisor.gap.simulator.reading import delayed, lane, packed, read_rows
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, NUISANCES, SKEWS
+from advisor.gap.simulator.reading import delayed, filtered, lane, packed, read_rows
 from advisor.gap.simulator.simulate import LANES, simulate
 from advisor.gap.simulator.surface import surfaces
 
 _NO_DISTURBANCE = np.zeros((4, 0))
 _SKEW_ENTRIES = np.array([INDEX[name] for name in SKEWS])
-_FLOWN_ENTRIES = np.array([i for i, name in enumerate(ENTRIES) if name not in SKEWS])
+_FILTER_ENTRIES = np.array([INDEX[name] for name in FILTER])
+_FLOWN_ENTRIES = np.array([i for i, name in enumerate(ENTRIES) if name not in (*SKEWS, *FILTER)])
 
 
 @dataclass(frozen=True)
@@ -161,7 +162,7 @@ class Problem:
     def fly_and_read(self, flight: Flight, p: FloatArray) -> FloatArray:
         """Shape (rows, k): one manoeuvre as every row of ``p``, shape (k, entries), says it was measured.
 
-        Rows that differ in their channels' skews alone are flown once.
+        Rows that differ in what instruments do to the motion's stamps or course alone are flown once.
         """
         places: dict[bytes, int] = {}
         flown = [places.setdefault(row.tobytes(), len(places)) for row in p[:, _FLOWN_ENTRIES]]
@@ -169,7 +170,9 @@ class Problem:
         return self._read(flight, self.fly_all(flight, p[first]), np.array(flown), p)
 
     def _read(self, flight: Flight, packs: FloatArray, flown: np.ndarray, p: FloatArray) -> FloatArray:
-        skews = p[:, _SKEW_ENTRIES]
+        skews, filters = p[:, _SKEW_ENTRIES], p[:, _FILTER_ENTRIES]
+        if np.any(filters[:, 0] > 0.0):
+            packs, flown = filtered(packs, flight.h, flown, filters), np.arange(len(p))
         return np.asarray(read_rows(packs, flight.h, flight.stamps, flight.output, flown, skews))
 
     def fly(self, flight: Flight, p: FloatArray) -> FloatArray:

@@ -37,6 +37,8 @@ EFFECT_ENTRIES = (
     "speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s",
     # by how much the true air speed is above the one that is read, in all manoeuvres
     "speed_scale",
+    # a filter 1/(1 + T p + c T² p²) in one instrument: its T and c, and which output it is in
+    "filter_lag_s", "filter_shape", "filter_output",
 )  # fmt: skip
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}
@@ -45,6 +47,8 @@ OUTPUTS = ("alpha", "q", "a_z", "theta")
 """What is simulated and compared, in this order."""
 SKEWS = ("alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s")
 """Entry that shifts the stamps of each output."""
+FILTER = ("filter_lag_s", "filter_shape", "filter_output")
+"""Entries that filter one output."""
 
 SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST, TURN = range(7)
 """Rows of the slow inputs, one value a step."""

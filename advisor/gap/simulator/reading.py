@@ -96,6 +96,50 @@ def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
     return out
 
 
+@njit(cache=True, error_model="numpy")
+def _passed(out: complex, before: complex, here: complex, steps: complex, decay: complex) -> complex:
+    """What a pole passes on at the end of a step in which its input moves linearly."""
+    trail = steps * (here - before)
+    return here - trail + decay * (out - before + trail)
+
+
+@njit(cache=True, error_model="numpy")
+def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray) -> FloatArray:
+    """Simulations with one output of each behind a filter 1/(1 + T p + c T² p²), as one pack to read.
+
+    Parameters
+    ----------
+    packs, h, flown
+        As ``read_rows`` takes them.
+    filters
+        Shape (k, 3): of each column T in s, by which a ramp is late, c (0: first order, 1/2: Butterworth's),
+        and the place of the output. No T: no filter.
+    """
+    k, n = len(flown), packs.shape[1]
+    out = np.empty((1, n, 4, k))
+    for j in range(k):
+        pack, lane_of = flown[j] // packs.shape[3], flown[j] % packs.shape[3]
+        for i in range(n):
+            for c in range(4):
+                out[0, i, c, j] = packs[pack, i, c, lane_of]
+        late, shape, c = filters[j, 0], max(filters[j, 1], 1e-3), int(filters[j, 2])
+        if late <= 0.0:
+            continue
+        # Two poles, one behind the other: a pair of conjugates below critical damping.
+        apart = np.sqrt(complex(1.0 - 4.0 * shape))
+        one, other = late * (1.0 + apart) / 2.0, late * (1.0 - apart) / 2.0
+        first, second = np.exp(-h / one), np.exp(-h / other)
+        before = complex(out[0, 0, c, j])
+        middle = last = before
+        for i in range(1, n):
+            here = complex(out[0, i, c, j])
+            passed = _passed(middle, before, here, one / h, first)
+            last = _passed(last, middle, passed, other / h, second)
+            before, middle = here, passed
+            out[0, i, c, j] = last.real
+    return out
+
+
 def packed(grids: Sequence[FloatArray]) -> FloatArray:
     """Series on the grid, each of shape (4, n + 1), as one pack to read."""
     return np.ascontiguousarray(np.stack(grids, axis=-1).transpose(1, 0, 2))[None]

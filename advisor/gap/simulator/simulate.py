@@ -57,6 +57,7 @@ LANES = 8
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, A_Z_SCALE, THETA_SCALE,
     A_Z_READ2, A_Z_READ3, ALPHA_READ2, ALPHA_READ3, Q_PULL, Q_PULL2,
     SPEED_LEVEL, SPEED_SLOPE, SPEED_BOW, SPEED_SCALE,
+    FILTER_LAG, FILTER_SHAPE, FILTER_OUTPUT,
 ) = range(len(ENTRIES))  # fmt: skip
 # Rows of a pack behind the driving numbers: what follows from them once, the state, what a step hands on.
 (

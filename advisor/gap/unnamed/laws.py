@@ -2,8 +2,9 @@
 
 α and q may be scaled by name; a_z and θ may not, no reading may be bent, and no gyro feel an acceleration.
 A moment may bend by name with the deflection and with α, but not with the pitch rate, nor with products. A
-servo may lag or run at its limit, but neither overshoot nor meet a stop. Lift may bend and come late, but not
-come back another way than it went. Ice takes of the wing and the elevator, but nothing of the elevator alone.
+servo may lag or run at its limit, but neither overshoot nor meet a stop. α may lag, other channels be late,
+but not rounded. Lift may bend and come late, but not come back another way than it went. Ice takes of the
+wing and the elevator, but nothing of the elevator alone.
 """
 
 from collections.abc import Sequence
@@ -16,7 +17,7 @@ from advisor.gap.candidates.between import steps_in
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 from advisor.gap.search.merit import Judged
-from advisor.gap.simulator.layout import INDEX
+from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS
 
 
 def _scale(name: str, block: str, channel: str) -> Variant:
@@ -35,17 +36,34 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
     )  # fmt: skip
 
 
+def _filter(block: str, channel: str) -> Variant:
+    """A filter of first or second order that nobody compensates: late, and rounded besides."""
+
+    def pass_through(p: FloatArray, values: Values, _: Flights) -> None:
+        p[:, [INDEX[name] for name in FILTER]] = (*values, OUTPUTS.index(channel))
+
+    return Variant(
+        f"{channel}{_FILTERED}", block, ("lag_s", "shape"), ((0.03, 0.5), (0.08, 0.5), (0.08, 0.05)),
+        (5e-4, 0.01), ((0.005, 0.6), (0.0, 1.0)), 0.0, apply_with=pass_through,
+    )  # fmt: skip
+
+
 _PULLED, _STOP, _RINGS, _MEMORY = "gyro_pulled", "surface_stop", "servo_rings", "lift_memory"
+_FILTERED = "_filtered"
 _WEAKER = "elevator_loss"
 PLAIN = frozenset({_PULLED, _STOP, _RINGS})
 """Laws that leave little where they are the truth: what they resemble is of another kind."""
 _TRIMMED_RAD = 0.002
 """Nearest to its trim that a surface may be stopped."""
 _READINGS = {
-    "a_z": (_curve("accelerometer_curve", "accelerometer", "a_z", 5.0),),
+    "a_z": (
+        _curve("accelerometer_curve", "accelerometer", "a_z", 5.0),
+        _filter("accelerometer", "a_z"),
+    ),
     "alpha": (_curve("alpha_curve", "alpha_sensor", "alpha", 0.05),),
-    "theta": (_scale("attitude_scale", "attitude_sensor", "theta"),),
+    "theta": (_scale("attitude_scale", "attitude_sensor", "theta"), _filter("attitude_sensor", "theta")),
     "q": (
+        _filter("pitch_rate_sensor", "q"),
         # IEEE Std 1431: drift that goes with acceleration, and with its square.
         Variant(
             _PULLED,
@@ -82,6 +100,10 @@ _SAID = {
     _MEMORY: "The lift is another on the way up than on the way down: a stall that lets go late.",
     _WEAKER: "In flight the elevator's power changed by {percent:+.0f} %: a horn slipped, or a part is gone.",
     _PULLED: "The pitch rate feels the acceleration.",
+    **{
+        f"{channel}{_FILTERED}": f"{what} passes a filter: it is {{ms:.0f}} ms late, and rounded."
+        for channel, what in (("q", "The pitch rate"), ("a_z", "The acceleration"), ("theta", "The attitude"))
+    },
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
 }
@@ -149,4 +171,5 @@ def laws_for(flights: Flights) -> list[Variant]:
 def said(law: Judged) -> str:
     """What the law is, and what else would look like it."""
     degrees = " and ".join(f"{np.degrees(value):.1f}" for value in law.value)
-    return _SAID[law.effect].format(percent=100.0 * float(law.value[0]), degrees=degrees)
+    first = float(law.value[0])
+    return _SAID[law.effect].format(percent=100.0 * first, ms=1e3 * first, degrees=degrees)

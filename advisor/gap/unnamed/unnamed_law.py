@@ -68,7 +68,8 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
     independent = worth(problem, fitted.innovations)
     bent = addition(problem, plain, held, fitted, law.effect, independent)
-    named = _gain_of_all(problem, stages)
+    # What one sample is worth depends on the fit that says so: both are held against the same.
+    named = _gain_of_all(problem, stages, independent)
     if not bent.worth_naming or bent.gain < max(_CERTAIN, named + _LIKELIER):
         return None
     leaves, had = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
@@ -90,13 +91,12 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     return Leftover(block, share, ((block, 1.0), *ranking), note=said(bent))
 
 
-def _gain_of_all(problem: Problem, stages: list[Stage]) -> float:
+def _gain_of_all(problem: Problem, stages: list[Stage], independent: FloatArray) -> float:
     """What the named effects bring together, as ``Judged.gain`` counts; 0 without any."""
     first, last = stages[0], stages[-1]
     named = [s.added for s in stages if s.added is not None]
     if not named:
         return 0.0
-    independent = worth(problem, last.fitted.innovations)
     likelihood = log_likelihood_gained(first.fitted, first.held_out, last.fitted, last.held_out, independent)
     likelihood += 0.5 * (problem.strangeness(first.fitted.point) - problem.strangeness(last.fitted.point))
     likelihood += 0.5 * (price_of_edges(problem, first.fitted) - price_of_edges(problem, last.fitted))
