@@ -132,7 +132,7 @@ def test_a_servo_that_is_well_damped_keeps_its_name(switches):
     "switches",
     [
         pytest.param({"cl_a2": -9.0}, marks=pytest.mark.study),
-        pytest.param({"cl_a3": -120.0}, marks=pytest.mark.study),
+        pytest.param({"cl_a3": -160.0}, marks=pytest.mark.study),
         {"cm_a2": 4.0},
         pytest.param({"kink_at": 0.12}, marks=pytest.mark.study),
     ],

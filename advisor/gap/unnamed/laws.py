@@ -48,10 +48,10 @@ def _filter(block: str, channel: str) -> Variant:
     )  # fmt: skip
 
 
-_PULLED, _STOP, _RINGS, _MEMORY = "gyro_pulled", "surface_stop", "servo_rings", "lift_memory"
+_PULLED, STOP, _RINGS, _MEMORY = "gyro_pulled", "surface_stop", "servo_rings", "lift_memory"
 _FILTERED = "_filtered"
 _WEAKER = "elevator_loss"
-PLAIN = frozenset({_PULLED, _STOP, _RINGS})
+PLAIN = frozenset({_PULLED, STOP, _RINGS})
 """Laws that leave little where they are the truth: what they resemble is of another kind."""
 _TRIMMED_RAD = 0.002
 """Nearest to its trim that a surface may be stopped."""
@@ -95,7 +95,7 @@ _SAID = {
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
     "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
-    _STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no further.",
+    STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no further.",
     _RINGS: "The surface overshoots its command: a servo of second order that is hardly damped.",
     _MEMORY: "The lift is another on the way up than on the way down: a stall that lets go late.",
     _WEAKER: "In flight the elevator's power changed by {percent:+.0f} %: a horn slipped, or a part is gone.",
@@ -129,7 +129,7 @@ def _stops(flights: Flights) -> list[Variant]:
             continue
         variants.append(
             Variant(
-                _STOP, "input", entries, tuple(tuple(x * m for m in most) for x in (0.5, 0.8)),
+                STOP, "input", entries, tuple(tuple(x * m for m in most) for x in (0.5, 0.8)),
                 (1e-3,) * len(entries), tuple((_TRIMMED_RAD, 1.5 * m) for m in most), 0.0,
                 apply_with=partial(stopped, entries),
             )

@@ -24,7 +24,7 @@ from advisor.gap.search.score import (
 )
 from advisor.gap.search.screen import Screen, penalty
 from advisor.gap.search.stage import Stage
-from advisor.gap.unnamed.laws import PLAIN, laws_for, said
+from advisor.gap.unnamed.laws import PLAIN, STOP, laws_for, said
 from advisor.gap.unnamed.leftover import Leftover
 
 _CERTAIN = 30.0
@@ -70,16 +70,17 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     bent = addition(problem, plain, held, fitted, law.effect, independent)
     # What one sample is worth depends on the fit that says so: both are held against the same.
     named = _gain_of_all(problem, stages, independent)
-    if not bent.worth_naming or bent.gain < max(_CERTAIN, named + _LIKELIER):
+    is_stop = law.effect == STOP and _begins_beyond_the_trim(stages)
+    if not bent.worth_naming or bent.gain < max(_CERTAIN, named + (-_LIKELIER if is_stop else _LIKELIER)):
         return None
     leaves, had = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
     if np.mean(leaves < had) < _IN_MOST:
         return None
     alike = difference(problem, stages[-1].held_out, bent.held_out) < bent.least
-    if alike and sum(s.added is not None for s in stages) < _SEVERAL:
+    if alike and not is_stop and sum(s.added is not None for s in stages) < _SEVERAL:
         # Next to the same motion as what was named: one name stays, several in concert are no likelier.
         return None
-    if len(stages) > 1 and _is_another_matter(problem, stages, bent, independent):
+    if len(stages) > 1 and not is_stop and _is_another_matter(problem, stages, bent, independent):
         return None
     left = bent.held_out.mean_square / held.mean_square
     if law.effect in PLAIN and np.min(left) > _LEAVES:
@@ -89,6 +90,15 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
     share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))
     return Leftover(block, share, ((block, 1.0), *ranking), note=said(bent))
+
+
+def _begins_beyond_the_trim(stages: list[Stage]) -> bool:
+    """Whether the one name is a dead band that no trim lies in: its far edge is a guess, and it a stop."""
+    named = [s.added for s in stages if s.added is not None]
+    if [judged.effect for judged in named] != ["actuator_deadband"]:
+        return False
+    half_width, neutral = named[0].value[:2]
+    return bool(abs(neutral) > half_width)
 
 
 def _gain_of_all(problem: Problem, stages: list[Stage], independent: FloatArray) -> float:
