@@ -32,7 +32,7 @@ class Marks:
             self._weights.append(w)
             self.rows += len(w)
             both = np.vstack([block.own * w[:, None], np.diag(np.sqrt(block.prior))])
-            self._own.append(np.linalg.qr(both / np.linalg.norm(both, axis=0))[0])
+            self._own.append(np.linalg.qr(both / (np.linalg.norm(both, axis=0) + 1e-300))[0])
             shared.append(self._freed_of_own(i, block.shared * w[:, None]))
         stacked = np.concatenate(shared)
         late = _latency_at(fitted)

@@ -5,6 +5,7 @@ A single effect fitted to the sum of two may be neither.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
@@ -102,7 +103,12 @@ def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Varian
     others = fit(problem, found.point, found.noise, tolerance=0.5, beaten_by=last.cost + 2.0 * LEAST_GAIN)
     gained = belief_in(problem, others, independent) - believed + 0.5 * (last.cost - others.cost)
     priced = _price_of_all(others, independent) - _price_of_all(last, independent)
-    return _replaced(problem, stages[0], others) if gained - priced > LEAST_GAIN else stages
+    if gained - priced < LEAST_GAIN:
+        return stages
+    again = _replaced(problem, stages[0], others)
+    # One of them alone may throw the model far off: then the names do not stand one after the other.
+    falls = all(after.fitted.cost < before.fitted.cost for before, after in pairwise(again))
+    return again if falls else stages
 
 
 def _held_at_the_file(held: Problem, plain: Fitted, variants: Sequence[Variant], names: int) -> Fitted:
