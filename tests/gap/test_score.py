@@ -150,7 +150,9 @@ def test_where_an_effect_is_stays_where_only_manoeuvres_kept_out_tell_of_it():
     shared[-1] = 0.01
     told = list(fitted.linear)
     for i in (1, 2, 4, 5):
-        told[i] = replace(told[i], shared=told[i].shared * (np.arange(len(shared)) < len(shared) - 1))
+        columns = told[i].columns.copy()
+        columns[:, told[i].m + len(shared) - 1] = 0.0
+        told[i] = replace(told[i], columns=columns)
     above = replace(fitted, point=fitted.point.moved(shared, fitted.point.own), linear=tuple(told))
     size = replace(variant, places=())
     as_size = replace(above, point=replace(above.point, effects=(*above.point.effects[:-1], size)))

@@ -9,7 +9,7 @@ from scipy.signal import butter, lfilter, sosfiltfilt
 from advisor.aircraft import PARAMETERS, Aircraft, Alpha
 from advisor.gap.candidates.between import shift_moments
 from advisor.gap.diagnose import diagnose
-from advisor.gap.fitting.belief import log_belief, pull_of
+from advisor.gap.fitting.belief import WIDE, log_belief, pull_of
 from advisor.gap.noise.probes import KNOTS_S
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.records.prepare import prepare
@@ -145,7 +145,7 @@ def test_the_files_derivatives_tell_a_moment_of_the_angles_rate_from_three_other
 def test_a_derivative_of_nothing_in_the_file_has_a_size_that_can_be_weighed(which):
     believed = BELIEVED.copy()
     believed[which] = 0.0
-    assert np.all(np.isfinite(pull_of(believed)))
+    assert np.all(np.isfinite(pull_of(believed, WIDE)))
 
 
 def test_derivatives_near_the_files_are_believed_more_than_others_and_unknown_ones_neither_way():

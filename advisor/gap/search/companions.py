@@ -108,7 +108,8 @@ def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Varian
     again = _replaced(problem, stages[0], others)
     # One of them alone may throw the model far off: then the names do not stand one after the other.
     falls = all(after.fitted.cost < before.fitted.cost for before, after in pairwise(again))
-    return again if falls else stages
+    named = all(s.added is None or s.added.worth_naming for s in again)
+    return again if falls and named else stages
 
 
 def _held_at_the_file(held: Problem, plain: Fitted, variants: Sequence[Variant], names: int) -> Fitted:
