@@ -45,7 +45,7 @@ def later(by):
         pytest.param("q", scaled(0.85), "pitch_rate_scale", "scale", -0.15, marks=pytest.mark.study),
         ("q", shifted(np.radians(1.2)), "pitch_rate_bias", "bias_rad_s", np.radians(1.2)),
         pytest.param("a_z", later(0.08), "accelerometer_skew", "skew_s", 0.08, marks=pytest.mark.study),
-        ("alpha", later(0.08), "alpha_skew", "skew_s", 0.09),
+        pytest.param("alpha", later(0.08), "alpha_skew", "skew_s", 0.09, marks=pytest.mark.study),
         ("alpha", shifted(np.radians(1.5)), "alpha_bias", "bias_rad", np.radians(1.5)),
     ],
 )

@@ -53,6 +53,7 @@ def test_lift_that_builds_up_late_takes_the_moment_along_or_not(moment):
     assert ("with_moment" in sizes) == bool(moment)
 
 
+@pytest.mark.study
 def test_lift_that_hardly_comes_at_all_at_first_is_found_from_the_aircraft_files_numbers(plane):
     late = {"lift_lag": 0.12, "lift_lag_share": 0.85, "moment_lags": 1.0}
     found = diagnose(fly(Setup(maneuvers=6, switches=late, noise=0.005, seed=15)), plane)
@@ -101,6 +102,7 @@ def test_stability_that_drops_by_a_third_with_nothing_else_is_the_centre_of_grav
     assert found.model["M_0"].value == pytest.approx(before, rel=0.03)
 
 
+@pytest.mark.study
 def test_a_centre_of_gravity_that_moves_for_a_while_and_stays_there_is_one_change_and_no_ice():
     course = (0.0, 0.0, 0.0, -0.11, -0.22, -0.33, -0.33, -0.33)
     maneuvers = fly(Setup(maneuvers=8, cg_course=course, seed=17))

@@ -212,6 +212,7 @@ def test_without_an_air_speed_in_the_log_speeds_that_differ_between_manoeuvres_a
     assert any("off by the motion" in note for note in found.notes)
 
 
+@pytest.mark.study
 def test_speeds_that_nothing_measured_come_before_numbers_that_are_a_little_off_besides():
     setup = Setup(maneuvers=8, speed_change=0.2, seed=54)
     model = {

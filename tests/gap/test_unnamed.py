@@ -283,6 +283,7 @@ def test_a_record_filtered_on_the_ground_is_told_from_noise_and_from_moving_air(
     assert not is_smoothed([air])
 
 
+@pytest.mark.study
 def test_a_record_that_was_filtered_beside_moving_air_names_the_air_alone():
     rng, sections = np.random.default_rng(61), butter(4, 3.0, fs=50.0, output="sos")
     flown = []

@@ -112,8 +112,8 @@ def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Sh
     if found is None:
         return None
     # An instrument that is late, or indicates less than the true speed, feigns wind as well.
-    as_it_may_read = (_paths_of(maneuvers, true_over_read, late_s) for late_s in _LATE_S)
-    return _shear_of(min(as_it_may_read, key=_unexplained))
+    left = [_unexplained(_paths_of(maneuvers, true_over_read, late_s, _LATE_S[-1])) for late_s in _LATE_S]
+    return _shear_of(_paths_of(maneuvers, true_over_read, _LATE_S[int(np.argmin(left))]))
 
 
 def _shear_of(paths: Sequence[_Path]) -> Shear | None:
@@ -173,8 +173,11 @@ def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf
     return Shear(gradient, std, gradient * float(np.sum(products)) / max(power, 1e-300), n)
 
 
-def _paths_of(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0, late_s: float = 0.0) -> list[_Path]:
-    return [p for p in (_path_of(m, true_over_read, late_s) for m in maneuvers) if p is not None]
+def _paths_of(
+    maneuvers: Sequence[Maneuver], true_over_read: float = 1.0, late_s: float = 0.0, skipped_s: float = 0.0
+) -> list[_Path]:
+    found = (_path_of(m, true_over_read, late_s, skipped_s) for m in maneuvers)
+    return [p for p in found if p is not None]
 
 
 def _unexplained(paths: Sequence[_Path]) -> float:
@@ -183,8 +186,13 @@ def _unexplained(paths: Sequence[_Path]) -> float:
     return power * (1.0 - max(_gradient(paths).share, 0.0))
 
 
-def _path_of(maneuver: Maneuver, true_over_read: float = 1.0, late_s: float = 0.0) -> _Path | None:
-    """What a manoeuvre tells, by an instrument that is late; None without channels, or with few samples."""
+def _path_of(
+    maneuver: Maneuver, true_over_read: float = 1.0, late_s: float = 0.0, skipped_s: float = 0.0
+) -> _Path | None:
+    """What a manoeuvre tells, by an instrument that is late; None without channels, or with few samples.
+
+    ``skipped_s`` of its beginning are left out: what delays leave is compared over the same samples.
+    """
     found = maneuver.channels
     if not all(name in found and len(found[name]) > _LEAST_SAMPLES for name in _NEEDED):
         return None
@@ -197,7 +205,7 @@ def _path_of(maneuver: Maneuver, true_over_read: float = 1.0, late_s: float = 0.
     up, size = gravity_in_plane(theta, bank)
     climbed = integrated(t, speed * size / GRAVITY_M_S2 * np.sin(up - alpha))
     stamps = found["airspeed"].t
-    inside = (stamps >= t[0] + late_s) & (stamps <= t[-1])
+    inside = (stamps >= t[0] + max(late_s, skipped_s)) & (stamps <= t[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return None
     stamps, measured = stamps[inside], found["airspeed"].y[inside]
