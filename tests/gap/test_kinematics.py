@@ -242,6 +242,17 @@ def test_a_wind_that_all_manoeuvres_agree_on_is_plain_though_the_air_speed_is_ro
     assert few is None or not few.is_plain
 
 
+def test_a_rough_beginning_of_the_records_makes_no_air_speed_late():
+    rng, shaken = np.random.default_rng(3), []
+    for maneuver in fly(Setup(maneuvers=6, seed=51)):
+        sheared = blown(maneuver, 0.2)
+        speed = sheared.channels["airspeed"]
+        noise = np.where(speed.t - speed.t[0] < 0.9, 0.7, 0.03) * rng.standard_normal(len(speed.t))
+        channels = {**sheared.channels, "airspeed": replace(speed, y=speed.y + noise)}
+        shaken.append(replace(sheared, channels=channels))
+    assert wind_shear(shaken).gradient_per_s == pytest.approx(0.2, abs=0.02)
+
+
 @pytest.mark.parametrize("seed", [3, 4, 5])
 def test_a_vane_that_reads_gusts_is_neither_late_nor_scaled(seed):
     found = checked(gust_std=0.3, seed=seed)
