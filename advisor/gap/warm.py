@@ -4,15 +4,17 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.gap.foresight.plan import foresee_plan
-from advisor.gap.simulator.reading import differences
+from advisor.gap.simulator.reading import differences, filtered
 
 _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -50.0), strict=True))
 
 
 def warm_up() -> None:
-    """Foresee a tiny plan and compare a few samples: this runs through every compiled function here."""
+    """Foresee a tiny plan, compare and filter some samples: this runs through all that is compiled here."""
     foresee_plan(Aircraft(model=_ANY_AIRCRAFT), ("pulse", "pulse"), 50.0, 1.0)
-    differences(np.ones((4, 2)), np.ones(4), np.zeros(2, dtype=np.int64), np.ones(2))
+    none = np.zeros(2, dtype=np.int64)
+    differences(np.ones((4, 2)), np.ones(4), none, np.ones(2))
+    filtered(np.ones((1, 4, 4, 2)), 0.005, none, np.asfortranarray(np.ones((2, 3))))
 
 
 if __name__ == "__main__":

@@ -78,6 +78,7 @@ def test_moving_air_is_called_turbulence_and_not_an_effect_of_the_aircraft():
     assert found.where.block == "air"
 
 
+@pytest.mark.study
 def test_a_name_that_explains_the_gap_with_the_files_own_numbers_is_likelier_than_numbers_that_imitate_it():
     sound = diagnose(fly(Setup(maneuvers=5, noise=0.005, seed=9)), Aircraft())
     model = {name: number.value for name, number in sound.model.items()}
@@ -96,6 +97,7 @@ def test_wrong_numbers_in_the_file_are_told_from_missing_structure():
     assert found.model["M_alpha"].value == pytest.approx(-37.4, rel=0.03)
 
 
+@pytest.mark.study
 def test_what_fitted_numbers_do_does_not_pass_for_the_work_of_the_effect_beside_them():
     wrong = Aircraft(model={**MODEL, "M_alpha": 0.7 * MODEL["M_alpha"], "M_q": 1.5 * MODEL["M_q"]})
     flown = fly(Setup(maneuvers=6, q_scale=0.1, seed=41))
@@ -276,6 +278,7 @@ def test_stated_errors_of_the_terms_at_zero_angles_cover_their_scatter():
         assert 0.5 * scatter < stated < 3.0 * scatter
 
 
+@pytest.mark.study
 def test_beside_moving_air_the_sentence_says_what_the_effect_removes_and_manoeuvres_are_kept_out_too():
     flown = fly(Setup(switches={"delay": 0.06}, gust_std=0.2, maneuvers=6))
     found, apart = diagnose(flown, Aircraft()), diagnose(flown, Aircraft(), holdout=2)

@@ -48,6 +48,7 @@ def test_a_vane_that_grows_slower_is_unknown_in_the_vane(setup):
 @pytest.mark.parametrize(
     "setup", [Setup(maneuvers=8, seed=62), pytest.param(replace(HARD, seed=63), marks=pytest.mark.study)]
 )
+@pytest.mark.study
 def test_a_lag_that_is_a_third_longer_in_the_end_keeps_its_name(setup):
     found = diagnose(through_a_vane(setup, np.linspace(0.04, 0.053, 8)), Aircraft())
     assert found.verdict == "effect"

@@ -222,6 +222,7 @@ def test_an_accelerometer_that_does_not_read_in_proportion_feigns_wind_that_chan
     assert not any("wind changed" in note for note in found.notes)
 
 
+@pytest.mark.study
 def test_a_wind_that_plainly_changes_with_height_is_told_from_air_that_moves_besides():
     moving = fly(Setup(maneuvers=6, gust_std=0.5, seed=53))
     assert diagnose(moving, Aircraft()).causes[0].effect == "turbulence"

@@ -128,6 +128,7 @@ def test_of_a_gust_and_wrong_numbers_the_larger_part_of_the_gap_is_the_answer(
     assert [c.effect for c in found.causes if c.present] == ["gust"]
 
 
+@pytest.mark.study
 def test_beside_something_unknown_what_was_named_stays_with_half_its_probability():
     setup = Setup(maneuvers=6, switches={"delay": 0.06, "beat": 0.004}, seed=21)
     found = diagnose(fly(setup), Aircraft())

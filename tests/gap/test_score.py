@@ -112,7 +112,8 @@ def test_what_predicts_another_motion_keeps_its_own_likelihood(late):
     assert evened(problem, [judged, other])[0] is judged
 
 
-@pytest.mark.parametrize("arm_m", [-0.5, pytest.param(0.5, marks=pytest.mark.study)])
+@pytest.mark.study
+@pytest.mark.parametrize("arm_m", [-0.5, 0.5])
 def test_of_two_arms_that_are_one_in_the_data_the_file_tells(arm_m):
     still = diagnose(fly(Setup(maneuvers=6, seed=24)), Aircraft())
     file = Aircraft(

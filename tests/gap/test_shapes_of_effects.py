@@ -30,7 +30,10 @@ def test_flow_that_separates_within_a_degree_or_two_is_lift_that_curves_and_no_g
 
 @pytest.mark.parametrize(
     ("stall_rad", "gust_std", "seed"),
-    [(0.08, 0.0, 11), pytest.param(0.075, 0.1, 12, marks=pytest.mark.study)],
+    [
+        pytest.param(0.08, 0.0, 11, marks=pytest.mark.study),
+        pytest.param(0.075, 0.1, 12, marks=pytest.mark.study),
+    ],
 )
 def test_a_wing_that_stalls_deeply_is_known_though_a_screening_sees_little_of_the_kink(
     stall_rad, gust_std, seed

@@ -224,6 +224,7 @@ def test_speeds_that_nothing_measured_come_before_numbers_that_are_a_little_off_
     assert found.causes[0].effect == "airspeed_variation"
 
 
+@pytest.mark.study
 def test_speeds_that_nothing_measured_come_before_a_smaller_effect_besides():
     flown = without_instrument(fly(Setup(maneuvers=8, speed_change=0.25, switches={"delay": 0.015}, seed=54)))
     found = diagnose(flown, Aircraft(airspeed_m_s=UAV.speed))

@@ -108,8 +108,10 @@ def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Varian
     again = _replaced(problem, stages[0], others)
     # One of them alone may throw the model far off: then the names do not stand one after the other.
     falls = all(after.fitted.cost < before.fitted.cost for before, after in pairwise(again))
-    named = all(s.added is None or s.added.worth_naming for s in again)
-    return again if falls and named else stages
+    # Of several, those that the whole does not miss are dropped later; a single one must stand by itself.
+    named = [s.added for s in again if s.added is not None]
+    stands = len(named) > 1 or any(judged.worth_naming for judged in named)
+    return again if falls and stands else stages
 
 
 def _held_at_the_file(held: Problem, plain: Fitted, variants: Sequence[Variant], names: int) -> Fitted:
