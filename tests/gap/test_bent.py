@@ -15,7 +15,7 @@ from tests.gap.generator import UAV, Setup, fly
     ("effect", "switches", "speed_change"),
     [
         ("nonlinear_pitching_moment", {"cm_a2": 3.0}, 0.15),
-        pytest.param("nonlinear_pitching_moment", {"cm_a3": -40.0}, 0.22, marks=pytest.mark.study),
+        pytest.param("nonlinear_pitching_moment", {"cm_a3": -80.0}, 0.22, marks=pytest.mark.study),
         pytest.param("nonlinear_lift", {"cl_a3": -150.0}, 0.15, marks=pytest.mark.study),
     ],
 )
