@@ -50,9 +50,8 @@ def step_unseen(maneuver: Maneuver) -> bool:
     edges = edges_of(t, maneuver.channels["elevator"].y)
     hole = max(_HOLE_S, _HOLE * float(np.median(interval)))
     active = interval[(t[1:] > span.start_s) & (t[:-1] < span.last_step_s)]
-    return float(np.max(edges[:, 2], initial=0.0)) > hole or float(np.max(active, initial=0.0)) > max(
-        hole, _PULSE_S
-    )
+    changed, longest = np.max(edges[:, 2], initial=0.0), np.max(active, initial=0.0)
+    return bool(changed > hole or longest > max(hole, _PULSE_S))
 
 
 def _lost(t: FloatArray) -> FloatArray:
