@@ -148,7 +148,8 @@ def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver], weight: Weigh
     is_off = weight is not None and weight.is_off
     # What an accelerometer reads wrong looks like a force, too: a name for one is no other explanation.
     elsewhere = any(s.added is not None and BLOCK_OF[s.added.effect] != "force_equation" for s in e.stages)
-    if e.leftover is None and ((is_off and not elsewhere) or _reads_another_speed(e, weight)):
+    is_scaled = e.true_speed is not None and e.true_speed.is_the_accelerometers(weight)
+    if e.leftover is None and (is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight)):
         e = replace(e, leftover=Leftover("accelerometer", 1.0, (("accelerometer", 1.0),)))
     return replace(e, weight=weight if is_off else None)
 

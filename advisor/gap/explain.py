@@ -104,7 +104,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     if leftover is None and not (air is not None and air.gust):
         leftover = sloshing(problem, stages[-1].fitted)
     if leftover is None and air is None:
-        leftover = None if as_any else remainder(problem, stages, floor)
+        leftover = None if as_any else remainder(problem, stages, file_model, floor)
         needless = is_of_no_use(problem, stages, file_model, floor) or as_any
         if leftover is None and (needless or only_numbers(problem, stages, file_model, floor)):
             stages = reduced_to(problem, stages, [])

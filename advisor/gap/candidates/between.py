@@ -122,6 +122,8 @@ def _longer(
         apply_with=lambda p, v, _: course(p, v[:-2], np.clip((t - v[-2]) / v[-1], 0.0, 1.0)),
         carried=carried,
         places=("at_s", "over_s"),
+        # One that outlasts the flight is told by its rate alone, whatever the size and however long.
+        one_sided=True,
     )
     return (gradual,)
 

@@ -37,7 +37,8 @@ def variants_for(flights: Flights) -> list[Variant]:
     """Everything that can be tried: the channels it acts on are there, and its input moved."""
     # An autopilot's own estimates have passed its filters: what those delay is nobody's fault.
     least_s = _FILTERED_S if flights.alpha_is_derived else _LEAST_S
-    within = [*input.variants(flights), *sensors.variants(least_s), *timing.variants(flights, least_s)]
+    instruments = sensors.variants(least_s, flights.reference_m_s)
+    within = [*input.variants(flights), *instruments, *timing.variants(flights, least_s)]
     between = [*moment.variants(flights), *force.variants(flights)]
     return [v for v in (*within, *between) if _possible(v, flights)]
 

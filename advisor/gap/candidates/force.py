@@ -15,7 +15,7 @@ BLOCK = "force_equation"
 _DECAYS_M = (0.1, 50.0)
 """Height over which the ground's influence may decay, m: a fraction of any span to more than a span."""
 _ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
-_CURVED_LIFT = Variant(
+CURVED_LIFT = Variant(
     "nonlinear_lift",
     BLOCK,
     ("Z_alpha2", "Z_alpha3"),
@@ -52,7 +52,7 @@ _UNSTEADY_WITH_MOMENT = replace(_UNSTEADY, apply_with=_with_moment, fixed={"with
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block; those between manoeuvres depend on how many were flown."""
     return [
-        bent_in_alpha(_CURVED_LIFT, "Z_alpha", flights),
+        bent_in_alpha(CURVED_LIFT, "Z_alpha", flights),
         replace(_UNSTEADY, likewise=(_UNSTEADY_WITH_MOMENT,)),
         *_stall(flights),
         *ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES)),

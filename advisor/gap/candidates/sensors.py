@@ -6,6 +6,10 @@ from advisor.gap.candidates.variant import Variant
 
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
 """Where the search for a structural mode begins; it ends between them."""
+_LEAST_BIAS_RAD_S = 0.00175
+"""0.1 deg/s: what a rate gyro keeps after it was set to zero on the ground."""
+_LEAST_ARM_M, _OF_A_DELAY = 0.02, 0.75
+"""Arm below which none has a name, and over the speed beside the least delay."""
 
 TRUE_AIR_SPEED = Variant(
     "true_air_speed",
@@ -23,11 +27,15 @@ TRUE_AIR_SPEED = Variant(
 indicated air speed is not the true one, and a static port reads what the wing makes of the pressure there."""
 
 
-def variants(least_s: float) -> list[Variant]:
+def variants(least_s: float, speed_m_s: float) -> list[Variant]:
     """Effects of the three sensors, none later than ``least_s`` being worth a name.
+
+    Where the aircraft turns, the α of a vane ahead of the centre of gravity comes late by arm over speed, and
+    an accelerometer's place is its twin: a gyro's own filter makes three quarters of what is worth a name.
 
     A constant offset of α is judged apart, from the climb rate.
     """
+    least_arm_m = max(_LEAST_ARM_M, _OF_A_DELAY * least_s * speed_m_s)
     return [
         Variant(
             "alpha_lag",
@@ -56,7 +64,7 @@ def variants(least_s: float) -> list[Variant]:
             ((0.0,),),
             (0.02,),
             ((-20.0, 20.0),),
-            0.02,
+            least_arm_m,
             entries=("vane_arm_m",),
         ),
         Variant(
@@ -66,7 +74,7 @@ def variants(least_s: float) -> list[Variant]:
             ((0.0,),),
             (5e-4,),
             ((-0.5, 0.5),),
-            0.0003,
+            _LEAST_BIAS_RAD_S,
             entries=("q_bias",),
         ),
         Variant(
@@ -97,7 +105,7 @@ def variants(least_s: float) -> list[Variant]:
             ((0.0,),),
             (0.01,),
             ((-10.0, 10.0),),
-            0.02,
+            least_arm_m,
             entries=("imu_arm_m",),
         ),
     ]

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
+
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
@@ -25,6 +27,8 @@ _PROMISING = 0.5
 """Share of what the first effect brings that the screening must promise of another companion."""
 _WORTH_A_FIT = 2
 """Likeliest candidates that are fitted where the derivatives are held at the file's."""
+_BESIDE = 2
+"""Names from which on one of them stands beside another."""
 _SEVERAL = 2
 """Streams that are late, from which on the command may be, and another stream early."""
 
@@ -84,6 +88,33 @@ def one_early(problem: Problem, stages: list[Stage], variants: Sequence[Variant]
     if best.cost > last.cost - _CLEARLY:
         return stages
     return _replaced(problem, first, best)
+
+
+def one_number_for_ice(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
+    """More mass, or another centre of gravity, in the place of ice that was named beside something else.
+
+    Ice weakens four derivatives, each by its own share. What was not yet in the model when it was named had
+    its part in them; beside it one number may do as well, and is likelier then.
+    """
+    names = [s.added.effect for s in stages if s.added is not None]
+    if "icing" not in names or len(names) < _BESIDE:
+        return stages
+    last = stages[-1].fitted
+    k = next(i for i, effect in enumerate(last.point.effects) if effect.effect == "icing")
+    ice, values = last.point.effects[k], last.point.values[k]
+    beside = last.point.with_only([e.effect for e in last.point.effects if e.effect != "icing"])
+    weaker, when, step_s = float(np.mean(values[:4])), values[4:], ice.fixed.get("at_s")
+    starts = {"mass_change": -weaker / (1.0 + weaker), "cg_shift": float(values[ice.names.index("M_alpha")])}
+    others = [v for v in variants if v.effect in starts and v.effect not in names]
+    forms = [form for v in others for form in (v, *v.likewise)]
+    at_once = [f for f in forms if len(f.names) == 1 + len(when) and f.fixed.get("at_s") == step_s]
+    points = [beside.with_effect(form, (starts[form.effect], *when)) for form in at_once]
+    fits = [fit(problem, point, last.noise, tolerance=0.5) for point in points]
+    best = min(fits, key=lambda f: f.cost, default=last)
+    independent = worth(problem, last.innovations)
+    gained = 0.5 * (last.cost - best.cost) + belief_in(problem, best, independent)
+    gained += _price_of_all(last, independent) - belief_in(problem, last, independent)
+    return stages if gained < _price_of_all(best, independent) else _replaced(problem, stages[0], best)
 
 
 def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:

@@ -25,7 +25,8 @@ EFFECT_ENTRIES = (
     "M_q_abs", "M_q_q", "M_alpha_q", "M_alpha_delta_e",
     # force equation
     "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s", "moment_share",
-    "Z_memory", "memory_rad", "Z_h", "lift_h", "scale_m", "speed_power",
+    "Z_memory", "memory_rad", "Z_separated", "separation_rad", "attachment_rad",
+    "Z_h", "lift_h", "scale_m", "speed_power",
     # sensors
     "alpha_lag_s", "alpha_scale", "vane_arm_m", "q_bias", "q_scale",
     "mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping", "imu_arm_m",
@@ -39,6 +40,8 @@ EFFECT_ENTRIES = (
     "speed_scale",
     # a filter 1/(1 + T p + c T² p²) in one instrument: its T and c, and which output it is in
     "filter_lag_s", "filter_shape", "filter_output",
+    # a vane that friction holds until the air has turned by this much, and that turns as far as to stops
+    "vane_play_rad", "vane_stop_up_rad", "vane_stop_down_rad",
 )  # fmt: skip
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}

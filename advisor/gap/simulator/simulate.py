@@ -45,27 +45,30 @@ from advisor.gravity import GRAVITY_M_S2
 
 LANES = 8
 """Simulations in a pack: the numbers in the widest registers."""
+_ANYWHERE = 9.0
+"""Angle of a vane without stops, rad."""
 (
     Z_ALPHA, Z_Q, Z_DELTA, M_ALPHA, M_Q, M_DELTA, ALPHA_START, Q_START, Z_TRIM, M_TRIM,
     DELAY, LATENCY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL, STOP_UP, STOP_DOWN,
     M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, ENGINE_LAG, M_THRUST, WASHED, BLOWN,
     M_Q_ABS, M_Q_Q, M_ALPHA_Q, M_ALPHA_DELTA,
     Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, MOMENT_SHARE, Z_MEMORY, MEMORY,
-    Z_H, LIFT_H, SCALE_H, SPEED_POWER,
+    Z_SEPARATED, SEPARATION, ATTACHMENT, Z_H, LIFT_H, SCALE_H, SPEED_POWER,
     ALPHA_LAG, ALPHA_SCALE, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, A_Z_SCALE, THETA_SCALE,
     A_Z_READ2, A_Z_READ3, ALPHA_READ2, ALPHA_READ3, Q_PULL, Q_PULL2,
     SPEED_LEVEL, SPEED_SLOPE, SPEED_BOW, SPEED_SCALE,
-    FILTER_LAG, FILTER_SHAPE, FILTER_OUTPUT,
+    FILTER_LAG, FILTER_SHAPE, FILTER_OUTPUT, VANE_PLAY, VANE_STOP_UP, VANE_STOP_DOWN,
 ) = range(len(ENTRIES))  # fmt: skip
 # Rows of a pack behind the driving numbers: what follows from them once, the state, what a step hands on.
 (
     DOSE, ENGINE_DECAY, LIFT_DECAY, VANE_DECAY, VANE_RAMP, FADE, SWING_COS, SWING_SIN, SOFTNESS,
-    ALPHA, Q, THETA, ENGINE, LIFT, FOLLOWED, VANE_BEFORE, VANE_OUT, BEND, BEND_RATE,
+    ALPHA, Q, THETA, ENGINE, LIFT, FOLLOWED, VANE_BEFORE, VANE_OUT, SHOWN,
+    HIGHEST, LOWEST, SEPARATED, MISSING, BEND, BEND_RATE,
     AIRSPEED, RATIO, NEAR, POWER, ATTACHED, COS_ALPHA, SIN_ALPHA, GRAVITY, LIFTING, MOMENT_SLOPE,
     DEFLECTION, Z_REST, M_REST, KA, KQ, NORMAL_0, QDOT_0, ROWS,
-) = range(len(ENTRIES), len(ENTRIES) + 37)  # fmt: skip
+) = range(len(ENTRIES), len(ENTRIES) + 42)  # fmt: skip
 
 
 @njit(cache=True)
@@ -73,6 +76,21 @@ def _attached(beyond: float) -> float:
     """Share of the lift that is left, the flow separated over half the chord at 0 (Kirchhoff's flow)."""
     chord = 1.0 / (1.0 + np.exp(2.0 * beyond))
     return float(0.25 * (1.0 + np.sqrt(chord)) ** 2)
+
+
+@njit(cache=True, error_model="numpy")
+def _separate(x: FloatArray, m: int, before: float, now: float) -> None:
+    """The flow separates above one angle, and attaches again below another: a relay's memory.
+
+    What a step misses because the angle was met within it is made up for in the next one.
+    """
+    x[MISSING, m] = x[SEPARATED, m]
+    if x[SEPARATED, m] == 0.0 and now > x[SEPARATION, m]:
+        late = (now - x[SEPARATION, m]) / max(now - before, 1e-9)
+        x[SEPARATED, m], x[MISSING, m] = 1.0, 1.0 + min(late, 1.0)
+    elif x[SEPARATED, m] == 1.0 and now < x[ATTACHMENT, m]:
+        late = (x[ATTACHMENT, m] - now) / max(before - now, 1e-9)
+        x[SEPARATED, m], x[MISSING, m] = 0.0, -min(late, 1.0)
 
 
 @njit(cache=True, error_model="numpy")
@@ -103,6 +121,11 @@ def _begin(
     x[ENGINE, lane], x[LIFT, lane], x[FOLLOWED, lane] = 0.0, trim[ALPHA_TRIM], x[ALPHA, lane]
     x[VANE_OUT, lane] = x[ALPHA, lane] - p[VANE_ARM] * x[Q, lane] / speed
     x[VANE_BEFORE, lane] = x[VANE_OUT, lane]
+    x[SHOWN, lane] = x[VANE_OUT, lane]
+    x[SEPARATED, lane], x[MISSING, lane] = 0.0, 0.0
+    up, down = p[VANE_STOP_UP], p[VANE_STOP_DOWN]
+    x[HIGHEST, lane] = up if up > 0.0 else _ANYWHERE
+    x[LOWEST, lane] = -down if down > 0.0 else -_ANYWHERE
     x[BEND, lane], x[BEND_RATE, lane] = 0.0, 0.0
     x[NEAR, lane], x[POWER, lane], x[ATTACHED, lane] = 0.0, 1.0, 1.0
 
@@ -155,12 +178,13 @@ def simulate(
     level = np.cos(slow[BANK])
     d_delta, d_force, d_moment, d_air = 0.0, 0.0, 0.0, 0.0
     for k in range(packs):
-        low, stalls, other_power = False, False, False
+        low, stalls, other_power, separates = False, False, False, False
         for m in range(LANES):
             j = min(k * LANES + m, len(p) - 1)
             _begin(x, m, p[j], doses[j], h, slow[SPEED, 0], trim)
             low, stalls = low or p[j, SCALE_H] > 0.0, stalls or p[j, SHARPNESS] > 0.0
             other_power = other_power or p[j, SPEED_POWER] != 0.0
+            separates = separates or p[j, SEPARATION] != 0.0
         for i in range(n + 1):
             j = min(i, n - 1)
             a_x, cb, turning = slow[A_X, j], level[j], slow[TURN, j]
@@ -229,7 +253,7 @@ def simulate(
                         x[Z_TRIM, m]
                         + (x[Z_ALPHA, m] + (x[Z_ALPHA2, m] + x[Z_ALPHA3, m] * lagged) * lagged) * lagged
                     )
-                    wing += x[Z_MEMORY, m] * (a - x[FOLLOWED, m])
+                    wing += x[Z_MEMORY, m] * (a - x[FOLLOWED, m]) + x[Z_SEPARATED, m] * x[MISSING, m]
                     normal = x[Z_REST, m] + x[LIFTING, m] * x[ATTACHED, m] * wing + x[Z_Q, m] * q
                     ka = q + x[GRAVITY, m] + normal
                     v = x[RATIO, m]
@@ -251,7 +275,9 @@ def simulate(
                 x[VANE_OUT, m] = (x[VANE_DECAY, m] * (x[VANE_OUT, m] - x[VANE_BEFORE, m]) + vane
                                   - x[VANE_RAMP, m] * (vane - x[VANE_BEFORE, m]))  # fmt: skip
                 x[VANE_BEFORE, m] = vane
-                turned = x[VANE_OUT, m] - alpha_trim
+                shown = max(x[SHOWN, m], x[VANE_OUT, m] - x[VANE_PLAY, m])
+                x[SHOWN, m] = min(shown, x[VANE_OUT, m] + x[VANE_PLAY, m])
+                turned = min(max(x[SHOWN, m] - alpha_trim, x[LOWEST, m]), x[HIGHEST, m])
                 bent = (x[ALPHA_READ2, m] + x[ALPHA_READ3, m] * turned) * turned
                 out[k, i, 0, m] = alpha_trim + (1.0 + x[ALPHA_SCALE, m] + bent) * turned
                 a_z = (x[AIRSPEED, m] * x[NORMAL_0, m] + a_x * x[SIN_ALPHA, m]) / x[COS_ALPHA, m]
@@ -271,6 +297,9 @@ def simulate(
                 x[LIFT, m] = keep * x[LIFT, m] + (1.0 - keep) * (0.5 * (alpha + x[ALPHA, m]) + air)
                 followed = max(x[FOLLOWED, m], x[ALPHA, m] + air - x[MEMORY, m])
                 x[FOLLOWED, m] = min(followed, x[ALPHA, m] + air + x[MEMORY, m])
+                if separates:
+                    before, now = alpha + air - alpha_trim, x[ALPHA, m] + air - alpha_trim
+                    _separate(x, m, before, now)
                 off, rate, zeta = x[BEND, m] - d, x[BEND_RATE, m], x[MODE_DAMPING, m]
                 swing, turn, fade = x[SWING_COS, m], x[SWING_SIN, m], x[FADE, m]
                 x[BEND, m] = d + fade * ((swing + zeta * turn) * off + turn * rate * x[SOFTNESS, m])

@@ -1,8 +1,10 @@
-"""What was named is there, but grows or fades while the flight lasts: a vane ages, a clock runs off.
+"""What was named is there, but not the same throughout: a vane ages, a clock runs off and is set again.
 
-A named effect of an instrument, of the stamps or of the servo is one number. One that is not the same from
-the first manoeuvre to the last has no name, only a place.
+A named effect of an instrument, of the stamps or of the servo is one number. One that grows or fades from the
+first manoeuvre to the last, or is another in every one, has no name, only a place.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +13,8 @@ from advisor.gap.candidates.between import starts_of
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.fitting.step import own_eliminated
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.records.flights import Flights
 from advisor.gap.search.merit import Judged
@@ -35,6 +38,29 @@ _ALONE = 2
 """Stages where a single effect was named."""
 _FEW = 5
 """Manoeuvres from which on a course in time is no chance."""
+_SCATTER, _ITS_ERRORS = 0.2, 20.0
+"""Standard deviation between manoeuvres of a number that is another in each: over itself, for a lag that is
+taken for a delay scatters by a sixth; and its square over that of the errors."""
+_MAY_DRIFT, _SIGNIFICANT = 0.15, 5.0
+"""The same of one that may change evenly: what changes by four fifths has 0.23."""
+
+
+@dataclass(frozen=True)
+class _Scatter:
+    """How far apart the manoeuvres are in a named number."""
+
+    std: float
+    over_value: float
+    over_errors: float
+    """Square of the departures over that of their errors."""
+
+    @property
+    def may_drift(self) -> bool:
+        return self.over_value > _MAY_DRIFT and self.over_errors > _SIGNIFICANT
+
+    @property
+    def is_plain(self) -> bool:
+        return self.over_value > _SCATTER and self.over_errors > _ITS_ERRORS
 
 
 def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
@@ -44,9 +70,15 @@ def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
     for stage in stages:
         if stage.added is None or stage.added.effect not in _STEADY or len(stage.added.value) != 1:
             continue
-        said, drift = stage.added, _with_drift(problem, stages[-1].fitted, stages[-1].held_out, stage.added)
-        if not _is_plain(drift, said):
+        said, scatter = stage.added, _scatter(problem, stages[-1].fitted, stage.added)
+        if not scatter.may_drift:
             continue
+        drift = _with_drift(problem, stages[-1].fitted, stages[-1].held_out, said)
+        if not _is_plain(drift, said):
+            if not scatter.is_plain:
+                continue
+            block = said.variant.block
+            return Leftover(block, 1.0, ((block, 1.0),), note=_varies(said, scatter))
         # Of a lag and a clock that are hard to tell apart one may drift as the other does not.
         alike = [j for j in stage.considered if j.effect in _STEADY and j.variant.block != said.variant.block]
         for rival in alike if len(stages) == _ALONE else []:
@@ -94,8 +126,30 @@ def _written(variant: Variant, value: float, flights: Flights) -> FloatArray:
     return p
 
 
+def _scatter(problem: Problem, last: Fitted, named: Judged) -> _Scatter:
+    """What each manoeuvre by itself would change of a named number, all others as they are."""
+    k = last.point.effects.index(named.variant)
+    at = len(last.point.derivatives) + sum(len(values) for values in last.point.values[:k])
+    share = worth(problem, last.innovations) / counts(problem)
+    inners = [own_eliminated(block, np.sqrt(share) / last.noise)[0] for block in last.linear]
+    known = np.array([inner[at, at] for inner in inners])
+    change = np.array([inner[at, -1] for inner in inners]) / known
+    change -= np.average(change, weights=known)
+    std = float(np.sqrt(max(np.mean(change**2 - 1.0 / known), 0.0)))
+    return _Scatter(std, std / abs(float(named.value[0])), float(np.mean(known * change**2)))
+
+
+def _varies(judged: Judged, scatter: _Scatter) -> str:
+    (unit, scale), value = _unit(judged), float(judged.value[0])
+    give = f"give or take {round(scale * scatter.std)} {unit}"
+    return f"It is another in every manoeuvre: {round(scale * value)} {unit}, {give}."
+
+
+def _unit(judged: Judged) -> tuple[str, float]:
+    return ("ms", 1e3) if judged.variant.names[0].endswith("_s") else ("%", 1e2)
+
+
 def _said(judged: Judged, change: float) -> str:
-    name, value = judged.variant.names[0], float(judged.value[0])
-    unit, scale = ("ms", 1e3) if name.endswith("_s") else ("%", 1e2)
+    (unit, scale), value = _unit(judged), float(judged.value[0])
     began, ended = (round(scale * (value + half)) for half in (-0.5 * change, 0.5 * change))
     return f"It is not the same throughout: {began} {unit} at the beginning, {ended} {unit} at the end."

@@ -2,13 +2,10 @@
 
 α and q may be scaled by name; a_z and θ may not, no reading may be bent, and no gyro feel an acceleration.
 A moment may bend by name with the deflection and with α, but not with the pitch rate, nor with products. A
-servo may lag or run at its limit, but neither overshoot nor meet a stop. α may lag, other channels be late,
-but not rounded. Lift may bend and come late, but not come back another way than it went. Ice takes of the
-wing and the elevator, but nothing of the elevator alone.
+servo may lag or run at its limit, but neither overshoot nor meet a stop. α may lag, but no vane rub or meet a
+stop; other channels may be late, but not rounded. Lift may bend and come late, but not come back another way
+than it went. Ice takes of the wing and the elevator, but nothing of the elevator alone.
 """
-
-from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 
@@ -18,6 +15,8 @@ from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 from advisor.gap.search.merit import Judged
 from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS
+from advisor.gap.unnamed.stalls import FLOW_LETS_GO, LIFT_MEMORY, flow_lets_go, lift_memory
+from advisor.gap.unnamed.stops import SURFACE_STOP, VANE_STOP, surface_stops, vane_stops
 
 
 def _scale(name: str, block: str, channel: str) -> Variant:
@@ -48,19 +47,29 @@ def _filter(block: str, channel: str) -> Variant:
     )  # fmt: skip
 
 
-_PULLED, STOP, _RINGS, _MEMORY = "gyro_pulled", "surface_stop", "servo_rings", "lift_memory"
-_FILTERED = "_filtered"
+_PULLED, _RINGS, _RUBS, _FILTERED = "gyro_pulled", "servo_rings", "vane_friction", "_filtered"
 _WEAKER = "elevator_loss"
-PLAIN = frozenset({_PULLED, STOP, _RINGS})
+PLAIN = frozenset({_PULLED, SURFACE_STOP, _RINGS})
 """Laws that leave little where they are the truth: what they resemble is of another kind."""
-_TRIMMED_RAD = 0.002
-"""Nearest to its trim that a surface may be stopped."""
 _READINGS = {
     "a_z": (
         _curve("accelerometer_curve", "accelerometer", "a_z", 5.0),
         _filter("accelerometer", "a_z"),
     ),
-    "alpha": (_curve("alpha_curve", "alpha_sensor", "alpha", 0.05),),
+    "alpha": (
+        _curve("alpha_curve", "alpha_sensor", "alpha", 0.05),
+        # Dry friction: a play as that of the elevator's linkage, in the vane's bearing.
+        Variant(
+            _RUBS,
+            "alpha_sensor",
+            ("half_play_rad",),
+            ((0.002,), (0.006,), (0.02,)),
+            (1e-4,),
+            ((0.0, 0.1),),
+            0.00087,
+            entries=("vane_play_rad",),
+        ),
+    ),
     "theta": (_scale("attitude_scale", "attitude_sensor", "theta"), _filter("attitude_sensor", "theta")),
     "q": (
         _filter("pitch_rate_sensor", "q"),
@@ -95,9 +104,13 @@ _SAID = {
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
     "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
-    STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no further.",
+    _RUBS: "The vane's bearing rubs: the air turns by {degrees} deg before it follows.",
+    VANE_STOP: "The vane turns {degrees} deg from its trim and no further: it meets a stop.",
+    SURFACE_STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no "
+    "further.",
     _RINGS: "The surface overshoots its command: a servo of second order that is hardly damped.",
-    _MEMORY: "The lift is another on the way up than on the way down: a stall that lets go late.",
+    FLOW_LETS_GO: "The flow lets go at one angle and comes back at a lower one: a stall with a memory.",
+    LIFT_MEMORY: "The lift is another on the way up than on the way down: a stall that lets go late.",
     _WEAKER: "In flight the elevator's power changed by {percent:+.0f} %: a horn slipped, or a part is gone.",
     _PULLED: "The pitch rate feels the acceleration.",
     **{
@@ -107,45 +120,6 @@ _SAID = {
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
 }
-
-
-def _stops(flights: Flights) -> list[Variant]:
-    """A surface that goes no further than to a stop, one way or both, wherever each manoeuvre was trimmed."""
-    trims = np.array([flight.u_trim for flight in flights.flights])
-    middle = float(np.median(trims))
-    ways = {"stop_up_rad": 1.0, "stop_down_rad": -1.0}
-
-    def stopped(entries: Sequence[str], p: FloatArray, values: Values, _: Flights) -> None:
-        for entry, value in zip(entries, values, strict=True):
-            p[:, INDEX[entry]] = np.maximum(value + ways[entry] * (middle - trims), _TRIMMED_RAD)
-
-    def furthest(entry: str) -> float:
-        return max(float(np.max(ways[entry] * (f.u - middle))) for f in flights.flights)
-
-    variants = []
-    for entries in (tuple(ways), ("stop_up_rad",), ("stop_down_rad",)):
-        most = [furthest(entry) for entry in entries]
-        if min(most) <= _TRIMMED_RAD:
-            continue
-        variants.append(
-            Variant(
-                STOP, "input", entries, tuple(tuple(x * m for m in most) for x in (0.5, 0.8)),
-                (1e-3,) * len(entries), tuple((_TRIMMED_RAD, 1.5 * m) for m in most), 0.0,
-                apply_with=partial(stopped, entries),
-            )
-        )  # fmt: skip
-    return variants
-
-
-def lift_memory(flights: Flights) -> Variant:
-    """Lift that is another on the way up than on the way down: the elementary play of hysteresis."""
-    swing = float(np.median([np.ptp(f.outputs["alpha"].y) for f in flights.flights]))
-    return Variant(
-        _MEMORY, "force_equation", ("Z_memory", "half_width_rad"),
-        tuple((0.0, share * swing) for share in (0.1, 0.3)), (0.05, 0.01 * swing),
-        ((-20.0, 0.0), (0.01 * swing, 0.6 * swing)), 0.0,
-        entries=("Z_memory", "memory_rad"), places=("half_width_rad",),
-    )  # fmt: skip
 
 
 def _weaker(flights: Flights) -> list[Variant]:
@@ -165,7 +139,9 @@ def laws_for(flights: Flights) -> list[Variant]:
     """Every law of the readings that tell, of the moment, of the surface and of the lift."""
     readings = [flights.channels[c] for c in flights.telling]
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
-    return [*of_readings, *_MOMENTS, *_stops(flights), _RINGING, lift_memory(flights), *_weaker(flights)]
+    of_readings += vane_stops(flights) if "alpha" in readings else []
+    of_lift = [lift_memory(flights), flow_lets_go(flights)]
+    return [*of_readings, *_MOMENTS, *surface_stops(flights), _RINGING, *of_lift, *_weaker(flights)]
 
 
 def said(law: Judged) -> str:

@@ -62,14 +62,17 @@ def of_the_input(
     return replace(found, block="input", ranking=(("input", 1.0), *others))
 
 
-def remainder(problem: Problem, stages: Sequence[Stage], floor: FloatArray) -> Leftover | None:
+def remainder(
+    problem: Problem, stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray
+) -> Leftover | None:
     """What is there, where the named effects leave too much of the gap on manoeuvres kept out.
 
-    All of the gap is placed: the names took up a part that was not theirs.
-
-    ``floor`` is the noise of each channel, shape (channels,).
+    All of the gap is placed: the names took up a part that was not theirs. What was named for bringing the
+    derivatives back to the file's is held against those. Arguments as ``is_of_no_use``.
     """
-    before, after = (whole_gap(s.held_out.mean_square, floor) for s in (stages[0], stages[-1]))
+    believed = any(s.added is not None and s.added.belief >= LEAST_BELIEF for s in stages)
+    plain = file_model if believed and file_model is not None else stages[0].held_out
+    before, after = (whole_gap(held.mean_square, floor) for held in (plain, stages[-1].held_out))
     if len(stages) < 2 or after < max(_SEEN, _MOST * before):
         return None
     return placed(problem, stages[0].fitted)

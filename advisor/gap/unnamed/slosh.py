@@ -21,14 +21,15 @@ from advisor.gap.records.flights import Flight
 from advisor.gap.simulator.layout import OUTPUTS
 from advisor.gap.unnamed.leftover import Leftover, instruments_of, noise_of
 
-_HZ = np.geomspace(0.7, 3.0, 14)
-"""Frequencies that are tried; a tank of a metre or two and a sling of some metres lie between."""
+_HZ = np.geomspace(0.2, 3.0, 25)
+"""Frequencies that are tried; a battery that is loose, a tank of one metre or five, a sling lie between."""
 _DAMPING = 0.05
 """Damping ratio that is tried: wide enough that no frequency between two of these is missed ..."""
 _DAMPINGS = (0.02, 0.05, 0.1)
 """... and those tried where something was found."""
-_GAIN = 45.0
-"""Log likelihood that it must bring: what models leave of other things brings 20."""
+_GAIN, _GAIN_FILTERED = 45.0, 135.0
+"""Log likelihood that it must bring: what models leave of other things brings 20. In records that were
+filtered on the ground edges ring as well."""
 _WIDTH, _ABOVE = 3, 4.0
 """Steps of frequency to either side that a resonance shows in, and by how much it exceeds all others: moving
 air brings as much by chance here and there."""
@@ -37,25 +38,22 @@ _VISIBLE = 0.03
 
 
 def sloshing(problem: Problem, last: Fitted) -> Leftover | None:
-    """A mass that the pitching sets swinging, with a note that says how fast; None without one.
-
-    In records that were filtered on the ground it is not sought: edges that a filter rounded ring as well.
-    """
-    if problem.flights.alpha_is_smoothed:
-        return None
+    """A mass that the pitching sets swinging, with a note that says how fast; None without one."""
     noise = noise_of(problem)
     coarse = _gains(problem, last, noise, [(hz, _DAMPING) for hz in _HZ])
     gains = [trial[0] for trial in coarse]
     at = int(np.argmax(gains))
-    off = gains[: max(at - _WIDTH, 0)] + gains[at + _WIDTH + 1 :]
-    if at in (0, len(gains) - 1) or gains[at] < _ABOVE * max(off):
+    hz, between = float(_HZ[at]), float(_HZ[1] / _HZ[0])
+    # A record of a few swings does not tell frequencies apart that are nearer than one over its length.
+    resolved = 1.0 / float(np.median([flight.duration_s for flight in problem.flights.flights]))
+    near = (np.abs(np.log(_HZ / hz)) < (_WIDTH + 0.5) * np.log(between)) | (np.abs(_HZ - hz) < resolved)
+    if at in (0, len(gains) - 1) or gains[at] < _ABOVE * max(np.array(gains)[~near]):
         return None
-    hz = float(_HZ[at])
-    between = float(_HZ[1] / _HZ[0])
-    near = hz * between ** np.array([-0.67, -0.33, 0.0, 0.33, 0.67])
-    fine = _gains(problem, last, noise, [(float(f), z) for f in near for z in _DAMPINGS])
+    finer = hz * between ** np.array([-0.67, -0.33, 0.0, 0.33, 0.67])
+    fine = _gains(problem, last, noise, [(float(f), z) for f in finer for z in _DAMPINGS])
     gain, share, hz, visible = max(fine, key=lambda trial: trial[0])
-    if gain < _GAIN or visible < _VISIBLE:
+    least = _GAIN_FILTERED if problem.flights.alpha_is_smoothed else _GAIN
+    if gain < least or visible < _VISIBLE:
         return None
     note = (
         f"Once set off, it swings, {hz:.2g} times a second: a mass that hangs in the aircraft, as fuel does."

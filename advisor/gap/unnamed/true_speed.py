@@ -20,6 +20,8 @@ _INDICATED = 0.25
 """... which is the most that thin air makes of an indicated air speed, at 4,000 m and above ..."""
 _ITS_OWN = 0.5
 """... where the accelerometer does not carry the weight wrongly by this share of it ..."""
+_AS_MUCH = 0.05
+"""Difference of the two shares at which they are the same: an accelerometer's zero has its part in one."""
 _SIGMAS = 5.0
 """... and the standard deviations it must have ..."""
 _SIGMAS_IN_GUSTS = 8.0
@@ -44,6 +46,10 @@ class TrueSpeed:
     def is_indicated(self, weight: Weight | None) -> bool:
         """Whether it may be an indicated air speed in thin air, for the accelerometer reads its weight."""
         return weight is not None and self.scale > max(_FELT, (weight.share - 1.0) / _ITS_OWN)
+
+    def is_the_accelerometers(self, weight: Weight | None) -> bool:
+        """Whether as much is missing of the weight as of what bends the path: no air speed does that."""
+        return weight is not None and weight.is_off and abs(self.scale - (weight.share - 1.0)) < _AS_MUCH
 
     @property
     def sentence(self) -> str:

@@ -24,8 +24,9 @@ from advisor.gap.search.score import (
 )
 from advisor.gap.search.screen import Screen, penalty
 from advisor.gap.search.stage import Stage
-from advisor.gap.unnamed.laws import PLAIN, STOP, laws_for, said
+from advisor.gap.unnamed.laws import PLAIN, laws_for, said
 from advisor.gap.unnamed.leftover import Leftover
+from advisor.gap.unnamed.stops import SURFACE_STOP
 
 _CERTAIN = 30.0
 """Log likelihood that a law must bring: most of what a reading's does is the lift's own slope."""
@@ -70,7 +71,7 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     bent = addition(problem, plain, held, fitted, law.effect, independent)
     # What one sample is worth depends on the fit that says so: both are held against the same.
     named = _gain_of_all(problem, stages, independent)
-    is_stop = law.effect == STOP and _begins_beyond_the_trim(stages)
+    is_stop = law.effect == SURFACE_STOP and _begins_beyond_the_trim(stages)
     if not bent.worth_naming or bent.gain < max(_CERTAIN, named + (-_LIKELIER if is_stop else _LIKELIER)):
         return None
     leaves, had = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
