@@ -52,7 +52,8 @@ def named_beside(gyro, effect):
 
 def left_beside(gyro, effect):
     """What is left beside an effect that was put into the model."""
-    return remainder(gyro[0], *named_beside(gyro, effect))
+    stages, floor = named_beside(gyro, effect)
+    return remainder(gyro[0], stages, None, floor)
 
 
 def test_an_effect_that_leaves_most_of_the_gap_is_not_the_cause_but_something_unknown(gyro):
@@ -75,7 +76,19 @@ def test_names_have_explained_all_there_is_where_they_leave_nothing_above_the_no
 def test_where_nothing_was_named_there_is_nothing_to_doubt(gyro):
     problem, plain = gyro
     stage = Stage(plain, hold_out(problem, plain), (), None)
-    assert remainder(problem, [stage], np.sqrt(stage.held_out.mean_square) / 10.0) is None
+    assert remainder(problem, [stage], None, np.sqrt(stage.held_out.mean_square) / 10.0) is None
+
+
+@pytest.mark.parametrize("belief", [0.0, 20.0])
+def test_what_was_named_for_the_files_numbers_is_held_against_those(gyro, belief):
+    problem, plain = gyro
+    (first, last), floor = named_beside(gyro, "actuator_lag")
+    independent = worth(problem, last.fitted.innovations)
+    added = addition(problem, plain, first.held_out, last.fitted, "actuator_lag", independent)
+    stages = [replace(first, added=replace(added, belief=belief)), last]
+    far_off = replace(first.held_out, mean_square=100.0 * first.held_out.mean_square)
+    left = remainder(problem, stages, far_off, floor)
+    assert (left is None) == (belief > 0.0)
 
 
 @pytest.mark.parametrize(("effect", "right"), [("pitch_rate_scale", True), ("actuator_lag", False)])

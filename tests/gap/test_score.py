@@ -159,3 +159,17 @@ def test_where_an_effect_is_stays_where_only_manoeuvres_kept_out_tell_of_it():
     as_size = replace(above, point=replace(above.point, effects=(*above.point.effects[:-1], size)))
     kept_out, to_nothing = (hold_out(problem, f).by_maneuver[[0, 3]] for f in (above, as_size))
     assert np.sum(kept_out / fitted.noise**2) < 0.1 * np.sum(to_nothing / fitted.noise**2)
+
+
+@pytest.mark.parametrize("tiny", [{"switches": {"acc_arm": 0.05}}, {"q_bias": 0.0014}], ids=["arm", "bias"])
+def test_what_every_instrument_has_is_no_cause_however_plain(tiny):
+    found = diagnose(fly(Setup(maneuvers=6, noise=0.002, seed=67, **tiny)), Aircraft())
+    assert found.verdict == "none"
+
+
+def test_beside_another_name_four_numbers_give_way_to_one_that_does_as_well():
+    """Ice takes up what an arm that is not yet in the model does to the motion."""
+    course = (0.0, 0.0, 0.0, 0.0, 0.4, 0.4)
+    both = Setup(maneuvers=6, noise=0.004, cg_course=course, switches={"acc_arm": 0.4}, seed=68)
+    found = diagnose(fly(both), Aircraft())
+    assert {c.effect for c in found.causes if c.present} == {"cg_shift", "accelerometer_offset"}

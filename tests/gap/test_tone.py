@@ -95,6 +95,15 @@ def test_a_little_fuel_is_known_by_what_pitching_does_to_it(gust_std):
     assert any("Once set off, it swings, 0.9" in note for note in found.notes)
 
 
+@pytest.mark.parametrize("gust_std", [0.0, pytest.param(0.1, marks=pytest.mark.study)])
+def test_a_large_tank_swings_slowly(gust_std):
+    slow = {"slosh": 0.03, "slosh_hz": 0.45}
+    sloshing = fly(Setup(maneuvers=6, switches=slow, gust_std=gust_std, seed=39))
+    found = diagnose(sloshing, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "moment_equation")
+    assert any("Once set off, it swings, 0.4" in note for note in found.notes)
+
+
 def test_what_swung_before_the_stick_moved_was_not_set_off_by_it():
     found = diagnose(fly(Setup(maneuvers=6, switches={"beat": 0.01, "beat_hz": 0.9}, seed=42)), Aircraft())
     assert found.verdict == "unknown"

@@ -94,6 +94,19 @@ def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane_whatever_is_named
     assert [c.effect for c in found.causes if c.present] == ["transport_delay"] * len(named)
 
 
+def test_a_propeller_met_at_another_place_of_its_turn_is_no_accelerometer_that_jumps():
+    """A vibration at the rate of the samples stands still in them, but where one comes late."""
+    maneuvers = []
+    rng = np.random.default_rng(8)
+    for maneuver in fly(Setup(maneuvers=6, noise=0.002, seed=24)):
+        a_z = maneuver.channels["a_z"]
+        t = a_z.t + 0.005 * (rng.random(len(a_z)) < 0.02)
+        shaken = np.interp(t, a_z.t, a_z.y) + 0.25 * np.sin(2.0 * np.pi * 50.03 * t)
+        channels = {**maneuver.channels, "a_z": replace(a_z, t=t, y=shaken)}
+        maneuvers.append(replace(maneuver, channels=channels))
+    assert diagnose(maneuvers, Aircraft()).where.block != "accelerometer"
+
+
 def test_a_vane_that_sticks_for_long_is_unknown_in_the_vane_and_not_a_channel_that_repeats_itself():
     sticky = []
     for maneuver in fly(Setup(maneuvers=6, seed=29)):

@@ -7,6 +7,11 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.simulator.layout import INDEX
+from advisor.gap.unnamed.true_speed import TrueSpeed
+from advisor.gap.unnamed.weight import Weight
 from tests.gap.generator import Setup, fly
 
 HARD = Setup(gust_std=0.12, coloured=0.5, jitter=0.004, speed_change=0.03, seed=37)
@@ -143,13 +148,27 @@ def test_a_force_or_a_moment_that_bends_is_no_instruments_fault(switches):
     assert found.where.block in ("force_equation", "moment_equation")
 
 
-@pytest.mark.parametrize(
-    ("lost_cl", "bends"), [(0.12, 0.0), pytest.param(0.06, -8.0, marks=pytest.mark.study)]
-)
-def test_lift_that_comes_back_another_way_than_it_went_is_no_lift_that_bends(lost_cl, bends):
+@pytest.mark.parametrize(("lost_cl", "bends", "gust_std"), [
+    (0.06, 0.0, 0.12),
+    pytest.param(0.12, 0.0, 0.0, marks=pytest.mark.study),
+    pytest.param(0.06, -8.0, 0.0, marks=pytest.mark.study),
+])  # fmt: skip
+def test_lift_that_comes_back_another_way_than_it_went_is_no_lift_that_bends(lost_cl, bends, gust_std):
     stalling = {"lets_go_at": 0.09, "holds_below": 0.05, "lost_cl": lost_cl, "cl_a2": bends}
-    found = diagnose(fly(Setup(maneuvers=6, switches=stalling, seed=46)), Aircraft())
+    found = diagnose(fly(Setup(maneuvers=6, switches=stalling, gust_std=gust_std, seed=46)), Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "force_equation")
+
+
+def test_where_the_flow_lets_go_is_met_within_a_step_and_not_at_its_end():
+    """Else no search would find the angle: the motion would change with it by jumps."""
+    problem, fitted = fit_baseline(prepare(fly(Setup(maneuvers=2, seed=46)), Aircraft()), Aircraft())
+    p, flight = problem.driving(fitted.point)[0], problem.flights.flights[0]
+    p[INDEX["Z_separated"]], motions = 0.05, []
+    for at in 0.02 + 2e-5 * np.arange(40):
+        p[[INDEX["separation_rad"], INDEX["attachment_rad"]]] = at, -0.01
+        motions.append(problem.fly(flight, p)[1])
+    changes = np.linalg.norm(np.diff(motions, axis=0), axis=1)
+    assert np.max(changes) < 3.0 * np.median(changes)
 
 
 def test_what_is_wrong_beside_a_reading_out_of_proportion_keeps_its_name():
@@ -186,3 +205,13 @@ def test_an_accelerometer_that_does_not_carry_the_weight_is_unknown_where_the_dy
 def test_an_accelerometers_zero_that_is_off_by_a_common_amount_is_no_cause():
     found = diagnose(with_reading(Setup(maneuvers=6, seed=5), "a_z", lambda y: y + 0.6), Aircraft())
     assert found.verdict == "none"
+
+
+@pytest.mark.parametrize(
+    ("scale", "share", "scaled_it_is"), [(-0.19, 0.8, True), (-0.19, 1.0, False), (0.02, 0.8, False)]
+)
+def test_an_accelerometer_that_misses_as_much_of_the_weight_as_of_the_path_is_scaled(
+    scale, share, scaled_it_is
+):
+    assert TrueSpeed(scale, 0.003).is_the_accelerometers(Weight(share, 0.004)) is scaled_it_is
+    assert not TrueSpeed(scale, 0.003).is_the_accelerometers(None)
