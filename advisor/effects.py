@@ -33,7 +33,7 @@ LEAST: Mapping[str, Mapping[str, float]] = {
         "at_s": _ANY,
         "over_s": 0.0,
     },
-    "airspeed_variation": {"change": _ANY, "exponent": _ANY},
+    "airspeed_variation": {"change": _ANY, "exponent": _ANY, "exponent_M": _ANY},
     "ground_effect": {"Z_h": _ANY, "lift_h": _ANY, "M_h": _ANY, "scale_m": 0.0},
     "turbulence": {"sigma_w_m_s": 0.0, "length_m": 0.0},
     "gust": {"amplitude_m_s": _ANY, "length_m": 0.0, "at_s": _ANY},

@@ -61,6 +61,8 @@ class LinearTerms:
     """1: derivatives move with airspeed and gravity turns with the flight path; 0: constant."""
     speed_power: float = 0.0
     """Beyond dynamic pressure: lift and moments that hang on angles go with V to the power of 2 and this."""
+    moment_power: float = 0.0
+    """The same of the moments beyond the lift."""
     gravity: float = 0.0
     """1: gravity turns with the flight path, (g/V)(cos γ − 1) in α̇."""
 
@@ -92,11 +94,11 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
     lifting, turning = air - behind, air - m.unsteady_moment * behind
     off, off_elevator = air - m.alpha_ref, elevator - m.delta_ref
     gamma = theta - alpha
-    ratio, power, weight, gravity = 1.0, 1.0, GRAVITY_M_S2 / m.speed_ref, 0.0
+    ratio, power, turn, weight, gravity = 1.0, 1.0, 1.0, GRAVITY_M_S2 / m.speed_ref, 0.0
     wing = m.Z_0 - weight + m.Z_alpha * lifting
     if m.speed_scaled > 0.0:
         ratio, weight = speed / m.speed_ref, GRAVITY_M_S2 / speed
-        power = ratio**m.speed_power
+        power, turn = ratio**m.speed_power, ratio**m.moment_power
     if m.stall_sharpness > 0.0:
         stalled = 0.5 * (1.0 + math.tanh(m.stall_sharpness * (air - m.stall_alpha)))
         wing *= ((1.0 + math.sqrt(1.0 - stalled)) / 2.0) ** 2
@@ -122,6 +124,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
         ratio * (m.M_q * q + m.M_alpha_dot * alpha_dot)
         + ratio**2
         * power
+        * turn
         * (
             m.M_0
             + m.M_alpha * turning

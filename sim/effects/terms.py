@@ -98,7 +98,9 @@ def _ice(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
 
 def _speed(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
     engine.record["speed_scaled"] = engine.record["gravity"] = 1.0
-    engine.record["speed_power"] = sizes.get("exponent", 0.0)
+    power = sizes.get("exponent", 0.0)
+    engine.record["speed_power"] = power
+    engine.record["moment_power"] = sizes.get("exponent_M", power) - power
 
 
 def _gust(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
@@ -145,7 +147,7 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
         frozenset({"Z_h", "lift_h", "M_h", "scale_m"}),
         _fields(Z_h="Z_h", lift_h="lift_h", M_h="M_h", scale_m="ground_scale"),
     ),
-    "airspeed_variation": (frozenset({"change", "exponent"}), _speed),
+    "airspeed_variation": (frozenset({"change", "exponent", "exponent_M"}), _speed),
     "cg_shift": (_ONSET, _moved_weight),
     "mass_change": (_ONSET, _more_mass),
     "gust": (frozenset({"amplitude_m_s", "length_m", "at_s"}), _gust),

@@ -57,13 +57,15 @@ SWITCHES = {
     "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9, "stop_low": -9.0, "stop_high": 9.0,
     "ring_hz": 0.0, "ring_zeta": 0.2, "stall_at": 9.0, "stall_sharpness": 40.0,
     "lets_go_at": 9.0, "holds_below": -9.0, "lost_cl": 0.0, "bank": 0.0,
+    "breaks_at": 0.0, "drags": 0.0, "moment_power": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, MLAGS, ICET,
  ICE, HEIGHT, GROUND, VLAG, VARM, MGAIN, MHZ, AARM, HYST, QSQ, ECMLAG, ECM,
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
  MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST, RINGHZ,
- RINGZETA, STALLAT, STALLS, LETSGO, HOLDS, LOST, BANK) = range(len(SWITCHES))  # fmt: skip
+ RINGZETA, STALLAT, STALLS, LETSGO, HOLDS, LOST, BANK,
+ BREAKS, DRAGS, MPOWER) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -89,7 +91,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
     hyst, extra, met = 0.0, 0.0, 0.0
     fuel, flow, turned_at = 0.0, 0.0, 0.0
     rung, rung_rate = 0.0, 0.0
-    separated = False
+    separated, sliding = False, 0.0
     shift = round(sw[DELAY] / H)
     for k in range(n):
         t = k * H
@@ -104,7 +106,17 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
         valve += H * (want - valve) / max(sw[BEFORE], H)
         speed_wanted = ((valve if sw[BEFORE] > 0.0 else want) - lag_state) / max(sw[LAG], H)
         lag_state += H * min(max(speed_wanted, -sw[RATE]), sw[RATE])
-        if lag_state - link > sw[PLAY]:
+        if sw[BREAKS] > 0.0:
+            # Dry friction: a position loop that breaks loose, and is dragged on while it slides.
+            error = want - link
+            if sliding == 0.0 and abs(error) > sw[BREAKS]:
+                sliding = np.sign(error)
+            pulled = sliding * error - sw[DRAGS]
+            if pulled <= 0.0:
+                sliding = 0.0
+            else:
+                link += H * sliding * pulled / max(sw[LAG], H)
+        elif lag_state - link > sw[PLAY]:
             link = lag_state - sw[PLAY]
         elif lag_state - link < -sw[PLAY]:
             link = lag_state + sw[PLAY]
@@ -152,7 +164,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
         beyond = (V / sw[FROM]) ** sw[POWER]
         cl *= beyond
         cd = cd0 + induced * cl * cl + 3.0 * ice * cd0
-        cm = beyond * (
+        cm = (beyond * (V / sw[FROM]) ** sw[MPOWER]) * (
             cm0
             + cma * (1.0 - 0.6 * ice) * (a - sw[MLAGS] * (a - ae))
             + sw[CMA2] * (db * db - d0 * d0)

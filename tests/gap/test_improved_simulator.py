@@ -78,11 +78,13 @@ def test_flying_the_recorded_inputs_through_the_improved_simulator_shrinks_the_g
 def test_what_the_air_speed_does_can_be_written_into_a_file_that_flies() -> None:
     assert problems_with({"airspeed_variation": {"change": 0.05}}) == []
     assert problems_with({"airspeed_variation": {"exponent": -0.8}}) == []
+    assert problems_with({"airspeed_variation": {"exponent_M": -1.5, "exponent": 0.0}}) == []
 
 
-def test_the_power_of_the_speed_that_a_file_states_is_flown() -> None:
+@pytest.mark.parametrize("of_moments", [0.0, -1.2])
+def test_the_power_of_the_speed_that_a_file_states_is_flown(of_moments: float) -> None:
     faster, record = 1.2, LinearAircraft(RESEARCH_JET, 50.0, 100.0).record.copy()
-    record["speed_scaled"], record["speed_power"] = 1.0, -0.5
+    record["speed_scaled"], record["speed_power"], record["moment_power"] = 1.0, -0.5, of_moments
     answers = []
     for elevator in (0.0, 0.1):
         x, u, dx = np.zeros(8), np.zeros(8), np.zeros(8)
@@ -91,4 +93,4 @@ def test_the_power_of_the_speed_that_a_file_states_is_flown() -> None:
         answers.append(dx[:2].copy())
     lift, moment = (answers[1] - answers[0]) / 0.1
     assert lift == pytest.approx(RESEARCH_JET.Z_delta_e * faster**0.5)
-    assert moment == pytest.approx(RESEARCH_JET.M_delta_e * faster**1.5)
+    assert moment == pytest.approx(RESEARCH_JET.M_delta_e * faster ** (1.5 + of_moments))

@@ -153,6 +153,16 @@ def test_forces_that_do_not_grow_with_the_speed_squared_are_named_with_their_pow
     assert [effect for effect, _ in found.waterfall] == ["airspeed_variation"]
 
 
+def test_moments_that_grow_with_another_power_than_the_lift_have_their_own():
+    setup = Setup(maneuvers=6, speed_change=0.12, switches={"moment_power": -1.5}, seed=8)
+    found = diagnose(fly(setup), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
+    # Here the damping goes with that power, too.
+    assert found.causes[0].parameters["exponent_M"].value == pytest.approx(-1.5, abs=0.35)
+    assert found.causes[0].parameters["exponent"].value == pytest.approx(0.0, abs=0.25)
+    assert "moments grow with the air speed's power 0." in found.sentence
+
+
 def test_what_the_air_speed_tells_takes_more_in_air_that_moves_with_it():
     needed = {}
     for gust_std in (0.0, 0.3):

@@ -19,6 +19,7 @@ H, SMALL, DURATION = 0.005, 2e-5, 0.8
 OF_THE_SURFACE = (
     "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
     "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
+    "breakaway_rad", "sliding_share", "loop_s",
 )  # fmt: skip
 
 
@@ -40,6 +41,32 @@ def in_small_steps(t_u, u, held, late, rate, lag, play, dead):
         link = min(max(link, servo - play), servo + play)
         flown[i] = link
     return flown.reshape(-1, round(H / SMALL)).mean(axis=1)
+
+
+@pytest.mark.parametrize("held", [True, False])
+@pytest.mark.parametrize(("holds", "share", "lag"), [(0.03, 0.3, 0.03), (0.01, 0.0, 0.01), (0.05, 0.8, 0.08)])
+def test_a_surface_with_dry_friction_does_what_it_does_in_small_steps(held, holds, share, lag):
+    rng = np.random.default_rng(9)
+    t_u = np.arange(0.0, DURATION, 0.02)
+    u = np.cumsum(rng.uniform(-0.02, 0.02, len(t_u))) + 0.08 * (t_u > 0.3)
+    p = np.zeros(len(ENTRIES))
+    p[[INDEX["breakaway_rad"], INDEX["sliding_share"], INDEX["loop_s"]]] = holds, share, lag
+    p[INDEX["play_side"]] = -0.5
+    t = (np.arange(round(DURATION / SMALL)) + 0.5) * SMALL
+    before = np.clip(np.searchsorted(t_u, t, side="right") - 1, 0, None)
+    command = u[before] if held else np.interp(t, t_u, u)
+    at, way, flown = command[0] - 0.5 * holds, 0.0, np.empty(len(t))
+    for i, want in enumerate(command):
+        if way == 0.0 and abs(want - at) > holds:
+            way = np.sign(want - at)
+        pulled = way * (want - at) - share * holds
+        way = way if pulled > 0.0 else 0.0
+        at += way * pulled * SMALL / lag
+        flown[i] = at
+    expected = flown.reshape(-1, round(H / SMALL)).mean(axis=1)
+    moved = surface(H, round(DURATION / H), t_u, u, held, 0.0, p)
+    assert moved == pytest.approx(expected, abs=2e-4)
+    assert np.ptp(expected) > 0.05
 
 
 @pytest.mark.parametrize("held", [True, False])

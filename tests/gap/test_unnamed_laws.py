@@ -116,6 +116,16 @@ def test_a_surface_that_stops_before_the_command_is_no_bent_moment(setup, lowest
 
 
 @pytest.mark.parametrize(
+    "setup", [Setup(maneuvers=6, seed=44), pytest.param(HARD, marks=pytest.mark.study)], ids=["clean", "hard"]
+)
+def test_a_servo_that_sticks_until_it_breaks_loose_is_no_play_with_a_lag(setup):
+    sticking = {"breaks_at": 0.03, "drags": 0.005, "lag": 0.03}
+    found = diagnose(fly(replace(setup, switches=sticking)), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "input")
+    assert any("The surface sticks" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
     ("setup", "hz"), [(Setup(maneuvers=5, seed=42), 4.0), pytest.param(HARD, 2.5, marks=pytest.mark.study)]
 )
 def test_a_servo_that_overshoots_is_no_delay_with_a_structure_that_bends(setup, hz):

@@ -27,6 +27,8 @@ _FILTERED_S = 0.02
 """Least delay of a sensor worth a name: of a sensor itself, and of a channel an autopilot has filtered."""
 _THROTTLE_MOVES, _HEIGHT_MOVES_M = 0.02, 0.2
 """Change within a manoeuvre, of the throttle's range and in m, without which neither tells anything."""
+_TWO_POWERS = 0.1
+"""Relative change of the air speed without which moments and lift have one power of it between them."""
 _CHANNEL_OF = {
     "alpha_lag": "alpha", "alpha_scale": "alpha", "alpha_vane_offset": "alpha", "alpha_skew": "alpha",
     "accelerometer_offset": "a_z", "accelerometer_skew": "a_z", "attitude_skew": "theta",
@@ -49,7 +51,7 @@ def _possible(v: Variant, flights: Flights) -> bool:
     if v.effect == "thrust_moment":
         return any(float(np.ptp(f.slow[THROTTLE])) > _THROTTLE_MOVES for f in flights.flights)
     if v.effect == "airspeed_variation":
-        return flights.speed_moves >= SPEED_CHANGE
+        return flights.speed_moves >= (_TWO_POWERS if len(v.names) > 1 else SPEED_CHANGE)
     if v.effect == "ground_effect":
         return any(float(np.ptp(f.slow[HEIGHT])) > _HEIGHT_MOVES_M for f in flights.flights)
     return True

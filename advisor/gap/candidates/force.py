@@ -49,6 +49,13 @@ def _with_moment(p: FloatArray, values: Values, _: Flights) -> None:
 _UNSTEADY_WITH_MOMENT = replace(_UNSTEADY, apply_with=_with_moment, fixed={"with_moment": 1.0})
 
 
+def _powers(p: FloatArray, values: Values, _: Flights) -> None:
+    """Of the moments and of the lift, which what the simulation has of both is part of."""
+    of_moments, of_lift = values
+    p[:, INDEX["speed_power"]] += of_lift
+    p[:, INDEX["moment_power"]] += of_moments - of_lift
+
+
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block; those between manoeuvres depend on how many were flown."""
     return [
@@ -67,6 +74,18 @@ def variants(flights: Flights) -> list[Variant]:
             ((-6.0, 6.0),),
             0.1,
             entries=("speed_power",),
+            needs=frozenset({"airspeed"}),
+        ),
+        # A tail in the wing's wake, or in a propeller's: moments with another power than the lift.
+        Variant(
+            "airspeed_variation",
+            BLOCK,
+            ("exponent_M", "exponent"),
+            ((0.0, 0.0),),
+            (0.02, 0.02),
+            ((-6.0, 6.0), (-6.0, 6.0)),
+            0.1,
+            apply_with=_powers,
             needs=frozenset({"airspeed"}),
         ),
         # Near the ground all lift grows by a share of it, or the trim alone changes.

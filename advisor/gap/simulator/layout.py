@@ -18,6 +18,7 @@ EFFECT_ENTRIES = (
     # the latency is the few milliseconds between a command's stamp and its effect, in every model
     "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
     "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
+    "breakaway_rad", "sliding_share", "loop_s",
     # moment equation
     "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_alpha_dot", "M_h",
     "M_throttle", "engine_lag_s", "M_thrust", "washed_share", "blown_share",
@@ -26,7 +27,7 @@ EFFECT_ENTRIES = (
     # force equation
     "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s", "moment_share",
     "Z_memory", "memory_rad", "Z_separated", "separation_rad", "attachment_rad",
-    "Z_h", "lift_h", "scale_m", "speed_power",
+    "Z_h", "lift_h", "scale_m", "speed_power", "moment_power",
     # sensors
     "alpha_lag_s", "alpha_scale", "vane_arm_m", "q_bias", "q_scale",
     "mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping", "imu_arm_m",

@@ -50,10 +50,11 @@ _ANYWHERE = 9.0
 (
     Z_ALPHA, Z_Q, Z_DELTA, M_ALPHA, M_Q, M_DELTA, ALPHA_START, Q_START, Z_TRIM, M_TRIM,
     DELAY, LATENCY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL, STOP_UP, STOP_DOWN,
+    BREAKAWAY, SLIDING, LOOP,
     M_DELTA2, M_DELTA3, M_ALPHA2, M_ALPHA3, M_ALPHA_DOT, M_H, M_THROTTLE, ENGINE_LAG, M_THRUST, WASHED, BLOWN,
     M_Q_ABS, M_Q_Q, M_ALPHA_Q, M_ALPHA_DELTA,
     Z_ALPHA2, Z_ALPHA3, STALL, SHARPNESS, LIFT_SHARE, LIFT_LAG, MOMENT_SHARE, Z_MEMORY, MEMORY,
-    Z_SEPARATED, SEPARATION, ATTACHMENT, Z_H, LIFT_H, SCALE_H, SPEED_POWER,
+    Z_SEPARATED, SEPARATION, ATTACHMENT, Z_H, LIFT_H, SCALE_H, SPEED_POWER, MOMENT_POWER,
     ALPHA_LAG, ALPHA_SCALE, VANE_ARM, Q_BIAS, Q_SCALE,
     MODE_GAIN, MODE_RATE_GAIN, MODE_RAD_S, MODE_DAMPING, IMU_ARM,
     ALPHA_SKEW, Q_SKEW, A_Z_SKEW, THETA_SKEW, A_Z_SCALE, THETA_SCALE,
@@ -66,9 +67,9 @@ _ANYWHERE = 9.0
     DOSE, ENGINE_DECAY, LIFT_DECAY, VANE_DECAY, VANE_RAMP, FADE, SWING_COS, SWING_SIN, SOFTNESS,
     ALPHA, Q, THETA, ENGINE, LIFT, FOLLOWED, VANE_BEFORE, VANE_OUT, SHOWN,
     HIGHEST, LOWEST, SEPARATED, MISSING, BEND, BEND_RATE,
-    AIRSPEED, RATIO, NEAR, POWER, ATTACHED, COS_ALPHA, SIN_ALPHA, GRAVITY, LIFTING, MOMENT_SLOPE,
+    AIRSPEED, RATIO, NEAR, POWER, TURNING, ATTACHED, COS_ALPHA, SIN_ALPHA, GRAVITY, LIFTING, MOMENT_SLOPE,
     DEFLECTION, Z_REST, M_REST, KA, KQ, NORMAL_0, QDOT_0, ROWS,
-) = range(len(ENTRIES), len(ENTRIES) + 42)  # fmt: skip
+) = range(len(ENTRIES), len(ENTRIES) + 43)  # fmt: skip
 
 
 @njit(cache=True)
@@ -127,7 +128,7 @@ def _begin(
     x[HIGHEST, lane] = up if up > 0.0 else _ANYWHERE
     x[LOWEST, lane] = -down if down > 0.0 else -_ANYWHERE
     x[BEND, lane], x[BEND_RATE, lane] = 0.0, 0.0
-    x[NEAR, lane], x[POWER, lane], x[ATTACHED, lane] = 0.0, 1.0, 1.0
+    x[NEAR, lane], x[POWER, lane], x[TURNING, lane], x[ATTACHED, lane] = 0.0, 1.0, 1.0, 1.0
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -183,7 +184,7 @@ def simulate(
             j = min(k * LANES + m, len(p) - 1)
             _begin(x, m, p[j], doses[j], h, slow[SPEED, 0], trim)
             low, stalls = low or p[j, SCALE_H] > 0.0, stalls or p[j, SHARPNESS] > 0.0
-            other_power = other_power or p[j, SPEED_POWER] != 0.0
+            other_power = other_power or p[j, SPEED_POWER] != 0.0 or p[j, MOMENT_POWER] != 0.0
             separates = separates or p[j, SEPARATION] != 0.0
         for i in range(n + 1):
             j = min(i, n - 1)
@@ -200,6 +201,7 @@ def simulate(
             if other_power:
                 for m in range(lanes):
                     x[POWER, m] = x[RATIO, m] ** x[SPEED_POWER, m]
+                    x[TURNING, m] = x[POWER, m] * x[RATIO, m] ** x[MOMENT_POWER, m]
             if low:
                 scale, near = 0.0, 0.0
                 for m in range(lanes):
@@ -214,8 +216,8 @@ def simulate(
                 vv = v * v
                 z_d = x[Z_DELTA, m]
                 met = vv + x[WASHED, m] * (1.0 - vv) + x[BLOWN, m] * slow[THRUST, j]
-                m_d = x[M_DELTA, m] * x[POWER, m] * met
-                pressure = x[POWER, m] * vv
+                m_d = x[M_DELTA, m] * x[TURNING, m] * met
+                pressure = x[TURNING, m] * vv
                 lifting = x[POWER, m] * v * (1.0 + x[LIFT_H, m] * x[NEAR, m])
                 ca, sa = cos_sin(x[ALPHA, m])
                 ct, st = cos_sin(x[THETA, m])
@@ -259,7 +261,7 @@ def simulate(
                     v = x[RATIO, m]
                     bent = (x[M_ALPHA2, m] + x[M_ALPHA3, m] * da) * da
                     bent += x[M_ALPHA_DELTA, m] * x[DEFLECTION, m]
-                    slope = x[MOMENT_SLOPE, m] + x[POWER, m] * v * v * bent
+                    slope = x[MOMENT_SLOPE, m] + x[TURNING, m] * v * v * bent
                     damping = x[M_Q, m] + x[M_ALPHA_Q, m] * da + x[M_Q_Q, m] * abs(q)
                     damped = damping * q + x[M_Q_ABS, m] * abs(q)
                     kq = x[M_REST, m] + slope * turned + v * (damped + x[M_ALPHA_DOT, m] * ka)

@@ -10,8 +10,12 @@ from advisor.gap.simulator.layout import INDEX
 _READ = tuple(INDEX[name] for name in (
     "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
     "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
+    "breakaway_rad", "sliding_share", "loop_s",
 ))  # fmt: skip
-DELAY, LATENCY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL, STOP_UP, STOP_DOWN = _READ
+(
+    DELAY, LATENCY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL, STOP_UP, STOP_DOWN,
+    BREAKAWAY, SLIDING, LOOP,
+) = _READ  # fmt: skip
 
 _UNLIMITED = 1e6
 """Rate of a servo without a limit, rad/s: a jump takes no time."""
@@ -106,11 +110,12 @@ def surface(
     damped = np.sqrt(max(1.0 - zeta * zeta, 1e-6))
     fade = np.exp(-zeta * omega * h)
     swing_cos, swing_sin = np.cos(omega * damped * h), np.sin(omega * damped * h) / damped
-    by_pieces = (slow > 0.0 or play > 0.0) and omega == 0.0
+    holds = p[BREAKAWAY]
+    by_pieces = (slow > 0.0 or play > 0.0 or holds > 0.0) and omega == 0.0
     most = 1.0 / slow if slow > 0.0 else _UNLIMITED
     rate = 0.0
     servo = np.nan
-    link = 0.0
+    link = way = 0.0
     last = len(u) - 1
     for i in range(n):
         at, b = i * h - late, (i + 1) * h - late
@@ -141,8 +146,13 @@ def surface(
                 begin, end = max(begin, -down), max(end, -down)
             if np.isnan(servo):
                 servo = begin
-                link = begin + p[PLAY_SIDE] * play
-            if by_pieces:
+                link = begin + p[PLAY_SIDE] * max(play, holds)
+            if holds > 0.0:
+                link, way, swept = _broken_away(
+                    link, way, begin, end, upto - at, holds, p[SLIDING] * holds, p[LOOP]
+                )
+                area += swept
+            elif by_pieces:
                 servo, link, swept = _through(servo, link, begin, end, upto - at, tau, most, play)
                 area += swept
             total += mean * (upto - at)
@@ -210,6 +220,51 @@ def _through(
         if left <= 0.0:
             break
     return servo, link, area
+
+
+@njit(cache=True)
+def _broken_away(
+    link: float, way: float, begin: float, end: float, dt: float, holds: float, drags: float, tau: float
+) -> tuple[float, float, float]:
+    """Surface, which way it slides, and its integral, after a piece in which the command moves linearly.
+
+    A position loop against dry friction: at rest it holds until the command is ``holds`` away. While it
+    slides friction drags: it lags by ``tau`` behind what is ``drags`` short of the command, and rests again
+    where that would turn it round.
+    """
+    slope, left, command, area = (end - begin) / dt, dt, begin, 0.0
+    tau = max(tau, 1e-3)
+    for _ in range(_PARTS):
+        if way == 0.0:
+            side = np.sign(command - link)
+            if abs(command - link) > holds:
+                way, time = side, 0.0
+            elif slope == 0.0:
+                time = left
+            else:
+                time = (link + np.sign(slope) * holds - command) / slope
+                way = np.sign(slope) if time < left else 0.0
+                time = min(time, left)
+            area += link * time
+        else:
+            error, settled = command - way * drags - link, slope * tau
+            way_at, time = way, left
+            if way * error <= 0.0:
+                way, time = 0.0, 0.0
+            elif way * settled < 0.0:
+                time = tau * np.log((settled - error) / settled)
+                way = way if time > left else 0.0
+                time = min(time, left)
+            if time > 0.0:
+                to = link + settled * time / tau + (error - settled) * (1.0 - np.exp(-time / tau))
+                area += (command - way_at * drags + 0.5 * slope * time) * time - tau * (to - link)
+                link = to
+        command, left = command + slope * time, left - time
+        if left <= 0.0:
+            break
+    if left > 0.0:
+        area += link * left
+    return link, way, area
 
 
 @njit(cache=True)

@@ -49,18 +49,18 @@ _MAY_DRIFT, _SIGNIFICANT = 0.15, 5.0
 class _Scatter:
     """How far apart the manoeuvres are in a named number."""
 
+    value: float
     std: float
-    over_value: float
     over_errors: float
     """Square of the departures over that of their errors."""
 
     @property
     def may_drift(self) -> bool:
-        return self.over_value > _MAY_DRIFT and self.over_errors > _SIGNIFICANT
+        return self.std > _MAY_DRIFT * abs(self.value) and self.over_errors > _SIGNIFICANT
 
     @property
     def is_plain(self) -> bool:
-        return self.over_value > _SCATTER and self.over_errors > _ITS_ERRORS
+        return self.std > _SCATTER * abs(self.value) and self.over_errors > _ITS_ERRORS
 
 
 def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
@@ -136,7 +136,7 @@ def _scatter(problem: Problem, last: Fitted, named: Judged) -> _Scatter:
     change = np.array([inner[at, -1] for inner in inners]) / known
     change -= np.average(change, weights=known)
     std = float(np.sqrt(max(np.mean(change**2 - 1.0 / known), 0.0)))
-    return _Scatter(std, std / abs(float(named.value[0])), float(np.mean(known * change**2)))
+    return _Scatter(float(named.value[0]), std, float(np.mean(known * change**2)))
 
 
 def _varies(judged: Judged, scatter: _Scatter) -> str:

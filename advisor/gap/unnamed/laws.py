@@ -48,6 +48,7 @@ def _filter(block: str, channel: str) -> Variant:
 
 
 _PULLED, _RINGS, _RUBS, _FILTERED = "gyro_pulled", "servo_rings", "vane_friction", "_filtered"
+_STICKS = "servo_sticks"
 _WEAKER = "elevator_loss"
 PLAIN = frozenset({_PULLED, SURFACE_STOP, _RINGS})
 """Laws that leave little where they are the truth: what they resemble is of another kind."""
@@ -108,6 +109,7 @@ _SAID = {
     VANE_STOP: "The vane turns {degrees} deg from its trim and no further: it meets a stop.",
     SURFACE_STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no "
     "further.",
+    _STICKS: "The surface sticks till the command is {degrees_first} deg away, then breaks loose: friction.",
     _RINGS: "The surface overshoots its command: a servo of second order that is hardly damped.",
     FLOW_LETS_GO: "The flow lets go at one angle and comes back at a lower one: a stall with a memory.",
     LIFT_MEMORY: "The lift is another on the way up than on the way down: a stall that lets go late.",
@@ -120,6 +122,18 @@ _SAID = {
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
 }
+
+
+def _sticking(flights: Flights) -> Variant:
+    """A surface that dry friction holds until the command has run away from it."""
+    most = float(np.median([np.max(np.abs(flight.u - flight.u_trim)) for flight in flights.flights]))
+    return Variant(
+        _STICKS, "input", ("breakaway_rad", "sliding_share", "loop_s"),
+        tuple((share * most, 0.3, 0.03) for share in (0.15, 0.3, 0.45, 0.6)), (0.01 * most, 0.02, 2e-3),
+        ((0.02 * most, 1.2 * most), (0.0, 0.8), (0.001, 0.3)), 0.00175,
+        entries=("breakaway_rad", "sliding_share", "loop_s"),
+        sides=("play_side", tuple(np.linspace(-1.0, 1.0, 8))), places=("sliding_share", "loop_s"),
+    )  # fmt: skip
 
 
 def _weaker(flights: Flights) -> list[Variant]:
@@ -141,11 +155,14 @@ def laws_for(flights: Flights) -> list[Variant]:
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
     of_readings += vane_stops(flights) if "alpha" in readings else []
     of_lift = [lift_memory(flights), flow_lets_go(flights)]
-    return [*of_readings, *_MOMENTS, *surface_stops(flights), _RINGING, *of_lift, *_weaker(flights)]
+    of_input = [*surface_stops(flights), _RINGING, _sticking(flights), *_weaker(flights)]
+    return [*of_readings, *_MOMENTS, *of_input, *of_lift]
 
 
 def said(law: Judged) -> str:
     """What the law is, and what else would look like it."""
     degrees = " and ".join(f"{np.degrees(value):.1f}" for value in law.value)
     first = float(law.value[0])
-    return _SAID[law.effect].format(percent=100.0 * first, ms=1e3 * first, degrees=degrees)
+    return _SAID[law.effect].format(
+        percent=100.0 * first, ms=1e3 * first, degrees=degrees, degrees_first=f"{np.degrees(first):.1f}"
+    )

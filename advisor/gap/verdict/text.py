@@ -28,6 +28,8 @@ _WHAT = {
     "airspeed_variation": "The air speed moved by up to {change_percent:.0f} % and the derivatives with it",
     "airspeed_variation exponent": "The real forces do not grow with air speed squared, "
     "but with its power {exponent_power:.1f}",
+    "airspeed_variation exponent_M": "The real moments grow with the air speed's power "
+    "{exponent_M_power:.1f}, the lift with {exponent_power:.1f}",
     "ground_effect": "The ground was near enough to be felt",
     "turbulence": "The air was not still: gusts of {sigma_w_m_s:.2g} m/s",
     "gust": "A gust of {amplitude_m_s:.2g} m/s passed",
@@ -86,13 +88,14 @@ def what(cause: Cause) -> str:
     sign, less = _TOO_MUCH.get(cause.effect, (0.0, ""))
     if sign * next(iter(sizes.values()), 0.0) > 0.0:
         return less.format(**{name: abs(size) for name, size in sizes.items()})
-    particular = cause.effect
-    if cause.parameters:
-        name, value = list(cause.parameters.items())[-1]
-        # A lag that may as well be none is not worth telling.
-        none = name == "lag_s" and abs(value.value) <= LEAST_SIGMA * value.std
-        particular += "" if none else f" {name}"
-    return _WHAT.get(particular, _WHAT[cause.effect]).format(**sizes)
+    # A lag that may as well be none is not worth telling.
+    telling = [
+        f"{cause.effect} {name}"
+        for name, value in cause.parameters.items()
+        if name != "lag_s" or abs(value.value) > LEAST_SIGMA * value.std
+    ]
+    particular = next((key for key in telling if key in _WHAT), cause.effect)
+    return _WHAT[particular].format(**sizes)
 
 
 def place(block: str) -> str:
