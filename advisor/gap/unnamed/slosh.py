@@ -33,6 +33,8 @@ filtered on the ground edges ring as well."""
 _WIDTH, _ABOVE = 3, 4.0
 """Steps of frequency to either side that a resonance shows in, and by how much it exceeds all others: moving
 air brings as much by chance here and there."""
+_SWINGS, _FEW = 2.5, 2 * _WIDTH + 3
+"""Swings of a record, at least: what is slower may drift; and frequencies that one stands out of."""
 _VISIBLE = 0.03
 """Power of its response, beside the instruments' noise, from which on there is something to explain."""
 
@@ -40,14 +42,16 @@ _VISIBLE = 0.03
 def sloshing(problem: Problem, last: Fitted) -> Leftover | None:
     """A mass that the pitching sets swinging, with a note that says how fast; None without one."""
     noise = noise_of(problem)
-    coarse = _gains(problem, last, noise, [(hz, _DAMPING) for hz in _HZ])
-    gains = [trial[0] for trial in coarse]
-    at = int(np.argmax(gains))
-    hz, between = float(_HZ[at]), float(_HZ[1] / _HZ[0])
     # A record of a few swings does not tell frequencies apart that are nearer than one over its length.
     resolved = 1.0 / float(np.median([flight.duration_s for flight in problem.flights.flights]))
-    near = (np.abs(np.log(_HZ / hz)) < (_WIDTH + 0.5) * np.log(between)) | (np.abs(_HZ - hz) < resolved)
-    if at in (0, len(gains) - 1) or gains[at] < _ABOVE * max(np.array(gains)[~near]):
+    tried = _HZ[_SWINGS * resolved < _HZ]
+    if len(tried) < _FEW:
+        return None
+    gains = np.array([gain for gain, *_ in _gains(problem, last, noise, [(hz, _DAMPING) for hz in tried])])
+    at = int(np.argmax(gains))
+    hz, between = float(tried[at]), float(_HZ[1] / _HZ[0])
+    near = (np.abs(np.log(tried / hz)) < (_WIDTH + 0.5) * np.log(between)) | (np.abs(tried - hz) < resolved)
+    if at in (0, len(gains) - 1) or gains[at] < _ABOVE * np.max(gains[~near]):
         return None
     finer = hz * between ** np.array([-0.67, -0.33, 0.0, 0.33, 0.67])
     fine = _gains(problem, last, noise, [(float(f), z) for f in finer for z in _DAMPINGS])
