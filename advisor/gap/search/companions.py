@@ -108,7 +108,10 @@ def one_number_for_ice(problem: Problem, stages: list[Stage], variants: Sequence
     others = [v for v in variants if v.effect in starts and v.effect not in names]
     forms = [form for v in others for form in (v, *v.likewise)]
     at_once = [f for f in forms if len(f.names) == 1 + len(when) and f.fixed.get("at_s") == step_s]
-    points = [beside.with_effect(form, (starts[form.effect], *when)) for form in at_once]
+    points = [
+        beside.with_effect(form, (float(np.clip(starts[form.effect], *form.bounds[0])), *when))
+        for form in at_once
+    ]
     fits = [fit(problem, point, last.noise, tolerance=0.5) for point in points]
     best = min(fits, key=lambda f: f.cost, default=last)
     independent = worth(problem, last.innovations)

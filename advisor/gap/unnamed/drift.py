@@ -41,6 +41,8 @@ _FEW = 5
 _SCATTER, _ITS_ERRORS = 0.2, 20.0
 """Standard deviation between manoeuvres of a number that is another in each: over itself, for a lag that is
 taken for a delay scatters by a sixth; and its square over that of the errors."""
+_TOLD = 1e-6
+"""Share of what the manoeuvre that tells most says of it, below which one says nothing."""
 _MAY_DRIFT, _SIGNIFICANT = 0.15, 5.0
 """The same of one that may change evenly: what changes by four fifths has 0.23."""
 
@@ -128,12 +130,14 @@ def _written(variant: Variant, value: float, flights: Flights) -> FloatArray:
 
 def _scatter(problem: Problem, last: Fitted, named: Judged) -> _Scatter:
     """What each manoeuvre by itself would change of a named number, all others as they are."""
-    k = last.point.effects.index(named.variant)
+    k = next(i for i, effect in enumerate(last.point.effects) if effect.effect == named.effect)
     at = len(last.point.derivatives) + sum(len(values) for values in last.point.values[:k])
     share = worth(problem, last.innovations) / counts(problem)
     inners = [own_eliminated(block, np.sqrt(share) / last.noise)[0] for block in last.linear]
-    known = np.array([inner[at, at] for inner in inners])
-    change = np.array([inner[at, -1] for inner in inners]) / known
+    told = max(inner[at, at] for inner in inners)
+    pairs = [(inner[at, at], inner[at, -1]) for inner in inners if inner[at, at] > _TOLD * told]
+    known, pulled = np.array(pairs).T
+    change = pulled / known
     change -= np.average(change, weights=known)
     std = float(np.sqrt(max(np.mean(change**2 - 1.0 / known), 0.0)))
     return _Scatter(float(named.value[0]), std, float(np.mean(known * change**2)))
