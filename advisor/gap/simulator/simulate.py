@@ -10,8 +10,8 @@ of the candidate effects are in the same loop, each switched off by a zero (``ad
     q̇ = v² (M_trim + M_α Δα + M_δe Δδ + ...) + v (M_q q + M_|q| |q| + M_α̇ α̇) + M_T ΔT + M_P (1 − v²)
     θ̇ = q cos φ − r sin φ,   a_z cos α = V N + a_x sin α
 
-Where forces do not go with V², lift and all moments of α and δ are multiplied by v^n besides. V is what was
-measured, and a parabola in time that it may be wrong by. The last is the exact
+Where forces do not go with V², lift is multiplied by v^n besides, and all moments of α and δ by v^m. V is
+what was measured, and a parabola in time that it may be wrong by. The last is the exact
 a_z = V cos α (α̇ − q) + V̇ sin α − g cos θ with V̇ replaced by what a_x measures.
 
 A step has to wait for the one before, which leaves a processor idle. Many sets of parameters are flown with
