@@ -8,7 +8,7 @@ elevator channel counts trailing edge down as positive, hence the minus in `Scal
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,14 +97,15 @@ def find_elevator(elevator: Elevator, parameters: Parameters) -> Surface | Probl
     """
     functions = _functions(parameters)
     if elevator.output != "auto":
+        given = _surface((elevator.output,), elevator, parameters, "as the aircraft file says")
         mixed = _MIXED.get(functions.get(elevator.output, 0))
-        if mixed:
+        if mixed and elevator.calibration is None:
             return Problem(
                 "no_elevator",
                 f"Output {elevator.output} is one half of a mixed {mixed} pair, not an elevator.",
                 "Set elevator.output to auto: both halves are then read together.",
             )
-        return _surface((elevator.output,), elevator, parameters, "as the aircraft file says")
+        return replace(given, said=_half_of(elevator.output, mixed)) if mixed else given
     found = tuple(n for n, function in functions.items() if function == ELEVATOR)
     halves = tuple(n for n, function in functions.items() if function in _MIXED)
     outputs = found or halves
@@ -148,6 +149,13 @@ def _surface(outputs: tuple[int, ...], elevator: Elevator, parameters: Parameter
         "as full strokes of 25 deg, so Z_delta_e and M_delta_e are per assumed degree."
     )
     return Surface(outputs, tuple(_scale(n, parameters) for n in outputs), False, said)
+
+
+def _half_of(output: int, mixed: str) -> str:
+    return (
+        f"Output {output} is one half of a mixed {mixed} pair, calibrated as an elevator in the aircraft "
+        "file: what it does for the other axis counts as elevator, too."
+    )
 
 
 def _scale(n: int, parameters: Parameters) -> Scale:

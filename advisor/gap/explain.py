@@ -20,7 +20,13 @@ from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.search.air import Air, moving_air
-from advisor.gap.search.command import is_likelier_held, may_be_held, read_as_held
+from advisor.gap.search.command import (
+    is_likelier_held,
+    is_plainer,
+    may_be_held,
+    may_be_linear,
+    read_otherwise,
+)
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import Progress, as_measured, build_up, reduced_to
@@ -140,15 +146,16 @@ def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> 
 def _named(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
 ) -> tuple[Problem, list[Stage]]:
-    """The model built up, with the command held instead of linear where that names the likelier effects."""
+    """The model built up, with the command read the other way where that names the likelier effects."""
     stages = build_up(problem, baseline, variants, progress)
     seen = stages[0].rivals | {s.added.effect for s in stages if s.added is not None}
-    if may_be_held(problem, stages[-1].fitted, seen):
-        held, plain = read_as_held(problem, baseline)
-        others = build_up(held, plain, variants, progress)
-        if is_likelier_held(problem, stages[-1].fitted, held, others[-1].fitted):
-            return held, others
-    return problem, stages
+    named = stages[-1].fitted
+    if not (may_be_held(problem, named, seen) or may_be_linear(problem, named)):
+        return problem, stages
+    other, plain = read_otherwise(problem, baseline)
+    others = build_up(other, plain, variants, progress)
+    likelier = is_plainer if problem.held else is_likelier_held
+    return (other, others) if likelier(problem, named, other, others[-1].fitted) else (problem, stages)
 
 
 def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage], Air | None]:

@@ -15,7 +15,8 @@ from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.normal import solved_within
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.fitting.step import bounds_of, own_eliminated
-from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.records.flights import Flights
+from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, SPEED, THROTTLE
 
 _INDIFFERENT = 3e-4
 """Directions the data say relatively less about stay put: they change no prediction, but a long step along
@@ -25,6 +26,8 @@ _ANCHOR = 1e-3
 guess as far off as the parameter is large."""
 _LONE = 0.9
 """Share of the information on a number from which on a single manoeuvre tells of it."""
+_NEEDED = (SPEED, THROTTLE, HEIGHT)
+"""Slow inputs that effects need."""
 
 
 @dataclass(frozen=True)
@@ -43,16 +46,37 @@ class HeldOut:
     """Shape (manoeuvres, channels): mean squares."""
 
 
-def folds_of(n: int) -> list[list[int]]:
-    """Three interleaved folds; as many as there are manoeuvres when fewer."""
+def folds_of(n: int, shifted: bool = False) -> list[list[int]]:
+    """Three interleaved folds; as many as there are manoeuvres when fewer.
+
+    ``shifted``: those that lie three apart, which come into one fold otherwise, come into different ones.
+    """
     k = min(3, n)
-    return [list(range(j, n, k)) for j in range(k)]
+    fold = [(i + shifted * (i // k)) % k for i in range(n)]
+    return [[i for i in range(n) if fold[i] == j] for j in range(k)]
+
+
+def folds_for(flights: Flights) -> list[list[int]]:
+    """Folds in which what few manoeuvres tell can be confirmed: they do not all come into the same.
+
+    Throttle, height or air speed may move in two manoeuvres only; kept out together, the others know nothing.
+    """
+    power = np.array([np.var(f.slow[list(_NEEDED)], axis=1) for f in flights.flights])
+    shares = power / np.maximum(np.sum(power, axis=0), 1e-300)
+    confirmable = shares[:, np.max(shares, axis=0) < _LONE]
+
+    def together(folds: list[list[int]]) -> float:
+        return max(float(np.max(np.sum(confirmable[fold], axis=0), initial=0.0)) for fold in folds)
+
+    n = len(flights)
+    interleaved, shifted = folds_of(n), folds_of(n, shifted=True)
+    return shifted if together(interleaved) > _LONE > together(shifted) else interleaved
 
 
 def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None) -> HeldOut:
     """Rotate every fold out. With a single manoeuvre the fit itself is returned: nothing can be kept out."""
     n = len(problem.flights)
-    chosen = folds_of(n) if folds is None else folds
+    chosen = folds_for(problem.flights) if folds is None else folds
     weights = 1.0 / fitted.noise
     blocks = [own_eliminated(block, weights) for block in fitted.linear]
     inner = np.array([b[0] for b in blocks])

@@ -9,6 +9,7 @@ from advisor.gap.candidates import input
 from advisor.gap.fitting.fit import Fitted, evidence_of, fit
 from advisor.gap.fitting.neighbourhood import Neighbourhood
 from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.search.merit import LEAST_GAIN
 from advisor.gap.search.screen import Screen
 
 _NEARLY = 0.25
@@ -23,6 +24,8 @@ _HALF_S = 0.003
 """How near to half an interval that is."""
 _BEND = frozenset({"actuator_rate_limit", "actuator_backlash", "actuator_deadband"})
 """What lies between command and surface and is not linear."""
+_SEVERAL = 2
+"""Effects from which on another reading may do with fewer."""
 _LIKELIER = 12.0
 """Twice the log likelihood by which a whole diagnosis with a held command must be the better one."""
 
@@ -39,7 +42,7 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     if best is None:
         return linear, fitted
     other = input.LAG if best.variant is input.DELAY else input.DELAY
-    held, plainly_held = read_as_held(linear, fitted)
+    held, plainly_held = read_otherwise(linear, fitted)
     plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
     price = 2.0 * float(np.log(np.sum(counts(linear))))
     if plain[False] <= plain[True] and fitted.cost - best.cost < price:
@@ -91,10 +94,21 @@ def may_be_held(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool
     )
 
 
-def read_as_held(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
-    """The plain model with the command held between its stamps."""
-    held = replace(problem, held=True)
-    return held, _with_latency(held, fit(held, fitted.point, fitted.noise))
+def may_be_linear(problem: Problem, fitted: Fitted) -> bool:
+    """Whether a command read as held shows the half interval by which a linear one is sooner.
+
+    Several sensors seem out of step then, where one of them is.
+    """
+    if not problem.held or sum(not effect.always for effect in fitted.point.effects) < _SEVERAL:
+        return False
+    half = 0.5 * float(np.median(np.diff(problem.flights.flights[0].t_u)))
+    return any(half - _HALF_S < abs(time) < 2.0 * half + _HALF_S for time in _other_times_of(fitted))
+
+
+def read_otherwise(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+    """The plain model with the command held between its stamps instead of linear, or the reverse."""
+    other = replace(problem, held=not problem.held)
+    return other, _with_latency(other, fit(other, fitted.point, fitted.noise))
 
 
 def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: Fitted) -> bool:
@@ -106,12 +120,16 @@ def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: 
     if _delay_of(named_held) > 0.0:
         return False
     more = evidence_of(held, named_held) - evidence_of(linear, named)
-    fewer = len(named.point.effects) - len(named_held.point.effects)
     bends = any(effect.effect in _BEND for effect in named_held.point.effects)
     bends = bends and not _is_the_ramp(held, named_held)
-    return (bends and more < -_LIKELIER) or (
-        fewer > 0 and more < fewer * float(np.log(np.sum(counts(linear))))
-    )
+    return (bends and more < -_LIKELIER) or is_plainer(linear, named, held, named_held)
+
+
+def is_plainer(one: Problem, named: Fitted, other: Problem, named_there: Fitted) -> bool:
+    """Whether the other reading does with fewer effects, each of which must bring more than its price."""
+    fewer = len(named.point.effects) - len(named_there.point.effects)
+    more = evidence_of(other, named_there) - evidence_of(one, named)
+    return fewer > 0 and more < fewer * (float(np.log(np.sum(counts(one)))) + 2.0 * LEAST_GAIN)
 
 
 def _is_the_ramp(held: Problem, fitted: Fitted) -> bool:

@@ -17,12 +17,16 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
 from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN
 from advisor.gap.search.ranking import candidates_for, judge
-from advisor.gap.search.score import addition, price_of
+from advisor.gap.search.score import BY_NATURE, addition, price_of
 from advisor.gap.search.screen import Screen
 from advisor.gap.search.stage import Stage, only, rebuilt
 
 _CLEARLY = 20.0
 """Cost by which a pair of names must beat those that were found first."""
+_CERTAIN = 100.0
+"""Log likelihood from which on something is there, however small ..."""
+_TRIED = 3
+"""... and how many of its likenesses, and companions of each, are tried."""
 _PROMISING = 0.5
 """Share of what the first effect brings that the screening must promise of another companion."""
 _WORTH_A_FIT = 2
@@ -66,6 +70,27 @@ def other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Va
         Stage(alone, held, (*companions, same), best),
         Stage(best.fitted, best.held_out, tuple(after), None),
     ]
+
+
+def two_in_place_of_one(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
+    """Two effects, each worth a name, for one that leaves something certain which is too small for a name.
+
+    What imitates the sum of two is not quite their sum: a late vane that reads low looks like one far ahead
+    of the centre of gravity, but for a rest that no noise leaves. A rest of what every aircraft has to some
+    degree is no sign of that.
+    """
+    first = stages[0].added
+    if first is None or len(stages) != 2:
+        return stages
+    certain = [j for j in stages[1].considered if j.gain >= _CERTAIN and j.effect not in BY_NATURE]
+    best, least = None, min((j.fitted.cost for j in certain), default=first.fitted.cost)
+    for rest in certain[:_TRIED]:
+        alone = only(problem, rest.fitted, [rest.effect])
+        others = candidates_for(problem, alone, [v for v in variants if v.effect != first.effect])
+        for companion in judge(problem, alone, hold_out(problem, alone), others[:_TRIED]):
+            if companion.worth_naming and companion.fitted.cost < least:
+                best, least = companion.fitted, companion.fitted.cost
+    return stages if best is None else _replaced(problem, stages[0], best)
 
 
 def one_early(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:

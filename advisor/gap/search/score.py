@@ -16,7 +16,7 @@ LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
 _FAINT = 0.15
 """Share of it that is enough of what is certain, where the air is still and nothing else there ..."""
-_BY_NATURE = frozenset(
+BY_NATURE = frozenset(
     {
         "elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift", "unsteady_lift", "alpha_dot",
         "icing", "structural_mode", "airspeed_variation", "thrust_moment", "ground_effect",
@@ -112,7 +112,7 @@ def log_likelihood_gained(
 
 def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:
     """Of the least change: what is enough where an effect is certain."""
-    if not is_plain(before) or problem.knows_the_noise or variant.effect in _BY_NATURE:
+    if not is_plain(before) or problem.knows_the_noise or variant.effect in BY_NATURE:
         return 1.0
     times = 2.0 if variant.names[0] in TIMES or variant.comes_at_any_time else 1.0
     return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0

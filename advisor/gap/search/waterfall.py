@@ -10,7 +10,13 @@ from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import hold_out, measured_in
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import shared_std, worth
-from advisor.gap.search.companions import by_the_file, one_early, one_number_for_ice, other_companion
+from advisor.gap.search.companions import (
+    by_the_file,
+    one_early,
+    one_number_for_ice,
+    other_companion,
+    two_in_place_of_one,
+)
 from advisor.gap.search.merit import LEAST_BELIEF, Judged
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
@@ -46,7 +52,7 @@ def build_up(
         if added is None:
             break
         fitted, held = added.fitted, added.held_out
-    for better in (other_companion, one_early, one_number_for_ice, by_the_file):
+    for better in (other_companion, two_in_place_of_one, one_early, one_number_for_ice, by_the_file):
         stages = better(problem, stages, variants)
     return in_full(problem, settled(problem, stages))
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.fitting.holdout import HeldOut, folds_of, held_out, hold_out, mean_squares
+from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import Measured
 from advisor.gap.search.air import Air
@@ -25,7 +25,7 @@ def keep_out(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
     if holdout is None or not 0 < holdout < n:
         return e, list(range(n))
     kept = list(range(n - holdout, n))
-    folds = [kept, *[[i for i in fold if i not in kept] for fold in folds_of(n)]]
+    folds = [kept, *[[i for i in fold if i not in kept] for fold in folds_for(e.problem.flights)]]
 
     def judged(one: Judged) -> Judged:
         held = hold_out(e.problem, one.fitted, folds)
