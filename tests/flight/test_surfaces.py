@@ -75,6 +75,14 @@ def test_one_half_of_a_mixed_pair_is_refused_by_name():
     assert "V-tail" in alone.text
 
 
+def test_one_half_of_a_mixed_pair_is_read_as_the_aircraft_file_calibrates_it_and_said_so():
+    elevator = Elevator(output=2, calibration=((1000, 20.0), (2000, -20.0)))
+    surface = find_elevator(elevator, {"SERVO1_FUNCTION": 77.0, "SERVO2_FUNCTION": 78.0})
+    assert isinstance(surface, Surface)
+    assert degrees(surface, [1250]) == pytest.approx([10.0])
+    assert "one half of a mixed elevon pair" in surface.said
+
+
 def test_one_calibration_for_two_outputs_is_refused():
     elevator = Elevator(calibration=((1000, -25.0), (2000, 25.0)))
     problem = find_elevator(elevator, {"SERVO1_FUNCTION": 77.0, "SERVO2_FUNCTION": 78.0})

@@ -9,11 +9,12 @@ from advisor.aircraft import Aircraft
 from advisor.diagnosis import maneuvers_of
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
+from advisor.gap.explain import explain
 from advisor.gap.fitting.fit import fit
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import usable_of
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.search.command import is_likelier_held
+from advisor.gap.search.command import is_likelier_held, read_otherwise
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario
@@ -77,6 +78,21 @@ def test_a_pitch_rate_that_is_early_beside_a_held_command_makes_nothing_else_lat
     (cause,) = [c for c in found.causes if c.present]
     assert cause.effect == "pitch_rate_skew"
     assert cause.parameters["skew_s"].value == pytest.approx(-early_s, abs=0.002)
+
+
+def test_a_linear_command_taken_for_a_held_one_is_read_again_where_it_puts_several_sensors_out_of_step():
+    flown = fly(Setup(maneuvers=6, skew={"q": 0.0145}, noise=0.007, seed=73))
+    # Stamped late besides, by more than the servo takes: a few milliseconds of latency hide nothing then.
+    for n, maneuver in enumerate(flown):
+        elevator = maneuver.channels["elevator"]
+        late = replace(elevator, t=elevator.t + 0.012)
+        flown[n] = replace(maneuver, channels={**maneuver.channels, "elevator": late})
+    flights = prepare(flown, Aircraft())
+    held, plain = read_otherwise(*fit_baseline(flights, Aircraft()))
+    assert held.held
+    found = explain(held, plain, Aircraft(), lambda *_: None)
+    assert not found.problem.held
+    assert [s.added.effect for s in found.stages if s.added is not None] == ["pitch_rate_skew"]
 
 
 @pytest.mark.parametrize("seed", [1, 2])

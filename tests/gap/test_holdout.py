@@ -5,8 +5,9 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
-from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.fitting.holdout import folds_for, folds_of, hold_out
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from tests.gap.generator import Setup, fly
@@ -29,3 +30,31 @@ def test_the_time_of_a_change_stays_where_only_manoeuvres_kept_out_tell_it(heavi
     fitted = fit(problem, point, plain.noise, tolerance=0.5)
     predicted = hold_out(problem, fitted)
     assert np.all(predicted.innovation_square < 3.0 * fitted.noise**2)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 5, 9, 14])
+@pytest.mark.parametrize("shifted", [False, True])
+def test_every_manoeuvre_is_kept_out_once(n, shifted):
+    folds = folds_of(n, shifted)
+    assert sorted(i for fold in folds for i in fold) == list(range(n))
+    assert all(folds)
+
+
+def throttled(*moves_in):
+    """Six manoeuvres of an aircraft whose thrust pitches it, the throttle moved in some of them."""
+    return fly(
+        Setup(
+            maneuvers=6, thrust_amplitude=0.6, thrust_moves_in=moves_in, switches={"thrust_arm": 0.3}, seed=71
+        )
+    )
+
+
+def test_two_manoeuvres_that_alone_tell_something_are_not_kept_out_together():
+    maneuvers = throttled(0, 3)
+    assert not any({0, 3} <= set(fold) for fold in folds_for(prepare(maneuvers, Aircraft())))
+    assert diagnose(maneuvers, Aircraft()).causes[0].effect == "thrust_moment"
+
+
+@pytest.mark.parametrize("moves_in", [(0, 1, 3), (2,), ()])
+def test_folds_are_interleaved_where_others_could_confirm_what_a_fold_tells_or_none_can(moves_in):
+    assert folds_for(prepare(throttled(*moves_in), Aircraft())) == folds_of(6)

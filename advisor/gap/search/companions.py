@@ -23,7 +23,7 @@ from advisor.gap.search.stage import Stage, only, rebuilt
 
 _CLEARLY = 20.0
 """Cost by which a pair of names must beat those that were found first."""
-_CERTAIN = 100.0
+_CERTAIN = 30.0
 """Log likelihood from which on something is there, however small ..."""
 _TRIED = 3
 """... and how many of its likenesses, and companions of each, are tried."""

@@ -25,9 +25,11 @@ _PLAIN_GAIN, _PLAIN_CHANGE = 100.0, 10.0
 """Log likelihood, and changes of the least size, from which on twice the physical minimum is enough."""
 LEAST_OFFSET_RAD = 0.003
 """Smaller offsets of α are not taken out before the fit."""
-NAMED_OFFSET_RAD = 0.0087
+NAMED_OFFSET_RAD = 0.007
 """Smaller ones get no name: neither a vane's zero nor an attitude reference, from which the path is taken, is
-set much better than within half a degree."""
+set much better than within 0.4 deg ..."""
+NAMED_OFFSET_OF_ESTIMATES_RAD = 0.0087
+"""... and an autopilot's estimate is off by up to half a degree by itself."""
 OFFSET_SIGMAS = 5.0
 """Standard deviations that an offset of α must have to be named."""
 LEAST_BELIEF = 8.0

@@ -11,7 +11,7 @@ from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.search.merit import NAMED_OFFSET_RAD, OFFSET_SIGMAS, Judged
+from advisor.gap.search.merit import NAMED_OFFSET_OF_ESTIMATES_RAD, NAMED_OFFSET_RAD, OFFSET_SIGMAS, Judged
 from advisor.gap.search.score import TIME_DOUBT_S, TIMES
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.ties import tied_with
@@ -156,7 +156,8 @@ def alpha_bias_cause(
     """
     if not np.isfinite(check.offset.rad) or not check.offset.stays or "alpha" not in problem.channels:
         return None
-    least = max(NAMED_OFFSET_RAD, OFFSET_SIGMAS * check.offset.std_rad)
+    smallest = NAMED_OFFSET_OF_ESTIMATES_RAD if problem.flights.alpha_is_derived else NAMED_OFFSET_RAD
+    least = max(smallest, OFFSET_SIGMAS * check.offset.std_rad)
     trim = float(np.mean([flight.alpha_trim for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
     # The trim was read with the offset taken out already: what a scale makes of it is no offset.
