@@ -178,6 +178,8 @@ def test_beside_another_name_four_numbers_give_way_to_one_that_does_as_well():
 @pytest.mark.parametrize("seed", [72, pytest.param(73, marks=pytest.mark.study)])
 def test_a_late_vane_that_reads_low_is_no_vane_far_ahead(seed):
     """One place of the vane describes both but for a rest that is too small for a name."""
-    both = Setup(airframe=LIGHT_AIRCRAFT, alpha_scale=-0.1, skew={"alpha": 0.07}, noise=0.03, seed=seed)
+    both = Setup(
+        airframe=LIGHT_AIRCRAFT, alpha_scale=-0.1, skew={"alpha": 0.07}, noise=0.03, maneuvers=6, seed=seed
+    )
     found = diagnose(fly(both), Aircraft())
     assert {c.effect for c in found.causes if c.present} == {"alpha_skew", "alpha_scale"}

@@ -14,7 +14,7 @@ from advisor.gap.unnamed.true_speed import TrueSpeed
 from advisor.gap.unnamed.weight import Weight
 from tests.gap.generator import Setup, fly
 
-HARD = Setup(gust_std=0.12, coloured=0.5, jitter=0.004, speed_change=0.03, seed=37)
+HARD = Setup(maneuvers=6, gust_std=0.12, coloured=0.5, jitter=0.004, speed_change=0.03, seed=37)
 
 
 def with_reading(setup, channel, reading):
@@ -37,7 +37,7 @@ def scaled(setup, channel, factor):
     pytest.param("theta", 1.1, "attitude_sensor", marks=pytest.mark.study),
 ])  # fmt: skip
 def test_a_scale_without_a_name_is_no_sum_of_named_effects_even_in_moving_air(channel, factor, block):
-    found = diagnose(scaled(HARD, channel, factor), Aircraft())
+    found = diagnose(scaled(replace(HARD, maneuvers=9), channel, factor), Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == block
     # An attitude that reads a tenth high has its zero off, too.
@@ -82,7 +82,7 @@ def test_an_elevator_that_loses_power_in_flight_is_no_mass_and_no_ice(setup):
     ("a_z", lambda y: y + 0.02 * (y + 9.8) ** 2, "accelerometer"),
 ])  # fmt: skip
 def test_a_bent_reading_is_no_sum_of_bent_forces_even_in_moving_air(channel, reading, block):
-    found = diagnose(with_reading(HARD, channel, reading), Aircraft())
+    found = diagnose(with_reading(replace(HARD, maneuvers=9), channel, reading), Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == block
     assert any("does not read in proportion" in note for note in found.notes)
