@@ -55,7 +55,7 @@ from advisor.gap.unnamed.swing import swinging, swings_the_aircraft
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
 from advisor.gap.unnamed.unnamed_air import unnamed_air
-from advisor.gap.unnamed.unnamed_law import unnamed_law
+from advisor.gap.unnamed.unnamed_law import Law, unnamed_law
 from advisor.gap.unnamed.unsteady import unsteady
 from advisor.gap.unnamed.wander import wandering_attitude, wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
@@ -82,16 +82,14 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
     problem, stages = _named(problem, baseline, variants, progress)
     law = unnamed_law(problem, stages)
-    if law is not None:
-        stages = reduced_to(problem, stages, [])
     progress("looking at the air", 0.7)
-    stages, air = _beside_the_air(problem, stages)
+    law, stages, air = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
     tolerance = tolerance_of(problem.flights)
     stages = as_measured(problem, stages)
     floor = _floor(problem, stages[-1], tolerance)
     leftover = (
-        law
+        (law and law.leftover)
         or drifting(problem, stages)
         or remembering(problem, stages)
         or stepping(problem, stages[0].fitted, stages[-1].fitted)
@@ -156,6 +154,17 @@ def _named(
     others = build_up(other, plain, variants, progress)
     likelier = is_plainer if problem.held else is_likelier_held
     return (other, others) if likelier(problem, named, other, others[-1].fitted) else (problem, stages)
+
+
+def _with_the_air(
+    problem: Problem, stages: list[Stage], law: Law | None
+) -> tuple[Law | None, list[Stage], Air | None]:
+    """A law and nothing that was named, with the air's motion; or, where it is the air's shape, the names."""
+    if law is not None:
+        plain, air = _beside_the_air(problem, reduced_to(problem, stages, []))
+        if not law.may_be(air):
+            return law, plain, air
+    return None, *_beside_the_air(problem, stages)
 
 
 def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage], Air | None]:

@@ -4,6 +4,8 @@ Two or three named effects together imitate such a law well. One law that explai
 likelier.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from advisor.flight.messages import FloatArray
@@ -13,6 +15,7 @@ from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
+from advisor.gap.search.air import Air
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.score import (
     addition,
@@ -53,7 +56,26 @@ certain is enough. And they must change that share of what the law removes: a sp
 side effects."""
 
 
-def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
+_OF_THE_AIR = 0.2
+"""Share of the log likelihood that moving air brings alone, below which a law is a part of what gusts do."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law that was found, and what it brings."""
+
+    leftover: Leftover
+    gain: float
+
+    def may_be(self, air: Air | None) -> bool:
+        """Whether air that moves explains so much more that the law is no more than its shape.
+
+        Laws of the truth in moving air bring half of what the air would without them, and more.
+        """
+        return air is not None and self.gain < _OF_THE_AIR * air.gain
+
+
+def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     """The law that explains more than everything that was named; None where none does."""
     plain, held = stages[0].fitted, stages[0].held_out
     found = Screen(problem, plain).quick_fits(laws_for(problem.flights))
@@ -93,7 +115,7 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Leftover | None:
     rivals = {BLOCK_OF[j.effect]: _share(j, bent) for j in reversed(stages[0].considered)}
     ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
     share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))
-    return Leftover(block, share, ((block, 1.0), *ranking), note=said(bent))
+    return Law(Leftover(block, share, ((block, 1.0), *ranking), note=said(bent)), bent.gain)
 
 
 def _shows(problem: Problem, before: HeldOut, after: HeldOut) -> bool:

@@ -23,6 +23,8 @@ _LEAST_SAMPLES = 10
 """Of the air speed in a manoeuvre, beyond the parabola's three."""
 _LEAST_PER_S = 0.08
 """Change of the wind, m/s per metre, from which on it is felt: a knot in six metres."""
+_MOST_PER_S = 0.5
+"""Beyond which it is gusts: a wind shear that airports call severe begins at 0.2 1/s (ICAO Doc 9817)."""
 _LEAST_MANEUVERS = 4
 """That must agree on a gradient."""
 _CHANCE = 1e-3
@@ -113,7 +115,8 @@ def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Sh
         return None
     # An instrument that is late, or indicates less than the true speed, feigns wind as well.
     left = [_unexplained(_paths_of(maneuvers, true_over_read, late_s, _LATE_S[-1])) for late_s in _LATE_S]
-    return _shear_of(_paths_of(maneuvers, true_over_read, _LATE_S[int(np.argmin(left))]))
+    found = _shear_of(_paths_of(maneuvers, true_over_read, _LATE_S[int(np.argmin(left))]))
+    return None if found is None or abs(found.gradient_per_s) > _MOST_PER_S else found
 
 
 def _shear_of(paths: Sequence[_Path]) -> Shear | None:
