@@ -29,7 +29,14 @@ from advisor.gap.search.command import (
 )
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
-from advisor.gap.search.waterfall import Progress, as_measured, build_up, reduced_to
+from advisor.gap.search.waterfall import (
+    Progress,
+    as_measured,
+    build_up,
+    one_after_another,
+    reconsidered,
+    reduced_to,
+)
 from advisor.gap.unnamed.cross_axis import crossed_axes
 from advisor.gap.unnamed.drift import drifting
 from advisor.gap.unnamed.leftover import (
@@ -80,8 +87,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     """
     variants = beyond_known(aircraft.effects, variants_for(problem.flights))
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
-    problem, stages = _named(problem, baseline, variants, progress)
-    law = unnamed_law(problem, stages)
+    problem, stages, law = _named(problem, baseline, variants, progress)
     progress("looking at the air", 0.7)
     law, stages, air = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
@@ -143,17 +149,26 @@ def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> 
 
 def _named(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
-) -> tuple[Problem, list[Stage]]:
-    """The model built up, with the command read the other way where that names the likelier effects."""
-    stages = build_up(problem, baseline, variants, progress)
+) -> tuple[Problem, list[Stage], Law | None]:
+    """The model built up, with the command read the other way where that names the likelier effects.
+
+    Also returned is the law that explains more than all of them. It is sought beside the first names: those
+    that are found when they are reconsidered explain more, and beside a law beyond doubt none need be.
+    """
+    stages = one_after_another(problem, baseline, variants, progress)
+    law = unnamed_law(problem, stages)
+    if law is not None and law.is_beyond_doubt:
+        return problem, stages, law
+    stages = reconsidered(problem, stages, variants)
     seen = stages[0].rivals | {s.added.effect for s in stages if s.added is not None}
     named = stages[-1].fitted
-    if not (may_be_held(problem, named, seen) or may_be_linear(problem, named)):
-        return problem, stages
-    other, plain = read_otherwise(problem, baseline)
-    others = build_up(other, plain, variants, progress)
-    likelier = is_plainer if problem.held else is_likelier_held
-    return (other, others) if likelier(problem, named, other, others[-1].fitted) else (problem, stages)
+    if may_be_held(problem, named, seen) or may_be_linear(problem, named):
+        other, plain = read_otherwise(problem, baseline)
+        others = build_up(other, plain, variants, progress)
+        likelier = is_plainer if problem.held else is_likelier_held
+        if likelier(problem, named, other, others[-1].fitted):
+            return other, others, unnamed_law(other, others)
+    return problem, stages, None if law is None else unnamed_law(problem, stages)
 
 
 def _with_the_air(

@@ -36,6 +36,20 @@ Progress = Callable[[str, float], None]
 def build_up(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress = lambda *_: None
 ) -> list[Stage]:
+    """Stages from the plain model to the last addition, and looked at once more as a whole."""
+    return reconsidered(problem, one_after_another(problem, baseline, variants, progress), variants)
+
+
+def reconsidered(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
+    """Stages of the names that explain most together, in the order of what the whole loses without each."""
+    for better in (other_companion, two_in_place_of_one, one_early, one_number_for_ice, by_the_file):
+        stages = better(problem, stages, variants)
+    return in_full(problem, settled(problem, stages))
+
+
+def one_after_another(
+    problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress = lambda *_: None
+) -> list[Stage]:
     """Stages from the plain model to the last addition; the last stage adds nothing."""
     stages: list[Stage] = []
     fitted, held, ahead = baseline, hold_out(problem, baseline), None
@@ -52,9 +66,7 @@ def build_up(
         if added is None:
             break
         fitted, held = added.fitted, added.held_out
-    for better in (other_companion, two_in_place_of_one, one_early, one_number_for_ice, by_the_file):
-        stages = better(problem, stages, variants)
-    return in_full(problem, settled(problem, stages))
+    return stages
 
 
 def _leading_on(
