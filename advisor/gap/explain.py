@@ -19,7 +19,7 @@ from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import stated_floor, tolerance_of
-from advisor.gap.search.air import Air, moving_air
+from advisor.gap.search.air import Air, gust_instead, moving_air
 from advisor.gap.search.command import (
     is_likelier_held,
     is_plainer,
@@ -188,6 +188,8 @@ def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage],
     nearly_white = np.all(worth(problem, last.innovations) >= 0.5 * counts(problem))
     if not problem.knows_the_noise and nearly_white:
         return stages, None
+    if (gust := gust_instead(problem, stages)) is not None:
+        return reduced_to(problem, stages, []), gust
     air = moving_air(problem, last)
     if air is None:
         return stages, None

@@ -5,7 +5,7 @@ not. Judged by the Kalman likelihood of ``advisor.oem.turbulence``; the course o
 from the probe of the air.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,8 +18,9 @@ from advisor.gap.noise.probes import KNOTS_S, Course, disturbance_courses
 from advisor.gap.noise.quiet import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
 from advisor.gap.records.smoothness import robust_std
 from advisor.gap.search.merit import LEAST_BELIEF, Judged
+from advisor.gap.search.stage import Stage
 from advisor.oem.innovations import CHANNELS
-from advisor.oem.turbulence import find_turbulence
+from advisor.oem.turbulence import Turbulence, find_turbulence
 
 AIR_GAIN = 40.0
 """Log likelihood by which moving air must beat coloured instruments."""
@@ -27,7 +28,12 @@ AIR_MANEUVERS = 5
 """Enough to recognise turbulence by."""
 
 LEAST_GUST_ANGLE = 0.001
-"""Gust angle below which it is not worth a name, rad."""
+"""Standard deviation of the air's angle below which turbulence is not worth a name, rad ..."""
+_LEAST_GUST_PEAK = 0.002
+"""... and the peak below which a gust is not: one that passed once in a flight hardly has a deviation."""
+_STANDS_OUT = 4.0
+"""Power that one manoeuvre leaves, beside the median of all, from which on it is asked for a gust by itself:
+noise with the same memory in all of them is no answer to what passed in one."""
 
 _TRIED = 6
 """Sizes of a gust beforehand, from what turbulence would have to any ..."""
@@ -42,6 +48,8 @@ _LATE, _OF_AIR_LATE = "accelerometer_skew", 0.05
 meet the wing, and its lift takes time, which no model here knows."""
 _LATE_SIGMAS = 5.0
 """Standard deviations that they must be late by in moving air: those that are late by 9 ms have 13."""
+_SOFTER = 0.5
+"""What a gust leaves of the manoeuvre that it passed in, of what names leave there that only soften it."""
 _OF_GUST = 0.05
 """The same beside a gust: in its manoeuvre a bump of any shape passes for anything."""
 
@@ -93,15 +101,14 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     """The air's motion when it is there; None when noise of the instruments explains the residual as well."""
     if "alpha" not in problem.channels or "q" not in problem.channels:
         return None
-    rows = [rows_of(problem, i, fitted.left[i]) for i in range(len(problem.flights))]
     floor = 1.0 if problem.instruments is None else problem.instruments
     before = mean_squares(problem, fitted.left)
-    loudest = np.argsort(-np.mean(before / floor**2, axis=1), kind="stable")[:AIR_MANEUVERS]
-    derived = problem.flights.alpha_is_derived
-    found = find_turbulence(
-        [rows[i] for i in loudest], system_of(problem, fitted), instrument_noise(problem), not derived
-    )
-    if found.gain < AIR_GAIN or found.gust_angle < LEAST_GUST_ANGLE:
+    power = np.mean(before / floor**2, axis=1)
+    loudest = np.argsort(-power, kind="stable")[:AIR_MANEUVERS]
+    found = _moving_in(problem, fitted, loudest)
+    if found.gain < AIR_GAIN and power[loudest[0]] > _STANDS_OUT * np.median(power):
+        found = _moving_in(problem, fitted, loudest[:1])
+    if found.gain < AIR_GAIN:
         return None
     model = with_floor(problem, found.air)
     instruments = np.hypot(model.white, model.coloured)[[CHANNELS.index(c) for c in problem.channels]]
@@ -109,7 +116,10 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     joined = np.concatenate(course.knots)
     typical = robust_std(joined - np.median(joined))
     # Gaussian air of this many samples reaches four times its spread, a lone gust far more.
-    gust = float(np.max(np.abs(joined))) > 6.0 * typical
+    highest = float(np.max(np.abs(joined)))
+    gust = highest > 6.0 * typical
+    if found.gust_angle < LEAST_GUST_ANGLE and not (gust and highest > _LEAST_GUST_PEAK):
+        return None
     if gust:
         course = _of_a_gust(problem, fitted, instruments, found.gust_angle)
     # The loudest manoeuvre shows the gust: where none was, a course may wander far and change little.
@@ -125,6 +135,42 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
         course=course.knots, left=left, lefts=course.lefts,
         instruments=instruments, power=float(np.mean(taken / floor**2)),
     )  # fmt: skip
+
+
+def gust_instead(problem: Problem, stages: Sequence[Stage]) -> Air | None:
+    """A gust in one manoeuvre, where all that was named only softens what happened there; None otherwise.
+
+    It is by far the loudest with them, too, and the air explains it better than they do the others.
+    """
+    plain, last = stages[0].fitted, stages[-1].fitted
+    named = [s.added for s in stages if s.added is not None]
+    if not named or max(judged.belief for judged in named) >= LEAST_BELIEF:
+        return None
+    was, leaves = (np.mean(mean_squares(problem, f.left) / last.noise**2, axis=1) for f in (plain, last))
+    loudest = int(np.argmax(leaves))
+    if int(np.argmax(was)) != loudest or leaves[loudest] < _STANDS_OUT * np.median(leaves):
+        return None
+    air = moving_air(problem, plain)
+    if air is None or not air.gust or air.gust_number != problem.flights.flights[loudest].number:
+        return None
+    elsewhere = [i for i in range(len(problem.flights)) if i != loudest]
+    gained = sum(_squares(problem, plain, last, i) - _squares(problem, last, last, i) for i in elsewhere)
+    left = np.mean(mean_squares(problem, air.lefts) / last.noise**2, axis=1)
+    softer = left[loudest] < _SOFTER * leaves[loudest]
+    return air if softer and 0.5 * gained < air.gain else None
+
+
+def _squares(problem: Problem, fitted: Fitted, beside: Fitted, maneuver: int) -> float:
+    """Sum of a manoeuvre's squared innovations beside another fit's noise."""
+    left, rows = fitted.innovations[maneuver], problem.rows(problem.flights.flights[maneuver])
+    return float(sum(np.sum(left[r] ** 2) / s**2 for r, s in zip(rows, beside.noise, strict=True)))
+
+
+def _moving_in(problem: Problem, fitted: Fitted, maneuvers: Iterable[int]) -> Turbulence:
+    """Moving air against noise of the instruments, in what is left of some manoeuvres."""
+    rows = [rows_of(problem, i, fitted.left[i]) for i in maneuvers]
+    derived = problem.flights.alpha_is_derived
+    return find_turbulence(rows, system_of(problem, fitted), instrument_noise(problem), not derived)
 
 
 def _of_a_gust(problem: Problem, fitted: Fitted, instruments: FloatArray, least: float) -> Course:
