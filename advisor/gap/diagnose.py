@@ -8,6 +8,7 @@ from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.explain import explain
+from advisor.gap.fitting.filed_speed import filed_speed
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
@@ -89,6 +90,11 @@ def _explained(
         maneuvers = [_without_offset(m, kinematics.offset.rad) for m in maneuvers]
         flights = prepare(maneuvers, aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
+    speed = None if aircraft.reference_airspeed_m_s else filed_speed(problem, baseline)
+    if speed is not None:
+        aircraft = replace(aircraft, reference_airspeed_m_s=speed)
+        flights = prepare(maneuvers, aircraft)
+        problem, baseline = fit_baseline(flights, aircraft)
     weight = weight_carried(flown, flights.reference_m_s)
     over_read = true_over_read(true_speed_of(problem, baseline), weight)
     if over_read > 1.0:

@@ -29,6 +29,21 @@ def test_a_late_vane_and_an_accelerometer_off_its_place_are_no_scale_with_a_lag_
     assert present["accelerometer_offset"].parameters["arm_m"].value == pytest.approx(arm_m, abs=0.05)
 
 
+def test_a_file_that_does_not_say_at_which_speed_it_holds_is_believed_at_one_that_was_flown(plane):
+    powers = {"Z_alpha": 1, "Z_delta_e": 1, "M_alpha": 2, "M_q": 1, "M_delta_e": 2}
+    faster = {name: value * 1.05 ** powers.get(name, 0) for name, value in plane.model.items()}
+    flown = fly(Setup(maneuvers=6, noise=0.005, speed_change=0.08, seed=24))
+    silent = diagnose(flown, Aircraft(model=faster))
+    assert silent.verdict == "none"
+    assert silent.reference_airspeed_m_s == pytest.approx(1.05 * plane.reference_airspeed_m_s, rel=0.01)
+    assert any("state reference_airspeed_m_s" in note for note in silent.notes)
+    stated = Aircraft(model=faster, reference_airspeed_m_s=plane.reference_airspeed_m_s)
+    assert diagnose(flown, stated).verdict == "parameters"
+    # No speed makes one number of them right.
+    one = Aircraft(model={**plane.model, "M_alpha": 1.12 * plane.model["M_alpha"]})
+    assert diagnose(flown, one).verdict == "parameters"
+
+
 def test_numbers_that_are_wrong_beside_an_effect_stay_wrong(plane):
     wrong = Aircraft(
         model={**plane.model, "M_delta_e": 0.75 * plane.model["M_delta_e"]},

@@ -182,6 +182,12 @@ def late(maneuver, by_s):
     return replace(maneuver, channels={**maneuver.channels, "airspeed": replace(speed, y=y)})
 
 
+def test_no_wind_changes_by_most_of_its_own_speed_in_a_metre():
+    still = fly(Setup(maneuvers=5, seed=51))
+    assert wind_shear([blown(m, 0.4) for m in still]).gradient_per_s == pytest.approx(0.4, abs=0.05)
+    assert wind_shear([blown(m, 0.7) for m in still]) is None
+
+
 @pytest.mark.parametrize("by_s", [0.3, 0.6])
 def test_an_air_speed_that_is_late_is_no_wind_and_hides_none(by_s):
     still = fly(Setup(maneuvers=6, seed=3, speed_change=0.05))

@@ -7,8 +7,12 @@ import numpy as np
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.known import Effects, left_aside
 from advisor.gap.result import Verdict, spelled
+from advisor.gap.search.work import mean_speed
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.text import place
+
+_ANOTHER_SPEED = 0.005
+"""Relative: by less two ways of taking the mean differ."""
 
 
 def notes_of(
@@ -40,6 +44,13 @@ def notes_of(
         notes.append(
             f"No air speed in the log: {flights.reference_m_s:.1f} m/s {level}, {whence}{differs}; "
             f"{from_there}."
+        )
+    flown, reference = mean_speed(flights), flights.reference_m_s
+    is_stated = aircraft.reference_airspeed_m_s is not None
+    if flights.speed_measured and not is_stated and abs(reference / flown - 1.0) > _ANOTHER_SPEED:
+        notes.append(
+            f"The aircraft file's numbers are right at {reference:.1f} m/s; the manoeuvres' mean is "
+            f"{flown:.1f}: state reference_airspeed_m_s."
         )
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"

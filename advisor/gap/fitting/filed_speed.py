@@ -1,0 +1,39 @@
+"""At which speed do the aircraft file's numbers hold, where it does not say?
+
+They count for the mean of the manoeuvres then. But a manoeuvre costs speed, and pilots begin one slower than
+the last: numbers of the trim are some per cent off, all by what the speed makes of them.
+"""
+
+import numpy as np
+
+from advisor.gap.fitting.belief import is_off, log_belief
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import covariance, file_is_off, worth
+from advisor.gap.simulator.layout import SPEED
+
+_POWERS = np.array([1.0, 0.0, 1.0, 2.0, 1.0, 2.0])
+"""Of the speed, by which Z_α, Z_q, Z_δe, M_α, M_q, M_δe grow with it."""
+_FARTHEST = 0.06
+"""Relative: numbers that hold at no speed near those of the flight are wrong ones."""
+_TRIED = 25
+
+
+def filed_speed(problem: Problem, plain: Fitted) -> float | None:
+    """The speed in m/s, of those flown, at which the file's numbers are right.
+
+    None where they may be right at the mean of the manoeuvres, or are wrong at any speed.
+    """
+    flights, believed = problem.flights, problem.believed
+    if believed is None or not flights.speed_measured or not file_is_off(problem, plain, plainly=True):
+        return None
+    flown = np.concatenate([flight.slow[SPEED] for flight in flights.flights]) / flights.reference_m_s
+    lowest, highest = max(np.min(flown), 1.0 - _FARTHEST), min(np.max(flown), 1.0 + _FARTHEST)
+    n = len(believed)
+    known = covariance(problem, plain, worth(problem, plain.innovations))[:n, :n]
+    shares = np.linspace(lowest, highest, _TRIED)
+    at_speeds = [believed * share**-_POWERS for share in shares]
+    best = int(np.argmax([log_belief(plain.point.derivatives, known, there) for there in at_speeds]))
+    if is_off(plain.point.derivatives, known, at_speeds[best], plainly=True):
+        return None
+    return float(shares[best] * flights.reference_m_s)
