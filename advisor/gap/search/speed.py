@@ -37,8 +37,9 @@ _PLAIN_WORK = 0.03
 """What the accelerations must show of it at most: thrust that swings for long passes for drag in part."""
 _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
-_UNASKED = 0.003 * GRAVITY_M_S2
-"""Thrust that nobody asked for, m/s²: what drag and engines do beyond simple laws stays below it ..."""
+_UNASKED = 0.002 * GRAVITY_M_S2
+"""Thrust that nobody asked for, m/s²: what drag and engines do beyond simple laws stays below it (0.012 in
+270 flights without an effect, of nine authors) ..."""
 _UNASKED_SWING = 0.006
 """... if the speed swings by more than this, relative ..."""
 _UNASKED_GUSTS = 1.5
