@@ -26,7 +26,9 @@ _CLEARLY = 20.0
 _CERTAIN = 30.0
 """Log likelihood from which on something is there, however small ..."""
 _TRIED = 3
-"""... and how many of its likenesses, and companions of each, are tried."""
+"""... and how many of its likenesses, and companions of each, are tried ..."""
+_OF_THE_FIRST = 0.05
+"""... beside what the first effect brings: a sum of two is not imitated better than that ..."""
 _PROMISING = 0.5
 """Share of what the first effect brings that the screening must promise of another companion."""
 _WORTH_A_FIT = 2
@@ -84,10 +86,13 @@ def two_in_place_of_one(problem: Problem, stages: list[Stage], variants: Sequenc
         return stages
     certain = [j for j in stages[1].considered if j.gain >= _CERTAIN and j.effect not in BY_NATURE]
     best, least = None, min((j.fitted.cost for j in certain), default=first.fitted.cost)
+    if first.fitted.cost - least < _OF_THE_FIRST * (stages[0].fitted.cost - first.fitted.cost):
+        return stages
     for rest in certain[:_TRIED]:
         alone = only(problem, rest.fitted, [rest.effect])
         others = candidates_for(problem, alone, [v for v in variants if v.effect != first.effect])
-        for companion in judge(problem, alone, hold_out(problem, alone), others[:_TRIED]):
+        near = [c for c in others[:_TRIED] if c.cost < least + _PROMISING * (alone.cost - least)]
+        for companion in judge(problem, alone, hold_out(problem, alone), near):
             if companion.worth_naming and companion.fitted.cost < least:
                 best, least = companion.fitted, companion.fitted.cost
     return stages if best is None else _replaced(problem, stages[0], best)
