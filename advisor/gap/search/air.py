@@ -29,7 +29,7 @@ AIR_MANEUVERS = 5
 
 LEAST_GUST_ANGLE = 0.001
 """Standard deviation of the air's angle below which turbulence is not worth a name, rad ..."""
-_LEAST_GUST_PEAK = 0.002
+_LEAST_GUST_PEAK = 0.0025
 """... and the peak below which a gust is not: one that passed once in a flight hardly has a deviation."""
 _STANDS_OUT = 4.0
 """Power that one manoeuvre leaves, beside the median of all, from which on it is asked for a gust by itself:

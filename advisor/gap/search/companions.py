@@ -26,9 +26,7 @@ _CLEARLY = 20.0
 _CERTAIN = 30.0
 """Log likelihood from which on something is there, however small ..."""
 _TRIED = 3
-"""... and how many of its likenesses, and companions of each, are tried ..."""
-_OF_THE_FIRST = 0.05
-"""... beside what the first effect brings: a sum of two is not imitated better than that ..."""
+"""... and how many of its likenesses, and companions of each, are tried."""
 _PROMISING = 0.5
 """Share of what the first effect brings that the screening must promise of another companion."""
 _WORTH_A_FIT = 2
@@ -86,8 +84,6 @@ def two_in_place_of_one(problem: Problem, stages: list[Stage], variants: Sequenc
         return stages
     certain = [j for j in stages[1].considered if j.gain >= _CERTAIN and j.effect not in BY_NATURE]
     best, least = None, min((j.fitted.cost for j in certain), default=first.fitted.cost)
-    if first.fitted.cost - least < _OF_THE_FIRST * (stages[0].fitted.cost - first.fitted.cost):
-        return stages
     for rest in certain[:_TRIED]:
         alone = only(problem, rest.fitted, [rest.effect])
         others = candidates_for(problem, alone, [v for v in variants if v.effect != first.effect])
