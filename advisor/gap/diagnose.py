@@ -144,7 +144,8 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
 def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver], weight: Weight | None) -> Evidence:
     """What air speed and accelerometer are off by beside the path, without any aerodynamics."""
     shear = wind_shear(flown, true_over_read(e.true_speed, weight))
-    if shear is not None and not _feigns_wind(e.leftover):
+    of_gusts = shear is not None and shear.is_feigned and e.air is not None
+    if shear is not None and not of_gusts and not _feigns_wind(e.leftover):
         # Air that moves swings the air speed, too: beside it what is not plain is worth a note, no more.
         is_there = e.air is None or shear.is_plain
         e = replace(e, shear=shear, leftover=of_the_wind(e.leftover) if is_there else e.leftover)

@@ -59,8 +59,8 @@ side effects."""
 _BEYOND_DOUBT, _OF_WHAT_NAMES_LEAVE = 50.0, 0.5
 """By how much a law beats what was named, and what it leaves of that, beside the noise, if no names that
 explain more together need be sought: of 60 laws of the truth that were found first, all stayed."""
-_OF_THE_AIR = 0.2
-"""Share of the log likelihood that moving air brings alone, below which a law is a part of what gusts do."""
+_OF_A_GUST, _OF_TURBULENCE = 0.2, 0.05
+"""Share of the log likelihood that moving air brings alone, below which a law is a part of what that does."""
 
 
 @dataclass(frozen=True)
@@ -75,9 +75,10 @@ class Law:
     def may_be(self, air: Air | None) -> bool:
         """Whether air that moves explains so much more that the law is no more than its shape.
 
-        Laws of the truth in moving air bring half of what the air would without them, and more.
+        Laws of the truth bring half of what the air would without them, and more; a likeness of the truth in
+        turbulence a fifteenth.
         """
-        return air is not None and self.gain < _OF_THE_AIR * air.gain
+        return air is not None and self.gain < (_OF_A_GUST if air.gust else _OF_TURBULENCE) * air.gain
 
 
 def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:

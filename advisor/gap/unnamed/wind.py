@@ -24,7 +24,7 @@ _LEAST_SAMPLES = 10
 _LEAST_PER_S = 0.08
 """Change of the wind, m/s per metre, from which on it is felt: a knot in six metres."""
 _MOST_PER_S = 0.5
-"""Beyond which it is gusts: a wind shear that airports call severe begins at 0.2 1/s (ICAO Doc 9817)."""
+"""A wind shear that airports call severe begins at 0.2 1/s (ICAO Doc 9817)."""
 _LEAST_MANEUVERS = 4
 """That must agree on a gradient."""
 _CHANCE = 1e-3
@@ -68,6 +68,11 @@ class Shear:
     """Of what the air speed has beyond the accelerations, that heights explain."""
     maneuvers: int
     """That it was found in."""
+
+    @property
+    def is_feigned(self) -> bool:
+        """Whether no wind changes by that much: in moving air its gusts, else an air speed that is wrong."""
+        return abs(self.gradient_per_s) > _MOST_PER_S
 
     @property
     def is_plain(self) -> bool:
@@ -115,8 +120,7 @@ def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Sh
         return None
     # An instrument that is late, or indicates less than the true speed, feigns wind as well.
     left = [_unexplained(_paths_of(maneuvers, true_over_read, late_s, _LATE_S[-1])) for late_s in _LATE_S]
-    found = _shear_of(_paths_of(maneuvers, true_over_read, _LATE_S[int(np.argmin(left))]))
-    return None if found is None or abs(found.gradient_per_s) > _MOST_PER_S else found
+    return _shear_of(_paths_of(maneuvers, true_over_read, _LATE_S[int(np.argmin(left))]))
 
 
 def _shear_of(paths: Sequence[_Path]) -> Shear | None:

@@ -54,7 +54,11 @@ def notes_of(
         )
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
-        notes.append(f"The wind changed with height, by {per_metre} a metre.")
+        notes.append(
+            f"The air speed is wrong by {per_metre} a metre climbed: more than any wind changes."
+            if e.shear.is_feigned
+            else f"The wind changed with height, by {per_metre} a metre."
+        )
     if e.true_speed is not None:
         notes.append(e.true_speed.sentence)
     if e.weight is not None:
