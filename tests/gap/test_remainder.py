@@ -107,6 +107,22 @@ def test_in_moving_air_names_must_take_away_most_of_what_the_air_does_not_explai
     assert not only_resemble([first])
 
 
+@pytest.mark.parametrize(("leaves", "enough"), [(5.0, True), (7.0, False)])
+def test_what_a_right_model_leaves_of_manoeuvres_kept_out_is_not_held_against_small_names(
+    gyro, leaves, enough
+):
+    """In multiples of the model's numbers per sample: of eight, five are less than half beside its own."""
+    (first, last), _ = named_beside(gyro, "pitch_rate_scale")
+    one = len(last.fitted.point.shared) / sum(map(len, last.fitted.innovations))
+
+    def with_excess(stage, excess):
+        square = (1.0 + excess) * last.fitted.noise**2
+        return replace(stage, held_out=replace(stage.held_out, innovation_square=square))
+
+    removed = removed_beyond_air([with_excess(first, 8.0 * one), with_excess(last, leaves * one)])
+    assert (removed > 0.5) == enough
+
+
 def test_a_name_must_take_some_of_the_gap_away_that_the_aircraft_file_leaves(gyro):
     problem, _ = gyro
     stages, floor = named_beside(gyro, "pitch_rate_scale")

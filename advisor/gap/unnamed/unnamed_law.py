@@ -58,7 +58,7 @@ side effects."""
 
 _BEYOND_DOUBT, _OF_WHAT_NAMES_LEAVE = 50.0, 0.5
 """By how much a law beats what was named, and what it leaves of that, beside the noise, if no names that
-explain more together need be sought: of 60 laws of the truth that were found first, all stayed."""
+explain more together need be sought: of 50 laws of the truth that were found first, all stayed."""
 _OF_A_GUST, _OF_TURBULENCE = 0.2, 0.05
 """Share of the log likelihood that moving air brings alone, below which a law is a part of what that does."""
 
