@@ -183,3 +183,24 @@ def test_a_late_vane_that_reads_low_is_no_vane_far_ahead(seed):
     )
     found = diagnose(fly(both), Aircraft())
     assert {c.effect for c in found.causes if c.present} == {"alpha_skew", "alpha_scale"}
+
+
+def gained_by_a_gyros_scale(thrust_arm):
+    """Of a gyro that reads 6 % too much, beside thrust that moved in one manoeuvre only, as ``gain``."""
+    flown = Setup(
+        maneuvers=6, q_scale=0.06, thrust_amplitude=0.5, thrust_moves_in=(2,),
+        switches={"thrust_arm": thrust_arm}, seed=4,
+    )  # fmt: skip
+    problem, plain = fit_baseline(prepare(fly(flown), Aircraft()), Aircraft())
+    thrust, scale = (
+        next(v for v in variants_for(problem.flights) if v.effect == effect)
+        for effect in ("thrust_moment", "pitch_rate_scale")
+    )
+    before = fit(problem, plain.point.with_effect(thrust, thrust.starts[0]), plain.noise, 25)
+    after = fit(problem, before.point.with_effect(scale, (0.0,)), before.noise, 25)
+    independent = worth(problem, after.innovations)
+    return addition(problem, before, hold_out(problem, before), after, scale.effect, independent).gain
+
+
+def test_what_one_manoeuvre_alone_tells_of_one_effect_is_not_held_against_another():
+    assert gained_by_a_gyros_scale(0.05) == pytest.approx(gained_by_a_gyros_scale(0.0), rel=0.05)

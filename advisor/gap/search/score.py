@@ -6,7 +6,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.belief import odds_of_arm
 from advisor.gap.fitting.fit import Fitted, rms_of
-from advisor.gap.fitting.holdout import HeldOut, hold_out, lone_witness, mean_squares
+from advisor.gap.fitting.holdout import HeldOut, hold_out, lone_witness, mean_squares, measured_in
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.fitting.uncertainty import belief_in, shared_std
 from advisor.gap.records.floor import doubts
@@ -62,8 +62,13 @@ def addition(
     # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
     witness = lone_witness(fitted, at) if variant.needs else None
     lone = witness is not None
-    seen_before, seen_after = (before, fitted) if lone else (held_before, held)
-    likelihood = log_likelihood_gained(before, held_before, fitted, held, independent, unconfirmed=lone)
+    known_before, known = held_before, held
+    if others := _told_alone(fitted, but=k):
+        # What the others predict of that manoeuvre is anyone's guess, with this effect or without.
+        known_before = measured_in(problem, held_before, before, others)
+        known = measured_in(problem, held, fitted, others)
+    seen_before, seen_after = (before, fitted) if lone else (known_before, known)
+    likelihood = log_likelihood_gained(before, known_before, fitted, known, independent, unconfirmed=lone)
     likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
     likelihood += 0.5 * (problem.strangeness(before.point) - problem.strangeness(point))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
@@ -79,6 +84,18 @@ def addition(
         with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_plain(before),
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
     )  # fmt: skip
+
+
+def _told_alone(fitted: Fitted, but: int) -> set[int]:
+    """Manoeuvres that alone tell of some effect of the model, other than the ``but``-th."""
+    effects, values = fitted.point.effects, fitted.point.values
+    ends = len(fitted.point.derivatives) + np.cumsum([0, *map(len, values)])
+    places = [
+        int(at)
+        for k, (effect, at) in enumerate(zip(effects, ends[:-1], strict=True))
+        if effect.needs and not effect.always and k != but
+    ]
+    return {number for at in places if (number := lone_witness(fitted, at)) is not None}
 
 
 def price_of(variant: Variant, independent: FloatArray) -> float:
