@@ -212,6 +212,11 @@ def _without_a_name(
         return swing
     all_named = air is None and is_all_named(stages, _of_instruments(problem, floor))
     leftover = left_over(problem, first, last, tolerance, air is not None, all_named)
+    slight = None if leftover is None else stages[-1].slight_in(leftover.block)
+    if slight is not None:
+        # A cause that is known, and below its physical minimum, leaves nothing without a name.
+        last = slight.fitted
+        leftover = left_over(problem, first, last, tolerance, air is not None, all_named)
     if air is None:
         return leftover
     if air.gust and leftover is not None and is_the_gust(problem, last, leftover):

@@ -17,7 +17,7 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.ranking import evened
 from advisor.gap.search.score import addition, predict_alike
 from advisor.gap.search.ties import tied_with
-from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
+from tests.gap.generator import LIGHT_AIRCRAFT, UAV, Setup, fly
 
 
 @pytest.fixture(scope="module")
@@ -164,6 +164,12 @@ def test_where_an_effect_is_stays_where_only_manoeuvres_kept_out_tell_of_it():
 @pytest.mark.parametrize("tiny", [{"switches": {"acc_arm": 0.05}}, {"q_bias": 0.0014}], ids=["arm", "bias"])
 def test_what_every_instrument_has_is_no_cause_however_plain(tiny):
     found = diagnose(fly(Setup(maneuvers=6, noise=0.002, seed=67, **tiny)), Aircraft())
+    assert found.verdict == "none"
+
+
+def test_what_every_instrument_has_is_not_unknown_where_it_shows_beside_small_motion():
+    small = replace(UAV, amplitude_deg=0.2 * UAV.amplitude_deg)
+    found = diagnose(fly(Setup(airframe=small, maneuvers=6, q_bias=0.0015, noise=0.01, seed=61)), Aircraft())
     assert found.verdict == "none"
 
 

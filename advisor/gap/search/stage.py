@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
@@ -12,6 +13,8 @@ from advisor.gap.search.score import addition
 
 _NEAR = 0.5
 """Share of the best candidate's gain from which on another one is a rival."""
+_BEYOND_DOUBT = 100.0
+"""Log likelihood from which on what is too small for a name is there all the same."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,11 @@ class Stage:
         """Effects that gained at least half as much as the best."""
         best = self.considered[0].gain if self.considered else 0.0
         return frozenset(judged.effect for judged in self.considered if judged.gain > _NEAR * best)
+
+    def slight_in(self, block: str) -> Judged | None:
+        """What is beyond doubt in a block, and too small for a name only."""
+        found = (j for j in self.considered if BLOCK_OF[j.effect] == block and j.gain >= _BEYOND_DOUBT)
+        return next((j for j in found if not j.large_enough and not j.at_its_bounds), None)
 
 
 def rebuilt(
