@@ -11,7 +11,9 @@ from advisor.gap.simulator.layout import INDEX
 
 BLOCK = "input"
 _SMALL_ANGLE = 0.00175
-"""0.1 deg: no linkage is free of less."""
+"""0.1 deg: no linkage is free of less ..."""
+_IF_BEYOND_DOUBT = 0.4
+"""... worth a word, but that share, less than a pulse of 1 us moves a surface by, is seen in a quiet record."""
 _DAMPING = 0.7
 """Of a servo of second order: that of position loops tuned to be quick without overshoot."""
 
@@ -105,16 +107,17 @@ _DEADBAND = Variant(
     "actuator_deadband",
     BLOCK,
     ("half_width_rad", "neutral_rad"),
-    ((0.004, 0.0), (0.015, 0.0), (0.035, 0.0), (0.01, 0.006), (0.01, -0.006)),
+    ((0.0012, 0.0), (0.004, 0.0), (0.015, 0.0), (0.035, 0.0), (0.01, 0.006), (0.01, -0.006)),
     (2e-4, 2e-4),
     ((0.0, 0.1), (-0.1, 0.1)),
     _SMALL_ANGLE,
+    _IF_BEYOND_DOUBT,
     apply_with=_deadband,
     places=("neutral_rad",),
 )
 _DEADBAND_ABOUT_TRIM = replace(
     _DEADBAND,
-    starts=((0.004, 0.0), (0.015, 0.0), (0.035, 0.0)),
+    starts=((0.0012, 0.0), (0.004, 0.0), (0.015, 0.0), (0.035, 0.0)),
     apply_with=_deadband_about_trim,
     fixed={"about_trim": 1.0},
 )
@@ -148,6 +151,7 @@ def variants(flights: Flights) -> list[Variant]:
             (2e-4,),
             ((0.0, 0.1),),
             _SMALL_ANGLE,
+            _IF_BEYOND_DOUBT,
             entries=("half_play_rad",),
             sides=("play_side", tuple(np.linspace(-1.0, 1.0, 8))),
         ),

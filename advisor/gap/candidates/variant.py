@@ -28,6 +28,8 @@ class Variant:
     bounds: tuple[tuple[float, float], ...]
     smallest: float
     """Size of the first parameter below which the effect is not worth a name: 4 ms, 1 %, 0.1 deg."""
+    if_beyond_doubt: float = 1.0
+    """Share of it that is enough of what is there beyond doubt."""
     entries: tuple[str, ...] = ()
     """Entries of the simulation the parameters are, one to one; empty when ``apply_with`` says otherwise."""
     apply_with: Apply | None = None

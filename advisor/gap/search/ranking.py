@@ -218,7 +218,7 @@ def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) 
     if not gross:
         candidates = [
             c for c in candidates
-            if size_of(c.variant, c.point.values[-1]) >= smallest_of(problem, c.variant)
+            if size_of(c.variant, c.point.values[-1]) >= smallest_of(problem, c.variant, promise(c))
         ]  # fmt: skip
     least = (_GROSS_RIVAL if gross else _RIVAL) * best_of(candidates)
     chosen: list[Screened] = []

@@ -10,7 +10,7 @@ from advisor.gap.fitting.holdout import HeldOut, hold_out, lone_witness, mean_sq
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.fitting.uncertainty import belief_in, shared_std
 from advisor.gap.records.floor import doubts
-from advisor.gap.search.merit import LEAST_BELIEF, Judged, size_of
+from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, Judged, size_of
 
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
@@ -38,11 +38,15 @@ _NOT_SEEN = 0.005
 """Difference of two predictions, mean square beside the instruments' noise, that no flight shows."""
 
 
-def smallest_of(problem: Problem, variant: Variant) -> float:
-    """Size of an effect's first parameter below which it is not worth a name, the stamps as they are."""
+def smallest_of(problem: Problem, variant: Variant, gain: float = 0.0) -> float:
+    """Size of an effect's first parameter below which it is not worth a name, the stamps as they are.
+
+    ``gain`` is the log likelihood that it brings.
+    """
+    smallest = variant.smallest * (variant.if_beyond_doubt if gain >= BEYOND_DOUBT else 1.0)
     if variant.names[0] in TIMES:
-        return variant.smallest + TIME_DOUBT_S + _JITTERS * problem.jitter_s
-    return variant.smallest * (_ANY_TIME if variant.comes_at_any_time else 1.0)
+        return smallest + TIME_DOUBT_S + _JITTERS * problem.jitter_s
+    return smallest * (_ANY_TIME if variant.comes_at_any_time else 1.0)
 
 
 def addition(
@@ -74,12 +78,13 @@ def addition(
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
     odds = odds_in(problem, variant.effect, float(value[0]))
     least, beforehand = least_change(problem), belief + odds - price_of(variant, independent)
+    gain = likelihood + beforehand
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
-        gain=likelihood + beforehand,
+        gain=gain,
         removed=difference(problem, seen_before, seen_after, witness),
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
-        smallest=smallest_of(problem, variant),
+        smallest=smallest_of(problem, variant, gain),
         belief=belief, beforehand=beforehand, value=value, witness=witness,
         with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_plain(before),
         std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],

@@ -38,7 +38,9 @@ _RESTLESS = 2.0
 LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
 OF_PEAK = 0.01
-"""Share of a channel's peak that must be left: a simplified model is no better than that."""
+"""Share of a channel's peak that must be left: a simplified model is no better than that ..."""
+_BEYOND_DOUBT, _FAR_LOUDER, _FAR_ABOVE = 0.5, 4.0, 2.0
+"""... but that share of it is enough of what is so much louder while the stick moves, and above noise in all."""
 _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
 _TURNS = ("input", "moment_equation")
@@ -96,7 +98,10 @@ def left_over(
     telling = np.isin(np.arange(len(problem.channels)), problem.flights.telling)
     beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - instruments_of(problem) ** 2, 0.0))
     peaks = problem.flights.peaks
-    telling &= beyond > max(OF_PEAK, _of_the_command(problem, last)) * peaks
+    active, quiet = unrest(problem, last.innovations)
+    beyond_doubt = (active > _FAR_LOUDER * quiet) & (powers > _FAR_ABOVE)
+    of_peak = np.where(beyond_doubt, _BEYOND_DOUBT, 1.0) * OF_PEAK
+    telling &= beyond > np.maximum(of_peak, _of_the_command(problem, last)) * peaks
     jumping = jumping_sensor(problem, last, tolerance)
     nothing = all_named or not np.any(telling)
     if nothing and jumping is None:
@@ -108,7 +113,6 @@ def left_over(
         return Leftover(jumping, 1.0, ranking_of(probes, jumping), note="It jumps now and then.")
     if nothing:
         return None
-    active, quiet = unrest(problem, last.innovations)
     loud = telling & (rms_of(problem, last.left) > DOUBT * tolerance)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     faint = best.explained < _LEAST_SHARE
