@@ -108,8 +108,8 @@ def judge(
         left = np.sqrt(first.held_out.mean_square)
         missing = is_plain(before) and np.all(left > _MISSING * problem.flights.peaks)
         hidden = _HIDES if missing else frozenset()
-        alike = [c.variant for c in candidates if c.variant.effect in {first.effect, *hidden}]
-        same = [c.variant for c in candidates if c.variant.effect == first.effect]
+        alike = _each_once([c.variant for c in candidates if c.variant.effect in {first.effect, *hidden}])
+        same = [variant for variant in alike if variant.effect == first.effect]
         again = [
             addition(problem, before, held_before, f, f.point.effects[-1].effect, independent)
             for f in (
@@ -124,6 +124,11 @@ def judge(
         ended = fit(problem, first.fitted.point, first.fitted.noise, iterations=_TO_THE_END, tolerance=0.5)
         first = addition(problem, before, held_before, ended, first.effect, independent)
     return [first, *rest]
+
+
+def _each_once(variants: Sequence[Variant]) -> list[Variant]:
+    """Without what comes again: a description may have been sought beside the aircraft file's numbers, too."""
+    return [v for k, v in enumerate(variants) if all(v is not other for other in variants[:k])]
 
 
 def _restarted(problem: Problem, before: Fitted, best: Fitted, variants: Sequence[Variant]) -> list[Fitted]:
