@@ -123,6 +123,21 @@ def test_a_dead_band_that_moves_with_the_trim_is_one_as_well():
     assert "around its trim" in found.sentence
 
 
+@pytest.mark.parametrize(
+    ("effect", "switch"), [("actuator_backlash", "play"), ("actuator_deadband", "deadband")]
+)
+def test_play_and_dead_bands_below_a_tenth_of_a_degree_have_a_name_in_a_quiet_record(effect, switch):
+    found = diagnose(fly(Setup(maneuvers=6, switches={switch: 0.0012}, noise=0.002, seed=71)), Aircraft())
+    (cause,) = [c for c in found.causes if c.present]
+    assert cause.effect == effect
+    assert cause.parameters["half_width_rad"].value == pytest.approx(0.0012, rel=0.05)
+
+
+def test_a_dead_band_below_a_tenth_of_a_degree_has_none_in_noise():
+    loud = diagnose(fly(Setup(maneuvers=6, switches={"deadband": 0.0012}, noise=0.02, seed=71)), Aircraft())
+    assert not any(c.present for c in loud.causes)
+
+
 def test_a_servo_at_its_limit_is_no_later_for_steps_that_lie_anywhere_between_two_stamps(tmp_path):
     limited = (
         "aircraft: uav\nseed: 2\nloop_hz: 250\nunit_s: 0.36\n"

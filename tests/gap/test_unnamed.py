@@ -33,6 +33,16 @@ def test_damping_that_grows_with_the_rate_has_no_name_but_a_place():
     assert found.where.block == "moment_equation"
 
 
+def test_what_is_restless_beyond_doubt_is_unknown_from_half_a_per_cent_of_a_peak_on():
+    wobbling = []
+    for m in fly(Setup(LIGHT_AIRCRAFT, maneuvers=6, noise=0.003, rate_hz=100.0, seed=72)):
+        q = m.channels["q"]
+        y = np.interp(q.t + 0.006 * np.sin(2 * np.pi * 0.9 * q.t), q.t, q.y)
+        wobbling.append(replace(m, channels={**m.channels, "q": replace(q, y=y)}))
+    found = diagnose(wobbling, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "pitch_rate_sensor")
+
+
 def test_an_unknown_moment_is_told_by_whether_it_follows_the_stick_or_the_motion():
     flights = prepare(fly(Setup(maneuvers=6, seed=26)), Aircraft()).flights
     rng = np.random.default_rng(26)

@@ -13,7 +13,7 @@ BLOCK = "input"
 _SMALL_ANGLE = 0.00175
 """0.1 deg: no linkage is free of less ..."""
 _IF_BEYOND_DOUBT = 0.4
-"""... worth a word, but that share, less than a pulse of 1 us moves a surface by, is seen in a quiet record."""
+"""... worth a word, but that share of it, as a pulse of 1 us moves a surface, shows in a quiet record."""
 _DAMPING = 0.7
 """Of a servo of second order: that of position loops tuned to be quick without overshoot."""
 

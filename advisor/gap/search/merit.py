@@ -22,7 +22,7 @@ LEAST_SIGMA = 3.0
 _CERTAIN = 30.0
 """Log likelihood from which on there is no doubt that something like the effect is there."""
 BEYOND_DOUBT, _PLAIN_CHANGE = 100.0, 10.0
-"""Log likelihood, and changes of the least size, from which on twice the physical minimum is enough."""
+"""Log likelihood, and changes of the least size, from which on an effect is plain."""
 LEAST_OFFSET_RAD = 0.003
 """Smaller offsets of α are not taken out before the fit."""
 NAMED_OFFSET_RAD = 0.007

@@ -127,7 +127,7 @@ def judge(
 
 
 def _each_once(variants: Sequence[Variant]) -> list[Variant]:
-    """Without what comes again: a description may have been sought beside the aircraft file's numbers, too."""
+    """Without what comes again: descriptions sought beside the aircraft file's numbers, too."""
     return [v for k, v in enumerate(variants) if all(v is not other for other in variants[:k])]
 
 

@@ -40,7 +40,7 @@ LEAST_OF_GAP = 0.1
 OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that ..."""
 _BEYOND_DOUBT, _FAR_LOUDER, _FAR_ABOVE = 0.5, 4.0, 2.0
-"""... but that share of it is enough of what is so much louder while the stick moves, and above noise in all."""
+"""... that share of it where it is so much louder while the stick moves, and above noise in all."""
 _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
 _TURNS = ("input", "moment_equation")
