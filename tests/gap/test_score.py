@@ -35,7 +35,7 @@ def late():
 def test_stamps_that_jitter_hide_a_time_unless_it_is_plain(late):
     *_, judged = late
     hidden = replace(judged, value=np.array([0.012]), smallest=0.013)
-    assert replace(hidden, gain=200.0, removed=20.0 * judged.least).large_enough
+    assert replace(hidden, gain=200.0, removed=6.0 * judged.least).large_enough
     assert not replace(hidden, gain=50.0, removed=20.0 * judged.least).large_enough
     assert not replace(hidden, gain=200.0, removed=2.0 * judged.least).large_enough
     assert not replace(hidden, gain=200.0, removed=20.0 * judged.least, value=np.array([0.006])).large_enough

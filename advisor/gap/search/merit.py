@@ -21,8 +21,9 @@ LEAST_SIGMA = 3.0
 """Standard deviations by which a number of it must differ from nothing."""
 _CERTAIN = 30.0
 """Log likelihood from which on there is no doubt that something like the effect is there."""
-BEYOND_DOUBT, _PLAIN_CHANGE = 100.0, 10.0
-"""Log likelihood, and changes of the least size, from which on an effect is plain."""
+BEYOND_DOUBT, _SEEN_CHANGE, _PLAIN_CHANGE = 100.0, 5.0, 10.0
+"""Log likelihood, and changes of the least size, from which on stamps that jitter hide no time, and an effect
+is more than the shape of the air."""
 LEAST_OFFSET_RAD = 0.003
 """Smaller offsets of α are not taken out before the fit."""
 NAMED_OFFSET_RAD = 0.007
@@ -126,7 +127,7 @@ class Judged:
     @property
     def large_enough(self) -> bool:
         """At or above the physical minimum; stamps that jitter hide no time that is plain all the same."""
-        plain = self.gain >= BEYOND_DOUBT and self.removed >= _PLAIN_CHANGE * self.least
+        plain = self.gain >= BEYOND_DOUBT and self.removed >= _SEEN_CHANGE * self.least
         smallest = min(self.smallest, 2.0 * self.variant.smallest) if plain else self.smallest
         return size_of(self.variant, self.value) >= smallest
 
