@@ -25,6 +25,7 @@ from advisor.gap.search.command import (
     is_plainer,
     may_be_held,
     may_be_linear,
+    may_pay,
     read_otherwise,
 )
 from advisor.gap.search.speed import at_constant_speed
@@ -162,7 +163,8 @@ def _named(
     stages = reconsidered(problem, stages, variants)
     seen = stages[0].rivals | {s.added.effect for s in stages if s.added is not None}
     named = stages[-1].fitted
-    if may_be_held(problem, named, seen) or may_be_linear(problem, named):
+    doubtful = may_be_held(problem, named, seen) or may_be_linear(problem, named)
+    if doubtful and may_pay(problem, named, seen):
         other, plain = read_otherwise(problem, baseline)
         others = build_up(other, plain, variants, progress)
         likelier = is_plainer if problem.held else is_likelier_held

@@ -11,6 +11,7 @@ from advisor.gap.fitting.neighbourhood import Neighbourhood
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.search.merit import LEAST_GAIN
 from advisor.gap.search.screen import Screen
+from advisor.gap.search.stage import only
 
 _NEARLY = 0.25
 """Share of what a delay, a lag and the right reading explain which may stay unexplained without them ..."""
@@ -28,6 +29,9 @@ _SEVERAL = 2
 """Effects from which on another reading may do with fewer."""
 _LIKELIER = 12.0
 """Twice the log likelihood by which a whole diagnosis with a held command must be the better one."""
+_KINKED = 200.0
+"""The same by which the other reading may seem the worse one before the search for its own effects, beside one
+that is not linear: from where such an effect was found a fit does not find its way to the end."""
 
 
 def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
@@ -85,13 +89,9 @@ def may_be_held(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool
     """
     if problem.held:
         return False
-    interval = float(np.median(np.diff(problem.flights.flights[0].t_u)))
-    least, most = 0.5 * interval - _HALF_S, interval + _HALF_S
     # The few milliseconds of latency that any model has may hold a part of it, and run out.
-    late = least < _delay_of(fitted) < most or _latency_of(fitted) >= input.LATENCY.bounds[0][1]
-    return (late and not _BEND.isdisjoint(seen)) or any(
-        least < abs(time) < most for time in _other_times_of(fitted)
-    )
+    late = _is_of_a_stamp(problem, _delay_of(fitted)) or _latency_of(fitted) >= input.LATENCY.bounds[0][1]
+    return (late and not _BEND.isdisjoint(seen)) or len(_out_of_step(problem, fitted)) > 0
 
 
 def may_be_linear(problem: Problem, fitted: Fitted) -> bool:
@@ -101,8 +101,22 @@ def may_be_linear(problem: Problem, fitted: Fitted) -> bool:
     """
     if not problem.held or sum(not effect.always for effect in fitted.point.effects) < _SEVERAL:
         return False
-    half = 0.5 * float(np.median(np.diff(problem.flights.flights[0].t_u)))
-    return any(half - _HALF_S < abs(time) < 2.0 * half + _HALF_S for time in _other_times_of(fitted))
+    return len(_out_of_step(problem, fitted)) > 0
+
+
+def may_pay(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool:
+    """Whether the other reading may win: the effects that were named are fitted with it, none is sought.
+
+    Those that half an interval imitates must be needless then, each of which has its price. Beside one that
+    is not linear they may stay. ``fitted`` and ``seen`` as in ``may_be_held``.
+    """
+    named = [effect.effect for effect in fitted.point.effects if not effect.always]
+    bends = not _BEND.isdisjoint(seen)
+    needless = [] if bends else _out_of_step(problem, fitted)
+    other = replace(problem, held=not problem.held)
+    same = _with_latency(other, only(other, fitted, [name for name in named if name not in needless]))
+    more = evidence_of(other, same) - evidence_of(problem, fitted)
+    return more < (_KINKED if bends else (len(needless) + 1) * _price_of_one(problem))
 
 
 def read_otherwise(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
@@ -129,7 +143,12 @@ def is_plainer(one: Problem, named: Fitted, other: Problem, named_there: Fitted)
     """Whether the other reading does with fewer effects, each of which must bring more than its price."""
     fewer = len(named.point.effects) - len(named_there.point.effects)
     more = evidence_of(other, named_there) - evidence_of(one, named)
-    return fewer > 0 and more < fewer * (float(np.log(np.sum(counts(one)))) + 2.0 * LEAST_GAIN)
+    return fewer > 0 and more < fewer * _price_of_one(one)
+
+
+def _price_of_one(problem: Problem) -> float:
+    """Twice the log likelihood that an effect must bring."""
+    return float(np.log(np.sum(counts(problem)))) + 2.0 * LEAST_GAIN
 
 
 def _is_the_ramp(held: Problem, fitted: Fitted) -> bool:
@@ -143,14 +162,21 @@ def _is_the_ramp(held: Problem, fitted: Fitted) -> bool:
     return float(np.median(np.abs(steps) / intervals**2)) * slowness_s_rad < 1.0
 
 
-def _other_times_of(fitted: Fitted) -> list[float]:
-    """Lag of the servo and skews of sensors, s."""
+def _out_of_step(problem: Problem, fitted: Fitted) -> list[str]:
+    """A lag of the servo and skews of sensors that are what another reading of the command shifts."""
     effects = zip(fitted.point.effects, fitted.point.values, strict=True)
     return [
-        float(values[0])
+        effect.effect
         for effect, values in effects
-        if effect.names[0] == "skew_s" or effect.effect == "actuator_lag"
+        if (effect.names[0] == "skew_s" or effect.effect == "actuator_lag")
+        and _is_of_a_stamp(problem, abs(float(values[0])))
     ]
+
+
+def _is_of_a_stamp(problem: Problem, time_s: float) -> bool:
+    """Whether a time is between half an interval of the command and a whole one."""
+    interval = float(np.median(np.diff(problem.flights.flights[0].t_u)))
+    return 0.5 * interval - _HALF_S < time_s < interval + _HALF_S
 
 
 def _latency_of(fitted: Fitted) -> float:
