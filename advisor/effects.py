@@ -24,7 +24,7 @@ LEAST: Mapping[str, Mapping[str, float]] = {
     "alpha_dot": {"M_alpha_dot": _ANY},
     "nonlinear_lift": {"Z_alpha2": _ANY, "Z_alpha3": _ANY, "stall_rad": _ANY, "sharpness": 0.0},
     "unsteady_lift": {"share": _ANY, "lag_s": 0.0, "with_moment": 0.0},
-    "mass_change": _ONSET,
+    "mass_change": {**_ONSET, "inertia": _ANY},
     "icing": {
         "Z_alpha": _ANY,
         "Z_delta_e": _ANY,

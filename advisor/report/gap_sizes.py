@@ -17,7 +17,7 @@ _ENDINGS = {
 """Ending of a parameter's name: factor from SI, unit. The longest that fits counts."""
 _LEAST, _ROUNDING = 1e-3, 1e-9
 """Gap too small for a number, and too small to be anything but the rounding of nothing."""
-_SHARES = frozenset({"scale", "step", "change", "share", "damping", "lift_h"})
+_SHARES = frozenset({"scale", "step", "inertia", "change", "share", "damping", "lift_h"})
 _ICE = frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e"})
 """Changes of derivatives, as a share of them."""
 _OF_DERIVATIVES = {
@@ -26,7 +26,7 @@ _OF_DERIVATIVES = {
     "M_alpha_dot": "s⁻¹", "M_thrust": "s⁻²", "M_throttle": "s⁻²", "M_h": "s⁻²",
     "gain": "s⁻¹", "displacement_gain": "s⁻¹", "sharpness": "rad⁻¹",
 }  # fmt: skip
-_SIGNED = frozenset({"scale", "step", "change", "skew_s", "bias_rad", "bias_rad_s", *_ICE})
+_SIGNED = frozenset({"scale", "step", "inertia", "change", "skew_s", "bias_rad", "bias_rad_s", *_ICE})
 """Parameters whose direction matters to the reader."""
 
 

@@ -21,20 +21,23 @@ Term = Callable[[Kit, Any, Sizes, float], None]
 
 
 class MoreMass:
-    """Mass and inertia that change: all but the weight's own part of Eq. (1) is divided by their growth."""
+    """Mass and inertia that change: forces, but for the weight's own part, and moments are divided by them."""
 
-    def __init__(self, more: Callable[[float], float]) -> None:
+    def __init__(self, more: Callable[[float], float], inertia: float = 1.0) -> None:
         self.more = more
         """Relative growth of the mass at a time."""
+        self.inertia = inertia
+        """What the inertia grows by for each part that the mass does."""
         self._plain: dict[str, float] | None = None
 
     def apply(self, time_s: float, motion: Motion, engine: Any) -> None:
         """Set the model's parameters for ``time_s``."""
         if self._plain is None:
             self._plain = {name: float(engine.record[name][0]) for name in ShortPeriod.__dataclass_fields__}
-        growth = 1.0 + self.more(time_s)
+        more = self.more(time_s)
         for name, plain in self._plain.items():
             weight = _weight(engine) if name == "Z_0" else 0.0
+            growth = 1.0 + more * (self.inertia if name.startswith("M_") else 1.0)
             engine.record[name] = weight + (plain - weight) / growth
 
 
@@ -65,7 +68,8 @@ def _more_mass(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
         kit.fittings.plant.append(MoreMass(lambda t: sizes["rate_per_s"] * max(t - first_s, 0.0)))
     if "step" in sizes:
         onset = _onset(kit, sizes, boot_s)
-        kit.fittings.plant.append(MoreMass(lambda t: sizes["step"] * onset.share(t)))
+        inertia = sizes.get("inertia", sizes["step"]) / sizes["step"] if sizes["step"] else 1.0
+        kit.fittings.plant.append(MoreMass(lambda t: sizes["step"] * onset.share(t), inertia))
 
 
 def _moved_weight(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
@@ -149,7 +153,7 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
     ),
     "airspeed_variation": (frozenset({"change", "exponent", "exponent_M"}), _speed),
     "cg_shift": (_ONSET, _moved_weight),
-    "mass_change": (_ONSET, _more_mass),
+    "mass_change": (_ONSET | {"inertia"}, _more_mass),
     "gust": (frozenset({"amplitude_m_s", "length_m", "at_s"}), _gust),
     "icing": (frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e", "at_s", "over_s"}), _ice),
 }

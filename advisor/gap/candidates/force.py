@@ -27,6 +27,10 @@ CURVED_LIFT = Variant(
 )
 
 
+_FORCES, _MOMENTS = DERIVATIVES[:3], DERIVATIVES[3:]
+_MASS_AND_INERTIA = Variant(
+    "mass_change", BLOCK, ("step", "inertia"), ((0.0, 0.0),), (0.005, 0.005), ((-0.9, 3.0), (-0.9, 3.0)), 0.01
+)
 _UNSTEADY = Variant(
     "unsteady_lift",
     BLOCK,
@@ -62,7 +66,7 @@ def variants(flights: Flights) -> list[Variant]:
         bent_in_alpha(CURVED_LIFT, "Z_alpha", flights),
         replace(_UNSTEADY, likewise=(_UNSTEADY_WITH_MOMENT,)),
         *_stall(flights),
-        *ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES)),
+        *_mass(flights),
         *_icing(flights),
         # Mach number, elastic wings, a slipstream: forces go with another power of the speed than V².
         Variant(
@@ -113,6 +117,28 @@ def _heights_of_decay(flights: Flights) -> list[float]:
         return []
     flown = float(np.median([np.median(f.slow[HEIGHT]) for f in flights.flights]))
     return [float(np.clip(share * flown, *_DECAYS_M)) for share in (0.2, 0.67)]
+
+
+def _mass(flights: Flights) -> list[Variant]:
+    """A mass whose inertia grows as it does; at once, one also that is added elsewhere than all the rest.
+
+    What is carried far from the centre of gravity adds more to the inertia, what is carried there nothing.
+    """
+    together = ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES))
+    inertia = {
+        variant.fixed["at_s"]: replace(variant, starts=(), likewise=(), carried=lambda v: (v[0], v[0]))
+        for variant in steps_in(flights, _MASS_AND_INERTIA, _divided_apart)
+    }
+    return [
+        replace(v, likewise=(*v.likewise, inertia[v.fixed["at_s"]])) if "at_s" in v.fixed else v
+        for v in together
+    ]
+
+
+def _divided_apart(p: FloatArray, values: Values, share: FloatArray) -> None:
+    """Forces by the mass, moments by the inertia, which grow by so much in manoeuvres that have it."""
+    for change, growth in zip((divide(*_FORCES), divide(*_MOMENTS)), values, strict=True):
+        change(p, growth * share)
 
 
 def _stall(flights: Flights) -> list[Variant]:
