@@ -17,7 +17,7 @@ from advisor.gap.foresight.needs import need_of
 from advisor.gap.foresight.plan import foresee_flights, foresee_plan
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import believed_derivatives
-from advisor.gap.search.merit import NAMED_OFFSET_RAD
+from advisor.gap.search.merit import LEAST_OFFSET_RAD
 from advisor.problems import ConfigurationError
 from advisor.report.gap_plan import ForesightScreen, size_of
 from tests.gap.generator import UAV, Setup, fly
@@ -115,7 +115,7 @@ def test_changes_from_one_manoeuvre_to_the_next_need_three_of_them():
 
 def test_nothing_is_foreseen_below_what_the_diagnosis_would_name(foreseen):
     assert foreseen["transport_delay"].smallest > 0.004
-    assert foreseen["alpha_bias"].smallest >= NAMED_OFFSET_RAD
+    assert foreseen["alpha_bias"].smallest >= LEAST_OFFSET_RAD
     assert foreseen["airspeed_variation"].smallest >= 0.03
 
 

@@ -63,11 +63,29 @@ def test_a_turn_spoils_neither_the_lag_nor_the_offset_of_alpha(late_s):
     ("offset", "by_a_vane", "by_an_estimate"),
     [(0.006, False, False), (0.0075, True, False), (0.01, True, True)],
 )
-def test_an_offset_below_what_any_zero_is_set_to_gets_no_name(offset, by_a_vane, by_an_estimate):
+def test_beside_another_cause_an_offset_below_what_any_zero_is_set_to_gets_no_name(
+    offset, by_a_vane, by_an_estimate
+):
     check = KinematicCheck("consistent", "", offset=AlphaOffset(offset, 1e-4))
     vane = Problem(prepare(flown(), Aircraft()), np.zeros(len(ENTRIES)))
-    named = [alpha_bias_cause(check, [], problem, 0.0) is not None for problem in (vane, sparse_estimate())]
+    named = [
+        alpha_bias_cause(check, [], problem, 0.0, alone=False) is not None
+        for problem in (vane, sparse_estimate())
+    ]
     assert named == [by_a_vane, by_an_estimate]
+
+
+@pytest.mark.parametrize(
+    ("offset", "std", "named"),
+    [(0.0025, 1e-4, False), (0.0035, 1e-4, True), (0.0035, 6e-4, False), (0.0075, 1.3e-3, True)],
+)
+def test_where_nothing_else_is_a_vane_that_is_plainly_off_is_named_from_a_sixth_of_a_degree(
+    offset, std, named
+):
+    check = KinematicCheck("consistent", "", offset=AlphaOffset(offset, std))
+    vane, estimate = Problem(prepare(flown(), Aircraft()), np.zeros(len(ENTRIES))), sparse_estimate()
+    assert (alpha_bias_cause(check, [], vane, 0.0, alone=True) is not None) == named
+    assert alpha_bias_cause(check, [], estimate, 0.0, alone=True) is None
 
 
 @pytest.mark.parametrize(("lag_s", "named"), [(0.01, False), (0.03, True)])

@@ -24,7 +24,7 @@ from advisor.gap.foresight.needs import need_of
 from advisor.gap.noise.probes import disturbance_columns
 from advisor.gap.records.flights import SPEED_CHANGE, Flight, Flights
 from advisor.gap.search.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
-from advisor.gap.search.merit import NAMED_OFFSET_RAD, OFFSET_SIGMAS
+from advisor.gap.search.merit import least_offset_rad
 from advisor.gap.search.ties import breaking
 from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
 
@@ -91,7 +91,7 @@ def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
     reading = float(np.hypot(np.hypot(*angles), CLIMB_RATE_STD_M_S / flights.reference_m_s))
     std = reading / np.sqrt(sum(f.duration_s for f in flights.flights))
     way = "level the attitude's zero on the ground, and fly in still air: both look the same"
-    return Foreseen("alpha_bias", "bias_rad", max(NAMED_OFFSET_RAD, OFFSET_SIGMAS * std), (), way)
+    return Foreseen("alpha_bias", "bias_rad", least_offset_rad(std), (), way)
 
 
 def impossible(effect: str, flights: Flights) -> Foreseen:

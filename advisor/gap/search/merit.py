@@ -25,14 +25,14 @@ BEYOND_DOUBT, _SEEN_CHANGE, _PLAIN_CHANGE = 100.0, 5.0, 10.0
 """Log likelihood, and changes of the least size, from which on stamps that jitter hide no time, and an effect
 is more than the shape of the air."""
 LEAST_OFFSET_RAD = 0.003
-"""Smaller offsets of α are not taken out before the fit."""
-NAMED_OFFSET_RAD = 0.007
-"""Smaller ones get no name: neither a vane's zero nor an attitude reference, from which the path is taken, is
-set much better than within 0.4 deg ..."""
-NAMED_OFFSET_OF_ESTIMATES_RAD = 0.0087
-"""... and an autopilot's estimate is off by up to half a degree by itself."""
-OFFSET_SIGMAS = 5.0
-"""Standard deviations that an offset of α must have to be named."""
+"""Smaller offsets of α are not taken out before the fit, and get no name."""
+_MOUNTED_RAD = 0.007
+"""Smaller ones are a cause where nothing else is: neither a vane's zero nor an attitude reference, from which the
+path is taken, is set much better than within 0.4 deg ..."""
+_MOUNTED_OF_ESTIMATES_RAD = 0.0087
+"""... and an autopilot's estimate is off by up to half a degree by itself: that has no name."""
+OFFSET_SIGMAS, _PLAIN_OFFSET_SIGMAS = 5.0, 7.0
+"""Standard deviations that an offset of α must have to be named, and one that small."""
 LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
 _SUPPORT = 4.0
@@ -130,6 +130,22 @@ class Judged:
         plain = self.gain >= BEYOND_DOUBT and self.removed >= _SEEN_CHANGE * self.least
         smallest = min(self.smallest, 2.0 * self.variant.smallest) if plain else self.smallest
         return size_of(self.variant, self.value) >= smallest
+
+
+def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) -> float:
+    """Offset of α from which on it has a name, given its error.
+
+    Parameters
+    ----------
+    derived
+        Whether α is an autopilot's estimate.
+    alone
+        Whether nothing else was found but air that moves.
+    """
+    least = max(_MOUNTED_OF_ESTIMATES_RAD if derived else _MOUNTED_RAD, OFFSET_SIGMAS * std_rad)
+    if derived or not alone:
+        return least
+    return min(least, max(LEAST_OFFSET_RAD, _PLAIN_OFFSET_SIGMAS * std_rad))
 
 
 def size_of(variant: Variant, value: FloatArray) -> float:

@@ -11,7 +11,7 @@ from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.search.merit import NAMED_OFFSET_OF_ESTIMATES_RAD, NAMED_OFFSET_RAD, OFFSET_SIGMAS, Judged
+from advisor.gap.search.merit import Judged, least_offset_rad
 from advisor.gap.search.score import TIME_DOUBT_S, TIMES
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.ties import tied_with
@@ -147,17 +147,17 @@ def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, flo
 
 
 def alpha_bias_cause(
-    check: KinematicCheck, named: Sequence[Judged], problem: Problem, left: float
+    check: KinematicCheck, named: Sequence[Judged], problem: Problem, left: float, alone: bool
 ) -> Cause | None:
     """A constant offset of α, from the climb rate: the dynamics cannot tell it from Z_0 and M_0.
 
     A scale error shifts the trim, too; only what the named one leaves over is an offset. ``left`` is the gap
-    of the last model: what the motion alone shows takes nothing off it.
+    of the last model: what the motion alone shows takes nothing off it. ``alone``: nothing else was found
+    but air that moves; beside anything else what a mounting leaves is no cause.
     """
     if not np.isfinite(check.offset.rad) or not check.offset.stays or "alpha" not in problem.channels:
         return None
-    smallest = NAMED_OFFSET_OF_ESTIMATES_RAD if problem.flights.alpha_is_derived else NAMED_OFFSET_RAD
-    least = max(smallest, OFFSET_SIGMAS * check.offset.std_rad)
+    least = least_offset_rad(check.offset.std_rad, problem.flights.alpha_is_derived, alone)
     trim = float(np.mean([flight.alpha_trim for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
     # The trim was read with the offset taken out already: what a scale makes of it is no offset.

@@ -75,7 +75,6 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     first, last = stages[0].held_out, stages[-1].held_out
     left = whole_gap(last.mean_square, floor)
     named = [s.added for s in stages if s.added is not None]
-    bias = alpha_bias_cause(kinematics, named, problem, left)
     late = alpha_lag_cause(kinematics, problem, named, left)
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
@@ -83,6 +82,8 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     # Noise that the air makes hides nothing from a simulator that knows the air's motion.
     still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
     numbers = _wrong_numbers(e, named, still)
+    alone = not (named or late or numbers.are_wrong or e.leftover)
+    bias = alpha_bias_cause(kinematics, named, problem, left, alone)
     removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
     names = max(removed, 0.0)
     # What bends a little in an equation whose numbers are far off is told beside them.
