@@ -15,7 +15,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
-from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.search.baseline import at_another_speed, fit_baseline
 from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.unnamed.leftover import Leftover, of_the_wind
@@ -94,12 +94,13 @@ def _explained(
     if speed is not None:
         aircraft = replace(aircraft, reference_airspeed_m_s=speed)
         flights = prepare(maneuvers, aircraft)
-        problem, baseline = fit_baseline(flights, aircraft)
+        problem, baseline = at_another_speed(problem, baseline, flights)
     weight = weight_carried(flown, flights.reference_m_s)
     over_read = true_over_read(true_speed_of(problem, baseline), weight)
     if over_read > 1.0:
         # An indicated air speed changes by less than the accelerometers say.
-        problem, baseline = fit_baseline(prepare(maneuvers, aircraft, over_read), aircraft)
+        flights = prepare(maneuvers, aircraft, over_read)
+        problem, baseline = at_another_speed(problem, baseline, flights)
     return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
 
 

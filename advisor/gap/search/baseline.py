@@ -122,6 +122,12 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     return _filtered(problem, fitted, seen)
 
 
+def at_another_speed(problem: Problem, fitted: Fitted, flights: Flights) -> tuple[Problem, Fitted]:
+    """The plain model of the same flights with another air speed: the noise and the command are as they were."""
+    again = replace(problem, flights=flights)
+    return again, fit(again, fitted.point, fitted.noise)
+
+
 def quietest(problem: Problem, fitted: Fitted) -> Fitted:
     """The model through which the noise is seen: with the likeliest effects in it, where that is quieter.
 

@@ -43,6 +43,9 @@ _SCATTER, _ITS_ERRORS = 0.2, 20.0
 taken for a delay scatters by a sixth; and its square over that of the errors."""
 _TOLD = 1e-6
 """Share of what the manoeuvre that tells most says of it, below which one says nothing."""
+_WANDERS_IN = {"alpha_lag": "timing"}
+"""Where an effect that is another in every manoeuvre belongs, if not to its own block: a vane's lag is its
+build, and stays; what delays messages comes and goes."""
 _MAY_DRIFT, _SIGNIFICANT = 0.15, 5.0
 """The same of one that may change evenly: what changes by four fifths has 0.23."""
 
@@ -79,7 +82,7 @@ def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
         if not _is_plain(drift, said):
             if not scatter.is_plain:
                 continue
-            block = said.variant.block
+            block = _WANDERS_IN.get(said.effect, said.variant.block)
             return Leftover(block, 1.0, ((block, 1.0),), note=_varies(said, scatter))
         # Of a lag and a clock that are hard to tell apart one may drift as the other does not.
         alike = [j for j in stage.considered if j.effect in _STEADY and j.variant.block != said.variant.block]
