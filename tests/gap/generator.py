@@ -256,6 +256,8 @@ class Setup:
     """The same, of each manoeuvre in turn; none: as the two before say."""
     mass_step: float = 0.0
     """Relative change of mass and inertia halfway."""
+    inertia_of_mass: float = 1.0
+    """What the inertia changes by, of what the mass does."""
     comes_at_s: float = 0.0
     """The steps of centre of gravity and mass come that much into the record halfway."""
     ice_after: int = 99
@@ -309,12 +311,13 @@ def fly(setup: Setup, duration: float = 10.0) -> list[Maneuver]:
         if setup.comes_at_s and i == setup.maneuvers // 2:
             halfway = False
             sw[CHANGET], sw[CGAFTER], sw[MASSAFTER] = setup.comes_at_s, setup.cg_step, setup.mass_step
-        mass_factor = 1.0 + (setup.mass_step if halfway else 0.0)
+        heavier = setup.mass_step if halfway else 0.0
         moved = setup.cg_drift * i / max(setup.maneuvers - 1, 1) + setup.cg_step * halfway
         moved = setup.cg_course[i] if setup.cg_course else moved
         cm_alpha = frame.cm_alpha * (1.0 + moved)
         body = (
-            frame.mass * mass_factor, frame.iyy * mass_factor, frame.area, frame.chord,
+            frame.mass * (1.0 + heavier), frame.iyy * (1.0 + setup.inertia_of_mass * heavier),
+            frame.area, frame.chord,
             frame.speed * (1.0 + setup.speed_change * rng.uniform(-1, 1)), frame.cl0, frame.cl_alpha,
             frame.cl_q, frame.cl_de, frame.cd0, frame.induced, cm_alpha, frame.cm_q, frame.cm_de,
             frame.cm_alphadot,

@@ -14,7 +14,7 @@ from advisor.gap.fitting.fit import fit
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import usable_of
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.search.command import is_likelier_held, read_otherwise
+from advisor.gap.search.command import is_likelier_held, may_be_held, may_pay, read_otherwise
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario
@@ -93,6 +93,21 @@ def test_a_linear_command_taken_for_a_held_one_is_read_again_where_it_puts_sever
     found = explain(held, plain, Aircraft(), lambda *_: None)
     assert not found.problem.held
     assert [s.added.effect for s in found.stages if s.added is not None] == ["pitch_rate_skew"]
+
+
+def test_the_other_reading_is_searched_only_where_the_named_effects_may_do_with_it():
+    flown = fly(Setup(maneuvers=4, skew={"q": 0.0145}, noise=0.007, seed=73))
+    linear, plain = fit_baseline(prepare(flown, Aircraft()), Aircraft())
+    skew = next(v for v in variants_for(linear.flights) if v.effect == "pitch_rate_skew")
+
+    def named_with(problem, fitted):
+        return fit(problem, fitted.point.with_effect(skew, (0.0145,)), fitted.noise)
+
+    held, plainly_held = read_otherwise(linear, plain)
+    assert not linear.held
+    assert may_be_held(linear, named_with(linear, plain), {"pitch_rate_skew"})
+    assert not may_pay(linear, named_with(linear, plain), {"pitch_rate_skew"})
+    assert may_pay(held, named_with(held, plainly_held), {"pitch_rate_skew"})
 
 
 @pytest.mark.parametrize("seed", [1, 2])

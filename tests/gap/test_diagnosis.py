@@ -48,6 +48,17 @@ def test_effects_of_every_kind_are_named_in_noise_with_memory_and_jitter(effect,
     assert found.verdict == "effect"
 
 
+@pytest.mark.parametrize(
+    ("mass", "inertia_of_mass"), [(0.4, 0.6), pytest.param(-0.25, 0.4, marks=pytest.mark.study)]
+)
+def test_a_load_that_adds_less_to_the_inertia_than_to_the_mass_is_a_mass_and_no_ice(mass, inertia_of_mass):
+    flown = Setup(maneuvers=6, mass_step=mass, inertia_of_mass=inertia_of_mass, noise=0.005, seed=11)
+    found = diagnose(fly(flown), Aircraft())
+    assert found.causes[0].effect == "mass_change"
+    assert found.causes[0].parameters["step"].value == pytest.approx(mass, rel=0.08)
+    assert found.causes[0].parameters["inertia"].value == pytest.approx(inertia_of_mass * mass, rel=0.08)
+
+
 @pytest.mark.parametrize("late_s", [0.05, -0.03])
 def test_a_message_that_is_late_shifts_attitude_and_pitch_rate_together(late_s):
     skew = {"q": late_s, "theta": late_s}

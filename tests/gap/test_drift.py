@@ -55,6 +55,13 @@ def test_a_lag_that_is_a_third_longer_in_the_end_keeps_its_name(setup):
     assert found.causes[0].effect == "alpha_lag"
 
 
+def test_a_lag_that_comes_and_goes_is_one_of_the_way_and_not_of_the_vane():
+    lags = [0.09, 0.02, 0.1, 0.03, 0.08, 0.01, 0.09, 0.02]
+    found = diagnose(through_a_vane(Setup(maneuvers=8, seed=60), lags), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "timing")
+    assert any("another in every manoeuvre" in note for note in found.notes)
+
+
 @pytest.mark.parametrize("setup", [Setup(maneuvers=8, seed=60), pytest.param(HARD, marks=pytest.mark.study)])
 def test_a_clock_that_is_set_again_and_again_is_unknown_in_the_time_stamps(setup):
     late = [0.08, 0.05, 0.11, 0.06, 0.1, 0.04, 0.09, 0.07]

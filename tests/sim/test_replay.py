@@ -87,6 +87,7 @@ def plain(tmp_path_factory):
         ("cg_shift", {"step": 0.2, "at_s": 35.0}),
         ("cg_shift", {"step": 0.2, "at_s": 20.0, "over_s": 30.0}),
         ("mass_change", {"rate_per_s": 0.01}),
+        ("mass_change", {"step": 0.3, "inertia": 0.1, "at_s": 35.0}),
         ("icing", {"Z_alpha": -0.2, "M_alpha": -0.2, "at_s": 35.0}),
         ("ground_effect", {"Z_h": -0.05, "M_h": 0.05, "scale_m": 100.0}),
         ("ground_effect", {"lift_h": 0.2, "scale_m": 100.0}),
@@ -120,6 +121,9 @@ def test_a_change_of_mass_or_of_the_centre_of_gravity_moves_all_but_the_weights_
     assert [heavier[n] * 1.25 for n in ("Z_alpha", "M_0", "M_q")] == pytest.approx(
         [plain[n] for n in ("Z_alpha", "M_0", "M_q")]
     )
+    held_close = flown({"mass_change": {"step": 0.25, "inertia": 0.1, "at_s": 0.0}})
+    assert held_close["Z_alpha"] == heavier["Z_alpha"]
+    assert held_close["M_q"] == pytest.approx(plain["M_q"] / 1.1)
     aft = flown({"cg_shift": {"step": -0.3, "at_s": 0.0}})
     arm = -0.3 * plain["M_alpha"] / plain["Z_alpha"]
     assert aft["M_alpha"] == pytest.approx(0.7 * plain["M_alpha"])

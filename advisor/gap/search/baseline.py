@@ -123,7 +123,7 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
 
 
 def at_another_speed(problem: Problem, fitted: Fitted, flights: Flights) -> tuple[Problem, Fitted]:
-    """The plain model of the same flights with another air speed: the noise and the command are as they were."""
+    """The plain model of the same flights at another air speed: noise and command are as they were."""
     again = replace(problem, flights=flights)
     return again, fit(again, fitted.point, fitted.noise)
 

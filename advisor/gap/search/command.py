@@ -29,9 +29,9 @@ _SEVERAL = 2
 """Effects from which on another reading may do with fewer."""
 _LIKELIER = 12.0
 """Twice the log likelihood by which a whole diagnosis with a held command must be the better one."""
-_KINKED = 200.0
-"""The same by which the other reading may seem the worse one before the search for its own effects, beside one
-that is not linear: from where such an effect was found a fit does not find its way to the end."""
+_KINKED = 500.0
+"""The same by which the other reading may seem the worse one before the search for its own effects, beside
+one that is not linear: from where such an effect was found a fit does not find its way to the end."""
 
 
 def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
@@ -91,7 +91,7 @@ def may_be_held(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool
         return False
     # The few milliseconds of latency that any model has may hold a part of it, and run out.
     late = _is_of_a_stamp(problem, _delay_of(fitted)) or _latency_of(fitted) >= input.LATENCY.bounds[0][1]
-    return (late and not _BEND.isdisjoint(seen)) or len(_out_of_step(problem, fitted)) > 0
+    return (late and not _BEND.isdisjoint(seen)) or _is_out_of_step(problem, fitted)
 
 
 def may_be_linear(problem: Problem, fitted: Fitted) -> bool:
@@ -101,22 +101,20 @@ def may_be_linear(problem: Problem, fitted: Fitted) -> bool:
     """
     if not problem.held or sum(not effect.always for effect in fitted.point.effects) < _SEVERAL:
         return False
-    return len(_out_of_step(problem, fitted)) > 0
+    return _is_out_of_step(problem, fitted)
 
 
 def may_pay(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool:
     """Whether the other reading may win: the effects that were named are fitted with it, none is sought.
 
-    Those that half an interval imitates must be needless then, each of which has its price. Beside one that
-    is not linear they may stay. ``fitted`` and ``seen`` as in ``may_be_held``.
+    It may do without some of them, each of which has its price; nothing else makes it the better one.
+    ``fitted`` and ``seen`` as in ``may_be_held``.
     """
     named = [effect.effect for effect in fitted.point.effects if not effect.always]
-    bends = not _BEND.isdisjoint(seen)
-    needless = [] if bends else _out_of_step(problem, fitted)
     other = replace(problem, held=not problem.held)
-    same = _with_latency(other, only(other, fitted, [name for name in named if name not in needless]))
+    same = _with_latency(other, only(other, fitted, named))
     more = evidence_of(other, same) - evidence_of(problem, fitted)
-    return more < (_KINKED if bends else (len(needless) + 1) * _price_of_one(problem))
+    return more < (_KINKED if not _BEND.isdisjoint(seen) else len(named) * _price_of_one(problem))
 
 
 def read_otherwise(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
@@ -162,15 +160,14 @@ def _is_the_ramp(held: Problem, fitted: Fitted) -> bool:
     return float(np.median(np.abs(steps) / intervals**2)) * slowness_s_rad < 1.0
 
 
-def _out_of_step(problem: Problem, fitted: Fitted) -> list[str]:
-    """A lag of the servo and skews of sensors that are what another reading of the command shifts."""
+def _is_out_of_step(problem: Problem, fitted: Fitted) -> bool:
+    """Whether a lag of the servo or a skew of a sensor is what another reading of the command shifts."""
     effects = zip(fitted.point.effects, fitted.point.values, strict=True)
-    return [
-        effect.effect
+    return any(
+        _is_of_a_stamp(problem, abs(float(values[0])))
         for effect, values in effects
-        if (effect.names[0] == "skew_s" or effect.effect == "actuator_lag")
-        and _is_of_a_stamp(problem, abs(float(values[0])))
-    ]
+        if effect.names[0] == "skew_s" or effect.effect == "actuator_lag"
+    )
 
 
 def _is_of_a_stamp(problem: Problem, time_s: float) -> bool:

@@ -26,10 +26,10 @@ BEYOND_DOUBT, _SEEN_CHANGE, _PLAIN_CHANGE = 100.0, 5.0, 10.0
 is more than the shape of the air."""
 LEAST_OFFSET_RAD = 0.003
 """Smaller offsets of α are not taken out before the fit, and get no name."""
-_MOUNTED_RAD = 0.007
-"""Smaller ones are a cause where nothing else is: neither a vane's zero nor an attitude reference, from which the
-path is taken, is set much better than within 0.4 deg ..."""
-_MOUNTED_OF_ESTIMATES_RAD = 0.0087
+_SET_WITHIN_RAD = 0.007
+"""Smaller ones are a cause only where nothing else is: neither a vane's zero nor an attitude reference, from
+which the path is taken, is set much better than within 0.4 deg ..."""
+_ESTIMATED_WITHIN_RAD = 0.0087
 """... and an autopilot's estimate is off by up to half a degree by itself: that has no name."""
 OFFSET_SIGMAS, _PLAIN_OFFSET_SIGMAS = 5.0, 7.0
 """Standard deviations that an offset of α must have to be named, and one that small."""
@@ -142,7 +142,7 @@ def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) 
     alone
         Whether nothing else was found but air that moves.
     """
-    least = max(_MOUNTED_OF_ESTIMATES_RAD if derived else _MOUNTED_RAD, OFFSET_SIGMAS * std_rad)
+    least = max(_ESTIMATED_WITHIN_RAD if derived else _SET_WITHIN_RAD, OFFSET_SIGMAS * std_rad)
     if derived or not alone:
         return least
     return min(least, max(LEAST_OFFSET_RAD, _PLAIN_OFFSET_SIGMAS * std_rad))
