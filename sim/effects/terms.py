@@ -21,7 +21,7 @@ Term = Callable[[Kit, Any, Sizes, float], None]
 
 
 class MoreMass:
-    """Mass and inertia that change: they divide the forces, but for the weight's own part, and the moments."""
+    """Mass and inertia that change: they divide the forces, all but the weight's own part, and moments."""
 
     def __init__(self, more: Callable[[float], float], inertia: float = 1.0) -> None:
         self.more = more
