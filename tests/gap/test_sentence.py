@@ -1,30 +1,21 @@
-"""Every cause is a statement that can be made, whatever is certain of its numbers."""
+"""The one sentence for the crew says what was found, and no more than is known."""
 
 import pytest
 
-from advisor.gap.candidates.catalogue import BLOCK_OF
-from advisor.gap.result import Cause, Value
-from advisor.gap.verdict.text import what
-
-
-def cause(effect, **parameters):
-    return Cause(effect, BLOCK_OF[effect], 0.9, parameters, (), "", 0.0, True)
-
-
-@pytest.mark.parametrize("std", [0.05, 0.25])
-def test_a_power_of_the_air_speed_is_told_however_certain_it_is(std):
-    told = what(cause("airspeed_variation", exponent=Value(-0.5, std)))
-    assert told == "The real forces do not grow with air speed squared, but with its power 1.5"
+from advisor.gap.result import Where
+from advisor.gap.verdict.text import sentence_of
+from tests.gap.test_report_screen import diagnosis
 
 
 @pytest.mark.parametrize(
-    ("std", "ending"), [(0.05, "300 ms behind the throttle"), (0.2, "the real aircraft")]
+    ("moment", "places"),
+    [
+        (1.0, "between the command and the surface or in the pitching moment"),
+        (0.995, "between the command and the surface or in the pitching moment"),
+        (0.9, "between the command and the surface"),
+    ],
 )
-def test_a_lag_that_may_as_well_be_none_is_not_told(std, ending):
-    thrust = cause("thrust_moment", M_throttle=Value(2.0, 0.1), lag_s=Value(0.3, std))
-    assert what(thrust).endswith(ending)
-
-
-def test_a_moment_of_the_rate_of_angle_of_attack_is_not_called_the_simulators_for_its_sign():
-    up, down = (what(cause("alpha_dot", M_alpha_dot=Value(size, 0.1))) for size in (1.5, -1.5))
-    assert up == down
+def test_two_places_that_are_as_likely_are_both_said(moment, places):
+    where = Where("input", 0.9, (("input", 1.0), ("moment_equation", moment)))
+    sentence = sentence_of("unknown", diagnosis().gap, where, (), None)
+    assert sentence == f"Something {places} that no known effect explains."

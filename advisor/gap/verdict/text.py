@@ -63,6 +63,8 @@ _TOO_MUCH = {
     ),
 }
 """What is said where the aircraft file has too much of an effect; the sign of its first number then."""
+_AS_LIKELY = 0.99
+"""Score beside the best from which on another block is as likely a place."""
 _BLOCK = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
@@ -131,7 +133,9 @@ def sentence_of(
         near = f"; nearest, but not enough: {spelled(tried.effect)}" if tried is not None else ""
         if present:
             near = f", beside what looks like {', '.join(spelled(c.effect) for c in present)}"
-        return f"Something {place(where.block)} that no known effect explains{near}."
+        alike = [place(b) for b, score in where.ranking if b != where.block and score >= _AS_LIKELY]
+        places = " or ".join([place(where.block), *alike])
+        return f"Something {places} that no known effect explains{near}."
     also = ""
     if len(present) > 1:
         also = "; also " + ", ".join(spelled(c.effect) for c in present[1:])
