@@ -68,6 +68,26 @@ def test_a_limit_that_steps_meet_for_less_than_an_interval_is_no_sign_of_a_held_
     assert not is_held_with(10.0)
 
 
+@pytest.mark.parametrize(("late_s", "is_held"), [(0.012, True), (0.003, False)])
+def test_a_sensor_that_is_late_by_what_the_linear_reading_shifts_is_a_sign_of_a_held_command(
+    tmp_path, late_s, is_held
+):
+    (tmp_path / "uav.yaml").write_text(f"{UAV}input: held\n")
+    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
+    maneuvers = maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers
+    held, plain = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
+    linear = replace(held, held=False)
+    read_as_linear = fit(linear, plain.point, plain.noise)
+    skew, scale = (
+        next(v for v in variants_for(held.flights) if v.effect == effect)
+        for effect in ("accelerometer_skew", "alpha_scale")
+    )
+    late = replace(read_as_linear, point=read_as_linear.point.with_effect(skew, (late_s,)))
+    scaled = replace(plain, point=plain.point.with_effect(scale, (0.05,)))
+    # Both name one effect, and the held reading is the likelier one.
+    assert is_likelier_held(linear, late, held, scaled) == is_held
+
+
 @pytest.mark.parametrize("early_s", [0.012, pytest.param(0.016, marks=pytest.mark.study)])
 def test_a_pitch_rate_that_is_early_beside_a_held_command_makes_nothing_else_late(tmp_path, early_s):
     skewed = f"effects: {{pitch_rate_skew: {{skew_s: {-early_s}}}}}\n"

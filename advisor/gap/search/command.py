@@ -126,15 +126,18 @@ def read_otherwise(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
 def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: Fitted) -> bool:
     """Whether all that was named with a held command describes the data better, and without a delay.
 
-    It must have named what no delay or lag imitates, or do with fewer effects, each of which has its price:
-    between those two readings ``read_command`` decides.
+    It must have named what no delay or lag imitates, need no sensor or servo that is late by what the linear
+    reading shifts, where that needs one, or do with fewer effects, each of which has its price: between those
+    two readings ``read_command`` decides.
     """
     if _delay_of(named_held) > 0.0:
         return False
     more = evidence_of(held, named_held) - evidence_of(linear, named)
     bends = any(effect.effect in _BEND for effect in named_held.point.effects)
     bends = bends and not _is_the_ramp(held, named_held)
-    return (bends and more < -_LIKELIER) or is_plainer(linear, named, held, named_held)
+    in_step = _is_out_of_step(linear, named) and not _is_out_of_step(held, named_held)
+    in_step = in_step and len(named_held.point.effects) <= len(named.point.effects)
+    return ((bends or in_step) and more < -_LIKELIER) or is_plainer(linear, named, held, named_held)
 
 
 def is_plainer(one: Problem, named: Fitted, other: Problem, named_there: Fitted) -> bool:

@@ -15,7 +15,7 @@ from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
-from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN
+from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN, LEAST_SIGMA
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import BY_NATURE, addition, price_of
 from advisor.gap.search.screen import Screen
@@ -70,6 +70,26 @@ def other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Va
         Stage(alone, held, (*companions, same), best),
         Stage(best.fitted, best.held_out, tuple(after), None),
     ]
+
+
+def one_for_another(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
+    """What is likeliest beside the names, and takes the place of one of them: together neither can be told.
+
+    Late by a filter and late by its stamps an angle of attack is much the same, and what was found first
+    keeps the other out.
+    """
+    last = stages[-1].fitted
+    names = [s.added.effect for s in stages if s.added is not None]
+    for n, stage in enumerate(stages[1:], start=1):
+        rival = next(iter(stage.considered), None)
+        if rival is None or rival.sigmas > LEAST_SIGMA or rival.gain < _CERTAIN:
+            continue
+        others = [[name for name in names[:n] if name != left_out] for left_out in names[:n]]
+        fits = [only(problem, rival.fitted, [*kept, rival.effect]) for kept in others]
+        best = min(fits, key=lambda f: f.cost)
+        if _is_likelier(problem, best, last):
+            return _replaced(problem, stages[0], best)
+    return stages
 
 
 def two_in_place_of_one(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
@@ -140,10 +160,7 @@ def one_number_for_ice(problem: Problem, stages: list[Stage], variants: Sequence
     ]
     fits = [fit(problem, point, last.noise, tolerance=0.5) for point in points]
     best = min(fits, key=lambda f: f.cost, default=last)
-    independent = worth(problem, last.innovations)
-    gained = 0.5 * (last.cost - best.cost) + belief_in(problem, best, independent)
-    gained += _price_of_all(last, independent) - belief_in(problem, last, independent)
-    return stages if gained < _price_of_all(best, independent) else _replaced(problem, stages[0], best)
+    return _replaced(problem, stages[0], best) if _is_likelier(problem, best, last) else stages
 
 
 def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
@@ -188,6 +205,14 @@ def _held_at_the_file(held: Problem, plain: Fitted, variants: Sequence[Variant],
             break
         model = best
     return model
+
+
+def _is_likelier(problem: Problem, one: Fitted, other: Fitted) -> bool:
+    """Whether one model is likelier than the other, with what the file is worth and the names' price."""
+    independent = worth(problem, other.innovations)
+    gained = 0.5 * (other.cost - one.cost) + belief_in(problem, one, independent)
+    gained += _price_of_all(other, independent) - belief_in(problem, other, independent)
+    return gained >= _price_of_all(one, independent)
 
 
 def _price_of_all(fitted: Fitted, independent: FloatArray) -> float:

@@ -13,6 +13,7 @@ from advisor.gap.fitting.uncertainty import shared_std, worth
 from advisor.gap.search.companions import (
     by_the_file,
     one_early,
+    one_for_another,
     one_number_for_ice,
     other_companion,
     two_in_place_of_one,
@@ -42,7 +43,10 @@ def build_up(
 
 def reconsidered(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
     """Stages of the names that explain most together, in the order of what the whole loses without each."""
-    for better in (other_companion, two_in_place_of_one, one_early, one_number_for_ice, by_the_file):
+    replacements = (
+        other_companion, one_for_another, two_in_place_of_one, one_early, one_number_for_ice, by_the_file,
+    )  # fmt: skip
+    for better in replacements:
         stages = better(problem, stages, variants)
     return in_full(problem, settled(problem, stages))
 
