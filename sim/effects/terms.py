@@ -23,22 +23,19 @@ Term = Callable[[Kit, Any, Sizes, float], None]
 class MoreMass:
     """Mass and inertia that change: they divide the forces, all but the weight's own part, and moments."""
 
-    def __init__(self, more: Callable[[float], float], inertia: float = 1.0) -> None:
-        self.more = more
-        """Relative growth of the mass at a time."""
-        self.inertia = inertia
-        """What the inertia grows by for each part that the mass does."""
+    def __init__(self, mass: Callable[[float], float], inertia: Callable[[float], float]) -> None:
+        self.mass, self.inertia = mass, inertia
+        """Relative growth of each at a time."""
         self._plain: dict[str, float] | None = None
 
     def apply(self, time_s: float, motion: Motion, engine: Any) -> None:
         """Set the model's parameters for ``time_s``."""
         if self._plain is None:
             self._plain = {name: float(engine.record[name][0]) for name in ShortPeriod.__dataclass_fields__}
-        more = self.more(time_s)
+        mass, inertia = 1.0 + self.mass(time_s), 1.0 + self.inertia(time_s)
         for name, plain in self._plain.items():
             weight = _weight(engine) if name == "Z_0" else 0.0
-            growth = 1.0 + more * (self.inertia if name.startswith("M_") else 1.0)
-            engine.record[name] = weight + (plain - weight) / growth
+            engine.record[name] = weight + (plain - weight) / (inertia if name.startswith("M_") else mass)
 
 
 def _weight(engine: Any) -> float:
@@ -65,11 +62,17 @@ def _fields(**names: str) -> Term:
 def _more_mass(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
     first_s = kit.planned[0].start_s if kit.planned else 0.0
     if "rate_per_s" in sizes:
-        kit.fittings.plant.append(MoreMass(lambda t: sizes["rate_per_s"] * max(t - first_s, 0.0)))
+
+        def drift(t: float) -> float:
+            return sizes["rate_per_s"] * max(t - first_s, 0.0)
+
+        kit.fittings.plant.append(MoreMass(drift, drift))
     if "step" in sizes:
         onset = _onset(kit, sizes, boot_s)
-        inertia = sizes.get("inertia", sizes["step"]) / sizes["step"] if sizes["step"] else 1.0
-        kit.fittings.plant.append(MoreMass(lambda t: sizes["step"] * onset.share(t), inertia))
+        mass, inertia = sizes["step"], sizes.get("inertia", sizes["step"])
+        kit.fittings.plant.append(
+            MoreMass(lambda t: mass * onset.share(t), lambda t: inertia * onset.share(t))
+        )
 
 
 def _moved_weight(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
