@@ -27,12 +27,25 @@ maneuvers: ["3211", "rev", doublet, "rev"]
 """
 
 
+def plain_model_of(scenario, folder):
+    """The data of a flight of the bundled aircraft, and the plain model fitted to them."""
+    (folder / "flown.yaml").write_text(scenario)
+    record(flight_of(read_scenario(folder / "flown.yaml")), folder / "flown.tlog")
+    maneuvers = maneuvers_of([folder / "flown.tlog"], Aircraft()).maneuvers
+    return fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
+
+
+@pytest.fixture(scope="module")
+def both_readings(tmp_path_factory):
+    """A held command read as it is, and as linear: data and plain model of each."""
+    held, plain = plain_model_of(f"{UAV}input: held\n", tmp_path_factory.mktemp("held"))
+    linear = replace(held, held=False)
+    return held, plain, linear, fit(linear, plain.point, plain.noise)
+
+
 @pytest.mark.parametrize("flown", ["held", "linear"])
 def test_a_command_is_read_as_it_was_flown(tmp_path, flown):
-    (tmp_path / "uav.yaml").write_text(f"{UAV}input: {flown}\n")
-    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
-    maneuvers = maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers
-    problem, _ = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
+    problem, _ = plain_model_of(f"{UAV}input: {flown}\n", tmp_path)
     assert problem.held == (flown == "held")
 
 
@@ -50,13 +63,8 @@ def test_a_servo_that_moves_no_faster_is_no_later_for_a_command_that_was_held(tm
     assert cause.parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.03)
 
 
-def test_a_limit_that_steps_meet_for_less_than_an_interval_is_no_sign_of_a_held_command(tmp_path):
-    (tmp_path / "uav.yaml").write_text(f"{UAV}input: held\n")
-    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
-    maneuvers = maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers
-    held, plain = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
-    linear = replace(held, held=False)
-    read_as_linear = fit(linear, plain.point, plain.noise)
+def test_a_limit_that_steps_meet_for_less_than_an_interval_is_no_sign_of_a_held_command(both_readings):
+    held, plain, linear, read_as_linear = both_readings
     limit = next(v for v in variants_for(held.flights) if v.effect == "actuator_rate_limit")
 
     def is_held_with(rate_rad_s: float) -> bool:
@@ -70,14 +78,9 @@ def test_a_limit_that_steps_meet_for_less_than_an_interval_is_no_sign_of_a_held_
 
 @pytest.mark.parametrize(("late_s", "is_held"), [(0.012, True), (0.003, False)])
 def test_a_sensor_that_is_late_by_what_the_linear_reading_shifts_is_a_sign_of_a_held_command(
-    tmp_path, late_s, is_held
+    both_readings, late_s, is_held
 ):
-    (tmp_path / "uav.yaml").write_text(f"{UAV}input: held\n")
-    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
-    maneuvers = maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers
-    held, plain = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
-    linear = replace(held, held=False)
-    read_as_linear = fit(linear, plain.point, plain.noise)
+    held, plain, linear, read_as_linear = both_readings
     skew, scale = (
         next(v for v in variants_for(held.flights) if v.effect == effect)
         for effect in ("accelerometer_skew", "alpha_scale")
