@@ -63,6 +63,11 @@ class Judged:
         return self.verdict == "effect" and bool(truth) and self.named[:1] == truth[:1]
 
     @property
+    def is_there(self) -> bool:
+        """The first cause acted on the flight: the effect that was drawn, or the air it was flown in."""
+        return self.right or (self.verdict == "effect" and set(self.named[:1]) <= set(self.background))
+
+    @property
     def right_or_tie(self) -> bool:
         """The true cause is first or among those the answer says it cannot tell from it."""
         return self.right or (self.verdict == "effect" and self.truth[0] in self.ties)
@@ -109,6 +114,7 @@ def score(judged: Sequence[Judged]) -> list[Rate]:
     outside = [j for j in judged if j.group == "outside"]
     two = [j for j in judged if j.group == "two"]
     named = [j for j in judged if j.verdict == "effect" and j.group != "two"]
+    named_in_hard = [j for j in hard if j.verdict == "effect"]
     covered = [inside for j in single if j.right for inside in _covered(j)]
     return [
         _share("right cause first, clean", [j.right for j in clean], ">= 98"),
@@ -116,7 +122,8 @@ def score(judged: Sequence[Judged]) -> list[Rate]:
         _share("right cause first, hard, moderate or stronger", [j.right for j in moderate], ">= 95"),
         _share("  the same, or a tie that is stated", [j.right_or_tie for j in moderate], ""),
         _share("right cause first, hard, all", [j.right for j in hard], ""),
-        _share("a named cause is right (hard)", [j.right for j in hard if j.verdict == "effect"], ">= 98"),
+        _share("a named cause is right (hard)", [j.right for j in named_in_hard], ">= 98"),
+        _share("  the same, or the air it was flown in", [j.is_there for j in named_in_hard], ""),
         _share("a named cause is right (all but two effects)", [j.right for j in named], ""),
         _share("right cause first, JSBSim", [j.right for j in engine], ">= 95"),
         _share("false alarms without an effect", [_alarm(j) for j in none], "<= 1"),
@@ -148,9 +155,7 @@ def by_effect(judged: Sequence[Judged]) -> list[Rate]:
 
 def _alarm(j: Judged) -> bool:
     """An effect, a change or an unknown claimed where nothing was; background turbulence may be named."""
-    if j.verdict == "effect" and set(j.named[:1]) <= set(j.background):
-        return False
-    return j.verdict != "none"
+    return j.verdict != "none" and not j.is_there
 
 
 def _both(j: Judged) -> bool:

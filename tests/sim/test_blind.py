@@ -207,6 +207,14 @@ def test_wrong_answers_are_counted_where_they_belong():
     assert told["a named cause is right (hard)"].value == 0.0
 
 
+def test_the_air_that_a_flight_was_made_in_is_a_cause_that_is_there_but_not_the_one_that_was_drawn():
+    key = {case: truth("hard", {"alpha_scale": {"scale": 0.03}}, ["alpha_sensor"]) for case in "abc"}
+    named = {"a": "alpha_scale", "b": "turbulence", "c": "alpha_skew"}
+    told = figures(key, {case: answer("effect", effect) for case, effect in named.items()})
+    assert told["a named cause is right (hard)"].value == pytest.approx(100.0 / 3.0)
+    assert told["  the same, or the air it was flown in"].value == pytest.approx(200.0 / 3.0)
+
+
 def test_an_interval_is_wilsons():
     key = {f"{i}": truth("none", {}, []) for i in range(20)}
     rate = figures(key, {case: answer("none") for case in key})["false alarms without an effect"]
