@@ -7,7 +7,7 @@ import pytest
 from advisor.aircraft import Aircraft
 from advisor.config import load_aircraft, parse_aircraft
 from advisor.effects import LEAST
-from advisor.gap.candidates.catalogue import BLOCK_OF
+from advisor.gap.candidates.traits import TRAITS
 from advisor.problems import ConfigurationError
 from sim.effects.terms import problems_with
 
@@ -100,7 +100,7 @@ def test_wrong_effects_are_listed_beside_a_wrong_model() -> None:
 
 
 def test_effects_of_a_file_are_those_of_the_gap_analysis_and_the_simulator_flies_them_all() -> None:
-    assert set(LEAST) == set(BLOCK_OF)
+    assert set(LEAST) == set(TRAITS)
     assert problems_with(LEAST) == []
 
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
-from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.explain import explain
 from advisor.gap.fitting.filed_speed import filed_speed
 from advisor.gap.records.airspeed import measures_speed
@@ -17,6 +16,7 @@ from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import at_another_speed, fit_baseline
 from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
+from advisor.gap.search.stage import added_in
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.unnamed.leftover import Leftover, of_the_wind
 from advisor.gap.unnamed.true_speed import true_over_read, true_speed_of
@@ -155,7 +155,7 @@ def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver], weight: Weigh
         e = replace(e, leftover=of_the_wind(e.leftover))
     is_off = weight is not None and weight.is_off
     # What an accelerometer reads wrong looks like a force, too: a name for one is no other explanation.
-    elsewhere = any(s.added is not None and BLOCK_OF[s.added.effect] != "force_equation" for s in e.stages)
+    elsewhere = any(j.block != "force_equation" for j in added_in(e.stages))
     is_scaled = e.true_speed is not None and e.true_speed.is_the_accelerometers(weight)
     if e.leftover is None and (is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight)):
         e = replace(e, leftover=Leftover("accelerometer", 1.0, (("accelerometer", 1.0),)))

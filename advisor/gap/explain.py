@@ -29,7 +29,7 @@ from advisor.gap.search.command import (
     read_otherwise,
 )
 from advisor.gap.search.speed import at_constant_speed
-from advisor.gap.search.stage import Stage
+from advisor.gap.search.stage import Stage, added_in
 from advisor.gap.search.waterfall import (
     Progress,
     as_measured,
@@ -161,7 +161,7 @@ def _named(
     if law is not None and law.is_beyond_doubt:
         return problem, stages, law
     stages = reconsidered(problem, stages, variants)
-    seen = stages[0].rivals | {s.added.effect for s in stages if s.added is not None}
+    seen = stages[0].rivals | {j.effect for j in added_in(stages)}
     named = stages[-1].fitted
     doubtful = may_be_held(problem, named, seen) or may_be_linear(problem, named)
     if doubtful and may_pay(problem, named, seen):
@@ -195,7 +195,7 @@ def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage],
     air = moving_air(problem, last)
     if air is None:
         return stages, None
-    named = [s.added for s in stages if s.added is not None]
+    named = added_in(stages)
     kept = [judged.effect for judged in named if not air.may_be(judged)]
     if len(kept) == len(named):
         return stages, air

@@ -1,27 +1,13 @@
-"""All variants that these data allow, and what each effect is called and belongs to."""
+"""All variants that these data allow."""
 
 import numpy as np
 
 from advisor.gap.candidates import force, input, moment, sensors, timing
+from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.records.flights import SPEED_CHANGE, Flights
 from advisor.gap.simulator.layout import HEIGHT, THROTTLE
 
-BLOCK_OF = {
-    "actuator_lag": "input", "actuator_rate_limit": "input", "actuator_backlash": "input",
-    "actuator_deadband": "input", "transport_delay": "input",
-    "elevator_nonlinearity": "moment_equation", "nonlinear_pitching_moment": "moment_equation",
-    "thrust_moment": "moment_equation", "cg_shift": "moment_equation", "alpha_dot": "moment_equation",
-    "nonlinear_lift": "force_equation", "unsteady_lift": "force_equation", "mass_change": "force_equation",
-    "icing": "force_equation", "airspeed_variation": "force_equation", "ground_effect": "force_equation",
-    "turbulence": "air", "gust": "air",
-    "alpha_lag": "alpha_sensor", "alpha_scale": "alpha_sensor", "alpha_bias": "alpha_sensor",
-    "alpha_vane_offset": "alpha_sensor",
-    "pitch_rate_bias": "pitch_rate_sensor", "pitch_rate_scale": "pitch_rate_sensor",
-    "structural_mode": "pitch_rate_sensor", "accelerometer_offset": "accelerometer",
-    "alpha_skew": "timing", "pitch_rate_skew": "timing", "accelerometer_skew": "timing",
-    "attitude_skew": "timing",
-}  # fmt: skip
 _LEAST_S = 0.004
 _FILTERED_S = 0.02
 """Least delay of a sensor worth a name: of a sensor itself, and of a channel an autopilot has filtered."""
@@ -29,10 +15,6 @@ _THROTTLE_MOVES, _HEIGHT_MOVES_M = 0.02, 0.2
 """Change within a manoeuvre, of the throttle's range and in m, without which neither tells anything."""
 _TWO_POWERS = 0.1
 """Relative change of the air speed without which moments and lift have one power of it between them."""
-_CHANNEL_OF = {
-    "alpha_lag": "alpha", "alpha_scale": "alpha", "alpha_vane_offset": "alpha", "alpha_skew": "alpha",
-    "accelerometer_offset": "a_z", "accelerometer_skew": "a_z", "attitude_skew": "theta",
-}  # fmt: skip
 
 
 def variants_for(flights: Flights) -> list[Variant]:
@@ -46,7 +28,7 @@ def variants_for(flights: Flights) -> list[Variant]:
 
 
 def _possible(v: Variant, flights: Flights) -> bool:
-    if not v.needs <= flights.has or _CHANNEL_OF.get(v.effect, flights.channels[0]) not in flights.channels:
+    if not v.needs <= flights.has or not {TRAITS[v.effect].channel} <= {"", *flights.channels}:
         return False
     if v.effect == "thrust_moment":
         return any(float(np.ptp(f.slow[THROTTLE])) > _THROTTLE_MOVES for f in flights.flights)

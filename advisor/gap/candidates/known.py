@@ -11,13 +11,12 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.moment import PROPELLER
+from advisor.gap.candidates.traits import OF_ONE_FLIGHT
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 
 Effects = Mapping[str, Mapping[str, float]]
 """Effect name to its parameters, as the aircraft file has them."""
-_OF_ITS_FLIGHT = frozenset({"cg_shift", "mass_change", "icing", "turbulence", "gust"})
-"""Effects that came at some time of one flight, and say nothing of another."""
 
 
 def with_known(
@@ -26,7 +25,7 @@ def with_known(
     """Shape (manoeuvres, entries): the simulation's numbers, ``base`` (entries,), with the file's effects."""
     numbers = np.tile(base, (len(flights), 1))
     for effect, parameters in effects.items():
-        if effect in _OF_ITS_FLIGHT:
+        if effect in OF_ONE_FLIGHT:
             continue
         described = [w for v in variants if v.effect == effect for w in (v, *v.likewise)]
         meant = [w for w in described if _says(w, parameters)]
@@ -39,7 +38,7 @@ def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]
     """The candidates left: a single number may be more or less than the file says, a shape is what it is."""
     left = []
     for variant in variants:
-        known = effects.get(variant.effect, {}) if variant.effect not in _OF_ITS_FLIGHT else {}
+        known = effects.get(variant.effect, {}) if variant.effect not in OF_ONE_FLIGHT else {}
         if known.keys().isdisjoint(variant.names):
             left.append(variant)
         elif len(variant.names) == 1 and not variant.inverted and _is_meant(variant, known, variants):
@@ -49,7 +48,7 @@ def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]
 
 def left_aside(effects: Effects) -> tuple[str, ...]:
     """Effects of the file that belong to the flight in which they were found."""
-    return tuple(effect for effect in effects if effect in _OF_ITS_FLIGHT)
+    return tuple(effect for effect in effects if effect in OF_ONE_FLIGHT)
 
 
 def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
@@ -60,7 +59,7 @@ def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
     """
     both = {effect: dict(values) for effect, values in known.items()}
     for effect, values in found.items():
-        before = both.get(effect, {}) if effect not in _OF_ITS_FLIGHT else {}
+        before = both.get(effect, {}) if effect not in OF_ONE_FLIGHT else {}
         both[effect] = before | dict(values)
         for size in [name for name in values if name not in PROPELLER.names][:1]:
             both[effect][size] += before.get(size, 0.0)

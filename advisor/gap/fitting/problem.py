@@ -42,11 +42,23 @@ class Point:
 
     def moved(self, shared: FloatArray, own: FloatArray) -> "Point":
         """The same model elsewhere."""
-        values, at = [], len(DERIVATIVES)
-        for effect in self.effects:
-            values.append(shared[at : at + len(effect.names)])
-            at += len(effect.names)
-        return replace(self, derivatives=shared[: len(DERIVATIVES)], own=own, values=tuple(values))
+        values = tuple(shared[self.place(k)] for k in range(len(self.effects)))
+        return replace(self, derivatives=shared[: len(DERIVATIVES)], own=own, values=values)
+
+    def place(self, k: int) -> slice:
+        """Where the parameters of the ``k``-th effect stand among the shared numbers."""
+        begin = len(self.derivatives) + sum(len(effect.names) for effect in self.effects[:k])
+        return slice(begin, begin + len(self.effects[k].names))
+
+    def index_of(self, name: str) -> int:
+        """Which of the effects has this name.
+
+        Raises
+        ------
+        StopIteration
+            None has.
+        """
+        return next(k for k, effect in enumerate(self.effects) if effect.effect == name)
 
     def with_effect(
         self, effect: Variant, values: Sequence[float] | FloatArray, sides: FloatArray | None = None

@@ -81,9 +81,5 @@ class Marks:
 
 def _latency_at(fitted: Fitted) -> int | None:
     """Where the latency is among the shared numbers."""
-    at = len(fitted.point.derivatives)
-    for effect in fitted.point.effects:
-        if effect is LATENCY:
-            return at
-        at += len(effect.names)
-    return None
+    point = fitted.point
+    return point.place(point.effects.index(LATENCY)).start if LATENCY in point.effects else None

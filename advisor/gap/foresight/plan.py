@@ -8,8 +8,9 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
-from advisor.gap.candidates.catalogue import BLOCK_OF, variants_for
+from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, with_known
+from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Point, Problem
@@ -121,7 +122,7 @@ def foresee_flights(
     in_file = {v.effect: v.names[0] for v in variants if v.effect not in sought}
     found += [Foreseen(effect, name, float("inf"), (), _IN_FILE) for effect, name in in_file.items()]
     by_effect = {f.effect: f for f in found}
-    return [by_effect.get(effect) or impossible(effect, flights) for effect in BLOCK_OF]
+    return [by_effect.get(effect) or impossible(effect, flights) for effect in TRAITS]
 
 
 def _refuse(plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: Sequence[str]) -> None:

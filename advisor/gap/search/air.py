@@ -18,7 +18,7 @@ from advisor.gap.noise.probes import KNOTS_S, Course, disturbance_courses
 from advisor.gap.noise.quiet import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
 from advisor.gap.records.smoothness import robust_std
 from advisor.gap.search.merit import LEAST_BELIEF, Judged
-from advisor.gap.search.stage import Stage
+from advisor.gap.search.stage import Stage, added_in
 from advisor.oem.innovations import CHANNELS
 from advisor.oem.turbulence import Turbulence, find_turbulence
 
@@ -143,7 +143,7 @@ def gust_instead(problem: Problem, stages: Sequence[Stage]) -> Air | None:
     It is by far the loudest with them, too, and the air explains it better than they do the others.
     """
     plain, last = stages[0].fitted, stages[-1].fitted
-    named = [s.added for s in stages if s.added is not None]
+    named = added_in(stages)
     if not named or max(judged.belief for judged in named) >= LEAST_BELIEF:
         return None
     was, leaves = (np.mean(mean_squares(problem, f.left) / last.noise**2, axis=1) for f in (plain, last))

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.gap.candidates import input
+from advisor.gap.candidates.traits import KINKED
 from advisor.gap.fitting.fit import Fitted, evidence_of, fit
 from advisor.gap.fitting.neighbourhood import Neighbourhood
 from advisor.gap.fitting.problem import Problem, counts
@@ -23,8 +24,6 @@ _IN_STEP = 0.05
 intervals would leave more."""
 _HALF_S = 0.003
 """How near to half an interval that is."""
-_BEND = frozenset({"actuator_rate_limit", "actuator_backlash", "actuator_deadband"})
-"""What lies between command and surface and is not linear."""
 _SEVERAL = 2
 """Effects from which on another reading may do with fewer."""
 _LIKELIER = 12.0
@@ -91,7 +90,7 @@ def may_be_held(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool
         return False
     # The few milliseconds of latency that any model has may hold a part of it, and run out.
     late = _is_of_a_stamp(problem, _delay_of(fitted)) or _latency_of(fitted) >= input.LATENCY.bounds[0][1]
-    return (late and not _BEND.isdisjoint(seen)) or _is_out_of_step(problem, fitted)
+    return (late and not KINKED.isdisjoint(seen)) or _is_out_of_step(problem, fitted)
 
 
 def may_be_linear(problem: Problem, fitted: Fitted) -> bool:
@@ -114,7 +113,7 @@ def may_pay(problem: Problem, fitted: Fitted, seen: Collection[str]) -> bool:
     other = replace(problem, held=not problem.held)
     same = _with_latency(other, only(other, fitted, named))
     more = evidence_of(other, same) - evidence_of(problem, fitted)
-    return more < (_KINKED if not _BEND.isdisjoint(seen) else len(named) * _price_of_one(problem))
+    return more < (_KINKED if not KINKED.isdisjoint(seen) else len(named) * _price_of_one(problem))
 
 
 def read_otherwise(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
@@ -133,7 +132,7 @@ def is_likelier_held(linear: Problem, named: Fitted, held: Problem, named_held: 
     if _delay_of(named_held) > 0.0:
         return False
     more = evidence_of(held, named_held) - evidence_of(linear, named)
-    bends = any(effect.effect in _BEND for effect in named_held.point.effects)
+    bends = any(effect.effect in KINKED for effect in named_held.point.effects)
     bends = bends and not _is_the_ramp(held, named_held)
     in_step = _is_out_of_step(linear, named) and not _is_out_of_step(held, named_held)
     in_step = in_step and len(named_held.point.effects) <= len(named.point.effects)

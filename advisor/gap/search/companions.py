@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.traits import BY_NATURE
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import hold_out
@@ -17,9 +18,9 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
 from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN, LEAST_SIGMA
 from advisor.gap.search.ranking import candidates_for, judge
-from advisor.gap.search.score import BY_NATURE, addition, price_of
+from advisor.gap.search.score import addition, price_of
 from advisor.gap.search.screen import Screen
-from advisor.gap.search.stage import Stage, only, rebuilt
+from advisor.gap.search.stage import Stage, added_in, only, rebuilt
 
 _CLEARLY = 20.0
 """Cost by which a pair of names must beat those that were found first."""
@@ -79,7 +80,7 @@ def one_for_another(problem: Problem, stages: list[Stage], variants: Sequence[Va
     keeps the other out.
     """
     last = stages[-1].fitted
-    names = [s.added.effect for s in stages if s.added is not None]
+    names = [j.effect for j in added_in(stages)]
     for n, stage in enumerate(stages[1:], start=1):
         rival = next(iter(stage.considered), None)
         if rival is None or rival.sigmas > LEAST_SIGMA or rival.gain < _CERTAIN:
@@ -119,7 +120,7 @@ def one_early(problem: Problem, stages: list[Stage], variants: Sequence[Variant]
 
     To the data they are the same but for the command's edges; two causes are likelier than three.
     """
-    named = [s.added for s in stages if s.added is not None]
+    named = added_in(stages)
     late = {j.effect: float(j.value[0]) for j in named if j.variant.names[0] == "skew_s" and j.value[0] > 0.0}
     delay = next((v for v in variants if v.effect == "transport_delay"), None)
     if len(late) < _SEVERAL or delay is None:
@@ -142,7 +143,7 @@ def one_number_for_ice(problem: Problem, stages: list[Stage], variants: Sequence
     Ice weakens four derivatives, each by its own share. What was not yet in the model when it was named had
     its part in them; beside it one number may do as well, and is likelier then.
     """
-    names = [s.added.effect for s in stages if s.added is not None]
+    names = [j.effect for j in added_in(stages)]
     if "icing" not in names or len(names) < _BESIDE:
         return stages
     last = stages[-1].fitted
@@ -168,7 +169,7 @@ def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Varian
 
     Two effects may look like one effect and wrong numbers. Held at the file's numbers, each shows as it is.
     """
-    names, last = sum(s.added is not None for s in stages), stages[-1].fitted
+    names, last = len(added_in(stages)), stages[-1].fitted
     if not names or problem.believed is None:
         return stages
     independent = worth(problem, last.innovations)
@@ -186,7 +187,7 @@ def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Varian
     # One of them alone may throw the model far off: then the names do not stand one after the other.
     falls = all(after.fitted.cost < before.fitted.cost for before, after in pairwise(again))
     # Of several, those that the whole does not miss are dropped later; a single one must stand by itself.
-    named = [s.added for s in again if s.added is not None]
+    named = added_in(again)
     stands = len(named) > 1 or any(judged.worth_naming for judged in named)
     return again if falls and stands else stages
 

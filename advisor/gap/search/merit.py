@@ -75,6 +75,11 @@ class Judged:
         return self.variant.effect
 
     @property
+    def block(self) -> str:
+        """Part of the simulator that it belongs to."""
+        return self.variant.block
+
+    @property
     def worth_naming(self) -> bool:
         """Better on unseen manoeuvres, by more than noise, and not smaller than matters."""
         certain = self.gain >= _CERTAIN

@@ -3,6 +3,7 @@
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.traits import BY_NATURE
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.belief import odds_of_arm
 from advisor.gap.fitting.fit import Fitted, rms_of
@@ -15,15 +16,9 @@ from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, Judged, size_of
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
 _FAINT = 0.15
-"""Share of it that is enough of what is certain, where the air is still and nothing else there ..."""
-BY_NATURE = frozenset(
-    {
-        "elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift", "unsteady_lift", "alpha_dot",
-        "icing", "structural_mode", "airspeed_variation", "thrust_moment", "ground_effect",
-    }
-)  # fmt: skip
-"""... but for what every aircraft has to some degree, or what takes its shape; and times must be
-twice the least, and steps that may have come between any two manoeuvres."""
+"""Share of it that is enough of what is certain, where the air is still and nothing else there, but for what
+every aircraft has to some degree; and times must be twice the least, and steps that may have come between
+any two manoeuvres."""
 _OF_PEAK = 0.003
 """Share of each channel's peak that an effect must change."""
 TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
@@ -59,12 +54,11 @@ def addition(
 ) -> Judged:
     """What an effect of a fitted model adds to the model without it."""
     point = fitted.point
-    k = [v.effect for v in point.effects].index(effect)
-    variant, value = point.effects[k], point.values[k]
-    at = len(point.derivatives) + sum(len(v) for v in point.values[:k])
+    k = point.index_of(effect)
+    variant, value, place = point.effects[k], point.values[k], point.place(k)
     held = hold_out(problem, fitted)
     # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
-    witness = lone_witness(fitted, at) if variant.needs else None
+    witness = lone_witness(fitted, place.start) if variant.needs else None
     lone = witness is not None
     known_before, known = held_before, held
     if others := _told_alone(fitted, but=k):
@@ -87,20 +81,16 @@ def addition(
         smallest=smallest_of(problem, variant, gain),
         belief=belief, beforehand=beforehand, value=value, witness=witness,
         with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_plain(before),
-        std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[at : at + len(value)],
+        std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[place],
     )  # fmt: skip
 
 
 def _told_alone(fitted: Fitted, but: int) -> set[int]:
     """Manoeuvres that alone tell of some effect of the model, other than the ``but``-th."""
-    effects, values = fitted.point.effects, fitted.point.values
-    ends = len(fitted.point.derivatives) + np.cumsum([0, *map(len, values)])
-    places = [
-        int(at)
-        for k, (effect, at) in enumerate(zip(effects, ends[:-1], strict=True))
-        if effect.needs and not effect.always and k != but
-    ]
-    return {number for at in places if (number := lone_witness(fitted, at)) is not None}
+    point = fitted.point
+    others = [k for k, v in enumerate(point.effects) if v.needs and not v.always and k != but]
+    told = (lone_witness(fitted, point.place(k).start) for k in others)
+    return {number for number in told if number is not None}
 
 
 def price_of(variant: Variant, independent: FloatArray) -> float:

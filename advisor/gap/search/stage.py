@@ -3,18 +3,15 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import worth
-from advisor.gap.search.merit import Judged
+from advisor.gap.search.merit import BEYOND_DOUBT, Judged
 from advisor.gap.search.score import addition
 
 _NEAR = 0.5
 """Share of the best candidate's gain from which on another one is a rival."""
-_BEYOND_DOUBT = 100.0
-"""Log likelihood from which on what is too small for a name is there all the same."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +34,13 @@ class Stage:
 
     def slight_in(self, block: str) -> Judged | None:
         """What is beyond doubt in a block, and too small for a name only."""
-        found = (j for j in self.considered if BLOCK_OF[j.effect] == block and j.gain >= _BEYOND_DOUBT)
+        found = (j for j in self.considered if j.block == block and j.gain >= BEYOND_DOUBT)
         return next((j for j in found if not j.large_enough and not j.at_its_bounds), None)
+
+
+def added_in(stages: Sequence[Stage]) -> list[Judged]:
+    """What was added, stage by stage."""
+    return [stage.added for stage in stages if stage.added is not None]
 
 
 def rebuilt(

@@ -3,8 +3,6 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import hold_out, measured_in
@@ -21,7 +19,7 @@ from advisor.gap.search.companions import (
 from advisor.gap.search.merit import LEAST_BELIEF, Judged
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
-from advisor.gap.search.stage import Stage, only, rebuilt
+from advisor.gap.search.stage import Stage, added_in, only, rebuilt
 
 MOST_EFFECTS = 3
 """More names in one flight are hardly ever right."""
@@ -105,18 +103,15 @@ def as_measured(problem: Problem, stages: Sequence[Stage]) -> list[Stage]:
 def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:
     """The same with sizes from the last model: in earlier ones an effect stood for others, too."""
     full = stages[-1].fitted
-    if sum(s.added is not None for s in stages) < 2:
+    if len(added_in(stages)) < 2:
         return stages
-    places = {variant.effect: k for k, variant in enumerate(full.point.effects)}
-    ends = np.cumsum([len(full.point.derivatives), *map(len, full.point.values)])
     independent = worth(problem, full.innovations)
 
     def restated(added: Judged) -> Judged:
-        k = places[added.effect]
-        std = shared_std(problem, full, independent, trusted=added.belief >= LEAST_BELIEF)
-        return replace(
-            added, variant=full.point.effects[k], value=full.point.values[k], std=std[ends[k] : ends[k + 1]]
-        )
+        point = full.point
+        k = point.index_of(added.effect)
+        std = shared_std(problem, full, independent, trusted=added.belief >= LEAST_BELIEF)[point.place(k)]
+        return replace(added, variant=point.effects[k], value=point.values[k], std=std)
 
     return [s if s.added is None else replace(s, added=restated(s.added)) for s in stages]
 
@@ -143,7 +138,7 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
             break
         names.remove(weakest)
         full = without[weakest]
-    if names == [s.added.effect for s in stages if s.added is not None]:
+    if names == [j.effect for j in added_in(stages)]:
         return stages
     if len(names) == 1 and not _stands_alone(problem, stages[0], full, names[0]):
         return [replace(stages[0], added=None)]

@@ -10,6 +10,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import starts_of
+from advisor.gap.candidates.traits import STEADY
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
@@ -23,13 +24,6 @@ from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import ENTRIES
 from advisor.gap.unnamed.leftover import Leftover
 
-_STEADY = frozenset(
-    {
-        "alpha_lag", "alpha_scale", "pitch_rate_scale", "alpha_skew", "pitch_rate_skew", "accelerometer_skew",
-        "attitude_skew", "transport_delay", "actuator_lag",
-    }
-)  # fmt: skip
-"""Effects that are one number for a whole flight. A bias may wander a little, and is one all the same."""
 _CERTAIN = 30.0
 """Log likelihood that the change must bring on manoeuvres kept out."""
 _LEAST_CHANGE = 0.8
@@ -73,7 +67,7 @@ def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
     if len(problem.flights) < _FEW:
         return None
     for stage in stages:
-        if stage.added is None or stage.added.effect not in _STEADY or len(stage.added.value) != 1:
+        if stage.added is None or stage.added.effect not in STEADY or len(stage.added.value) != 1:
             continue
         said, scatter = stage.added, _scatter(problem, stages[-1].fitted, stage.added)
         if not scatter.may_drift:
@@ -85,7 +79,7 @@ def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
             block = _WANDERS_IN.get(said.effect, said.variant.block)
             return Leftover(block, 1.0, ((block, 1.0),), note=_varies(said, scatter))
         # Of a lag and a clock that are hard to tell apart one may drift as the other does not.
-        alike = [j for j in stage.considered if j.effect in _STEADY and j.variant.block != said.variant.block]
+        alike = [j for j in stage.considered if j.effect in STEADY and j.variant.block != said.variant.block]
         for rival in alike if len(stages) == _ALONE else []:
             other = _with_drift(problem, rival.fitted, rival.held_out, rival)
             if other.fitted.cost < drift.fitted.cost and _is_plain(other, rival):
@@ -133,8 +127,7 @@ def _written(variant: Variant, value: float, flights: Flights) -> FloatArray:
 
 def _scatter(problem: Problem, last: Fitted, named: Judged) -> _Scatter:
     """What each manoeuvre by itself would change of a named number, all others as they are."""
-    k = next(i for i, effect in enumerate(last.point.effects) if effect.effect == named.effect)
-    at = len(last.point.derivatives) + sum(len(values) for values in last.point.values[:k])
+    at = last.point.place(last.point.index_of(named.effect)).start
     share = worth(problem, last.innovations) / counts(problem)
     inners = [own_eliminated(block, np.sqrt(share) / last.noise)[0] for block in last.linear]
     told = max(inner[at, at] for inner in inners)

@@ -9,7 +9,7 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.score import addition
-from advisor.gap.search.stage import Stage
+from advisor.gap.search.stage import Stage, added_in
 from advisor.gap.unnamed.laws import said
 from advisor.gap.unnamed.leftover import Leftover
 from advisor.gap.unnamed.stalls import lift_memory
@@ -22,7 +22,7 @@ _BENT_MORE = replace(CURVED_LIFT, effect="lift_bent_more")
 
 def remembering(problem: Problem, stages: list[Stage]) -> Leftover | None:
     """The lift's memory beside all that was named; None where its bend needs none, or it does not bend."""
-    if not any(s.added is not None and s.added.effect == "nonlinear_lift" for s in stages):
+    if not any(j.effect == "nonlinear_lift" for j in added_in(stages)):
         return None
     last = stages[-1]
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.traits import KINKED
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import folds_of
 from advisor.gap.fitting.problem import Problem
@@ -20,8 +21,6 @@ from advisor.gap.records.flights import Flight
 from advisor.gap.unnamed.course import has_tone
 
 ALIKE = frozenset({"input", "moment_equation"})
-_MECHANISMS = frozenset({"actuator_backlash", "actuator_deadband", "actuator_rate_limit"})
-"""What is named of an actuator that does something else."""
 _TIED = 10.0
 """Difference in log likelihood below which the two blocks explain a residual equally well."""
 _TELLING = 0.1
@@ -52,7 +51,7 @@ def stick_or_motion(
     size = next(p.size for p in probes if p.block == "moment_equation")
     course = disturbance_courses(problem, fitted, noise, "moment_equation", [size])[0]
     named = {variant.effect for variant in fitted.point.effects}
-    otherwise = "input" if named & _MECHANISMS else "moment_equation"
+    otherwise = "input" if named & KINKED else "moment_equation"
     return followed(problem.flights.flights, course.knots) or otherwise
 
 

@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates.catalogue import BLOCK_OF
+from advisor.gap.candidates.traits import OF_ANY_AIRFRAME
 from advisor.gap.fitting.holdout import HeldOut, mean_squares
 from advisor.gap.fitting.measure import gap_of, whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.merit import LEAST_BELIEF
-from advisor.gap.search.stage import Stage
+from advisor.gap.search.stage import Stage, added_in
 from advisor.gap.unnamed.leftover import Leftover, placed
 
 _MOST = 0.5
@@ -32,14 +32,10 @@ _USE = 0.1
 """Share of the gap that names must take away."""
 _OF_THE_NUMBERS = 0.01
 """Share of what fitted numbers take away without them below which names only polish wrong numbers."""
-_OF_ANY_AIRFRAME = frozenset(
-    {"nonlinear_lift", "nonlinear_pitching_moment", "elevator_nonlinearity", "mass_change", "cg_shift"}
-)
 _BESIDE_IT = frozenset({"thrust_moment"})
 _LITTLE, _NEAR_THE_NOISE = 0.012, 2.0
-"""What every airframe has: bends, and fuel that is burnt; beside them thrust that misses the centre of
-gravity; the RMS that they must change of some channel's peak in some manoeuvre to be a cause, and the gap
-from which on they are one."""
+"""Beside what any airframe has, thrust that misses the centre of gravity; the RMS that they must change of
+some channel's peak in some manoeuvre to be a cause, and the gap from which on they are one."""
 _BENT_BY_INPUT = frozenset({"moment_equation", "force_equation", "air"})
 """Where that seems to be: what an instrument does is told by other signs."""
 _BENDS = frozenset({"actuator_backlash", "actuator_deadband"})
@@ -57,7 +53,7 @@ def of_the_input(
     leave seems to be elsewhere. Arguments as ``is_of_no_use``.
     """
     first = stages[0].added
-    if found.note or found.block not in _BENT_BY_INPUT or first is None or BLOCK_OF[first.effect] != "input":
+    if found.note or found.block not in _BENT_BY_INPUT or first is None or first.block != "input":
         return found
     plain = stages[0].held_out if file_model is None else file_model
     before, after = (whole_gap(held.mean_square, floor) for held in (plain, stages[1].held_out))
@@ -75,7 +71,7 @@ def remainder(
     All of the gap is placed: the names took up a part that was not theirs. What was named for bringing the
     derivatives back to the file's is held against those. Arguments as ``is_of_no_use``.
     """
-    believed = any(s.added is not None and s.added.belief >= LEAST_BELIEF for s in stages)
+    believed = any(j.belief >= LEAST_BELIEF for j in added_in(stages))
     plain = file_model if believed and file_model is not None else stages[0].held_out
     before, after = (whole_gap(held.mean_square, floor) for held in (plain, stages[-1].held_out))
     if len(stages) < 2 or after < max(_SEEN, _MOST * before):
@@ -101,7 +97,7 @@ def only_resemble(stages: Sequence[Stage]) -> bool:
 
     What brings derivatives back to the aircraft file's need not take away anything.
     """
-    named = [s.added for s in stages if s.added is not None]
+    named = added_in(stages)
     if not named or max(judged.belief for judged in named) >= LEAST_BELIEF:
         return False
     removed = removed_beyond_air(stages)
@@ -137,9 +133,9 @@ def bends_as_any(
     Linear equations hardly describe a motion better, and any aircraft bends by as much; but for what brings
     derivatives back to the file's. Arguments as for ``is_of_no_use``.
     """
-    named = [s.added for s in stages if s.added is not None]
-    bends = {j.effect for j in named} & _OF_ANY_AIRFRAME
-    if not bends or named[0].effect not in _OF_ANY_AIRFRAME | _BESIDE_IT:
+    named = added_in(stages)
+    bends = {j.effect for j in named} & OF_ANY_AIRFRAME
+    if not bends or named[0].effect not in OF_ANY_AIRFRAME | _BESIDE_IT:
         return False
     plain, last = stages[0].held_out, stages[-1].held_out
     if any(j.belief >= LEAST_BELIEF for j in named) or whole_gap(plain.mean_square, floor) > _NEAR_THE_NOISE:

@@ -74,7 +74,6 @@ def true_speed_of(problem: Problem, fitted: Fitted) -> TrueSpeed | None:
     if TRUE_AIR_SPEED not in point.effects:
         return None
     k = point.effects.index(TRUE_AIR_SPEED)
-    at = len(point.derivatives) + sum(len(v) for v in point.values[:k])
-    std = float(shared_std(problem, fitted, worth(problem, fitted.innovations))[at])
+    std = float(shared_std(problem, fitted, worth(problem, fitted.innovations))[point.place(k)][0])
     scale = float(point.values[k][0])
     return TrueSpeed(scale, std) if abs(scale) > max(_WORTH_SAYING, _SIGMAS * std) else None

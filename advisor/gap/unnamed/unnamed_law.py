@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
@@ -26,7 +25,7 @@ from advisor.gap.search.score import (
     price_of_edges,
 )
 from advisor.gap.search.screen import Screen, penalty
-from advisor.gap.search.stage import Stage
+from advisor.gap.search.stage import Stage, added_in
 from advisor.gap.unnamed.laws import PLAIN, laws_for, said
 from advisor.gap.unnamed.leftover import Leftover
 from advisor.gap.unnamed.stops import SURFACE_STOP
@@ -109,7 +108,7 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     if np.mean(after < before) < _IN_MOST or not _shows(problem, held, bent.held_out):
         return None
     alike = difference(problem, stages[-1].held_out, bent.held_out) < bent.least
-    if alike and not is_stop and sum(s.added is not None for s in stages) < _SEVERAL:
+    if alike and not is_stop and len(added_in(stages)) < _SEVERAL:
         # Next to the same motion as what was named: one name stays, several in concert are no likelier.
         return None
     if len(stages) > 1 and not is_stop and _is_another_matter(problem, stages, bent, independent):
@@ -118,7 +117,7 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     if law.effect in PLAIN and np.min(left) > _LEAVES:
         return None
     block = law.block
-    rivals = {BLOCK_OF[j.effect]: _share(j, bent) for j in reversed(stages[0].considered)}
+    rivals = {j.block: _share(j, bent) for j in reversed(stages[0].considered)}
     ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
     share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))
     names_leave, leaves = (
@@ -137,7 +136,7 @@ def _shows(problem: Problem, before: HeldOut, after: HeldOut) -> bool:
 
 def _begins_beyond_the_trim(stages: list[Stage]) -> bool:
     """Whether the one name is a dead band that no trim lies in: its far edge is a guess, and it a stop."""
-    named = [s.added for s in stages if s.added is not None]
+    named = added_in(stages)
     if [judged.effect for judged in named] != ["actuator_deadband"]:
         return False
     half_width, neutral = named[0].value[:2]
@@ -147,7 +146,7 @@ def _begins_beyond_the_trim(stages: list[Stage]) -> bool:
 def _gain_of_all(problem: Problem, stages: list[Stage], independent: FloatArray) -> float:
     """What the named effects bring together, as ``Judged.gain`` counts; 0 without any."""
     first, last = stages[0], stages[-1]
-    named = [s.added for s in stages if s.added is not None]
+    named = added_in(stages)
     if not named:
         return 0.0
     likelihood = log_likelihood_gained(first.fitted, first.held_out, last.fitted, last.held_out, independent)

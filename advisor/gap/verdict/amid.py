@@ -8,6 +8,7 @@ unknown. Without it the others tell what changed.
 import numpy as np
 
 from advisor.gap.records.flights import Flight
+from advisor.gap.search.stage import added_in
 from advisor.gap.verdict.evidence import Evidence
 
 _STANDS_OUT = 3.0
@@ -69,7 +70,7 @@ def _end_s(flight: Flight) -> float:
 
 def _changes(e: Evidence) -> list[tuple[float, float]]:
     """From when to when each change came that was named and is no trifle beside the others, s."""
-    named = [s.added for s in e.stages if s.added is not None]
+    named = added_in(e.stages)
     least = _TRIFLE * max((judged.gain for judged in named), default=0.0)
     found = []
     for judged in named:
@@ -82,6 +83,6 @@ def _changes(e: Evidence) -> list[tuple[float, float]]:
 
 def _riddles(e: Evidence) -> int:
     """How much it takes: names, a gust, something without a name."""
-    named = sum(s.added is not None for s in e.stages)
+    named = len(added_in(e.stages))
     gust = e.air is not None and e.air.gust
     return named + gust + _UNKNOWN * (e.leftover is not None)

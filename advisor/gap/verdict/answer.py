@@ -91,13 +91,12 @@ def _speed_is_known(problem: Problem, aircraft: Aircraft) -> bool:
 def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) -> dict[str, dict[str, float]]:
     """What the improved simulator gets: the named effects, and the propeller's share where it shows."""
     effects = {c.effect: {k: v.value for k, v in c.parameters.items()} for c in causes if c.present}
-    at = len(fitted.point.derivatives)
-    for variant, values in zip(fitted.point.effects, fitted.point.values, strict=True):
-        error = std[at : at + len(values)]
-        if variant is PROPELLER and np.any(np.abs(values) > LEAST_SIGMA * error):
+    point = fitted.point
+    if PROPELLER in point.effects:
+        k = point.effects.index(PROPELLER)
+        if np.any(np.abs(point.values[k]) > LEAST_SIGMA * std[point.place(k)]):
             thrust = effects.setdefault("thrust_moment", {})
-            thrust.update(zip(variant.names, map(float, values), strict=True))
-        at += len(values)
+            thrust.update(zip(PROPELLER.names, map(float, point.values[k]), strict=True))
     return effects
 
 

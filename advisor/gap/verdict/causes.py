@@ -7,13 +7,12 @@ import numpy as np
 
 from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates.catalogue import BLOCK_OF
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.merit import Judged, least_offset_rad
 from advisor.gap.search.score import TIME_DOUBT_S, TIMES
-from advisor.gap.search.stage import Stage
+from advisor.gap.search.stage import Stage, added_in
 from advisor.gap.search.ties import tied_with
 
 TEMPERATURE = 3.0
@@ -34,7 +33,7 @@ def causes_of(
     stages: Sequence[Stage], floor: FloatArray, unexplained: float, channels: Sequence[str]
 ) -> tuple[Cause, ...]:
     """What was added, in order, then the alternatives to the first addition."""
-    added = [s.added for s in stages if s.added is not None]
+    added = added_in(stages)
     first = stages[0].considered
     shares = probabilities(first, unexplained)
     causes = []
@@ -127,9 +126,7 @@ def _cause(
 ) -> Cause:
     ties, way = tied_with(judged, considered, channels)
     left = whole_gap(judged.held_out.mean_square, floor)
-    return Cause(
-        judged.effect, BLOCK_OF[judged.effect], probability, parameters_of(judged), ties, way, left, present
-    )
+    return Cause(judged.effect, judged.block, probability, parameters_of(judged), ties, way, left, present)
 
 
 def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, float], ...]:
@@ -140,9 +137,8 @@ def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, flo
             scores.setdefault(cause.block, 1.0)
     best = max((j.gain for j in first.considered), default=0.0)
     for j in first.considered:
-        block = BLOCK_OF[j.effect]
         if best > 0.0 and j.gain > 0.0:
-            scores[block] = max(scores.get(block, 0.0), round(j.gain / best, 4))
+            scores[j.block] = max(scores.get(j.block, 0.0), round(j.gain / best, 4))
     return tuple(sorted(scores.items(), key=lambda item: -item[1]))
 
 
@@ -180,7 +176,7 @@ def alpha_lag_cause(
     """
     intervals = [np.diff(f.outputs["alpha"].t) for f in problem.flights.flights if "alpha" in f.outputs]
     least_s = _OF_INTERVAL * float(np.median(np.concatenate(intervals))) if intervals else 0.0
-    found_there = any(BLOCK_OF[j.effect] in ("alpha_sensor", "accelerometer") for j in named)
+    found_there = any(j.block in ("alpha_sensor", "accelerometer") for j in named)
     if not problem.flights.alpha_is_derived or found_there or check.finding != "late":
         return None
     if check.lag_s < least_s:

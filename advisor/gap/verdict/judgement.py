@@ -14,6 +14,7 @@ from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
 from advisor.gap.result import VISIBLE, Cause, Value, Verdict
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, speed_is_unasked
+from advisor.gap.search.stage import added_in
 from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.kept_out import without_air
@@ -74,7 +75,7 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     problem, stages, floor = e.problem, e.stages, e.floor
     first, last = stages[0].held_out, stages[-1].held_out
     left = whole_gap(last.mean_square, floor)
-    named = [s.added for s in stages if s.added is not None]
+    named = added_in(stages)
     late = alpha_lag_cause(kinematics, problem, named, left)
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
