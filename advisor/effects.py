@@ -11,8 +11,8 @@ LEAST: Mapping[str, Mapping[str, float]] = {
     "actuator_backlash": {"half_width_rad": 0.0},
     "actuator_deadband": {"half_width_rad": 0.0, "neutral_rad": _ANY, "about_trim": 0.0},
     "transport_delay": {"delay_s": 0.0},
-    "elevator_nonlinearity": {"M_delta2": _ANY, "M_delta3": _ANY},
-    "nonlinear_pitching_moment": {"M_alpha2": _ANY, "M_alpha3": _ANY},
+    "elevator_nonlinearity": {"M_delta2": _ANY, "M_delta3": _ANY, "about_rad": _ANY},
+    "nonlinear_pitching_moment": {"M_alpha2": _ANY, "M_alpha3": _ANY, "about_rad": _ANY},
     "thrust_moment": {
         "M_throttle": _ANY,
         "lag_s": 0.0,
@@ -20,9 +20,15 @@ LEAST: Mapping[str, Mapping[str, float]] = {
         "washed_share": _ANY,
         "blown_share": _ANY,
     },
-    "cg_shift": _ONSET,
+    "cg_shift": {**_ONSET, "stability_only": 0.0},
     "alpha_dot": {"M_alpha_dot": _ANY},
-    "nonlinear_lift": {"Z_alpha2": _ANY, "Z_alpha3": _ANY, "stall_rad": _ANY, "sharpness": 0.0},
+    "nonlinear_lift": {
+        "Z_alpha2": _ANY,
+        "Z_alpha3": _ANY,
+        "about_rad": _ANY,
+        "stall_rad": _ANY,
+        "sharpness": 0.0,
+    },
     "unsteady_lift": {"share": _ANY, "lag_s": 0.0, "with_moment": 0.0},
     "mass_change": {**_ONSET, "inertia": _ANY},
     "icing": {

@@ -10,7 +10,7 @@ class DrydenTurbulence:
 
     The vertical component has the spectrum's second-order shaping filter
 
-        w(s)/n(s) = σ √(3L/V) · (s + V/(√3 L)) / (s + V/L)²,
+        w(s)/n(s) = σ √(3V/L) · (s + V/(√3 L)) / (s + V/L)²,
 
     the head-on component the first-order one. Both are stepped with their exact discrete
     transition; white noise is held over a step.

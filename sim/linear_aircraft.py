@@ -73,10 +73,21 @@ MODEL_RECORD = np.dtype(
     + [
         ("alpha_ref", np.float64),
         ("delta_ref", np.float64),
+        # Angles from which those in the squares and cubes of lift, moment and elevator count.
+        ("Z_about", np.float64),
+        ("M_about", np.float64),
+        ("delta_about", np.float64),
         ("throttle_ref", np.float64),
         ("speed_ref", np.float64),
     ]
 )
+
+
+@njit(cache=True)
+def _bent(angle: float, trimmed: float, about: float, square: float, cube: float) -> float:
+    """Square and cube of an angle about another, less those at the trim, which are in Z_0 and M_0."""
+    off, usual = angle - about, trimmed - about
+    return square * (off**2 - usual**2) + cube * (off**3 - usual**3)
 
 
 @njit(cache=True)
@@ -92,7 +103,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
     air = alpha + u[3] / speed
     behind = m.unsteady_share * (air - late)
     lifting, turning = air - behind, air - m.unsteady_moment * behind
-    off, off_elevator = air - m.alpha_ref, elevator - m.delta_ref
+    off_elevator = elevator - m.delta_ref
     gamma = theta - alpha
     ratio, power, turn, weight, gravity = 1.0, 1.0, 1.0, GRAVITY_M_S2 / m.speed_ref, 0.0
     wing = m.Z_0 - weight + m.Z_alpha * lifting
@@ -113,7 +124,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
         + ratio
         * power
         * (
-            (wing + m.Z_delta_e * elevator + m.Z_alpha2 * off**2 + m.Z_alpha3 * off**3)
+            (wing + m.Z_delta_e * elevator + _bent(air, m.alpha_ref, m.Z_about, m.Z_alpha2, m.Z_alpha3))
             * (1.0 + m.lift_h * ground)
             + m.Z_h * ground
         )
@@ -129,10 +140,8 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
             m.M_0
             + m.M_alpha * turning
             + m.M_delta_e * elevator
-            + m.M_alpha2 * off**2
-            + m.M_alpha3 * off**3
-            + m.M_delta2 * off_elevator**2
-            + m.M_delta3 * off_elevator**3
+            + _bent(air, m.alpha_ref, m.M_about, m.M_alpha2, m.M_alpha3)
+            + _bent(elevator, m.delta_ref, m.delta_about, m.M_delta2, m.M_delta3)
             + m.M_h * ground
         )
         + m.M_throttle * (throttle - m.throttle_ref)
@@ -185,8 +194,14 @@ class LinearAircraft:
         alpha, elevator = model.trim()
         self.truth = model
         self.record: NDArray[np.void] = np.array(
-            [(*astuple(model), *astuple(terms), alpha, elevator, throttle, airspeed_m_s)], dtype=MODEL_RECORD
-        )
+            [
+                (
+                    *astuple(model), *astuple(terms), alpha, elevator, alpha, alpha, elevator,
+                    throttle, airspeed_m_s,
+                )
+            ],
+            dtype=MODEL_RECORD,
+        )  # fmt: skip
         """The model being flown; effects may change its fields in flight."""
         self.calibration = Calibration()
         self.trim = Controls(elevator, throttle, 0.0)

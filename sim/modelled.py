@@ -45,8 +45,9 @@ def modelled_flight(scenario: Scenario, path: Path, replayed: Path | None = None
     if recording is not None:
         duration = float(recording.time_s[-1] - recording.time_s[0])
     kit = Kit(
-        Fittings(), engine.trim, planned, duration, scenario.seed, scenario.height_m, engine.motion().alpha
-    )
+        Fittings(), engine.trim, planned, duration, scenario.seed, scenario.height_m, engine.motion().alpha,
+        recorded_s=recording.begins_s if recording is not None else 0.0,
+    )  # fmt: skip
     fit_terms(kit, engine, aircraft.effects, scenario.clock.boot_s)
     if aircraft.vane_arm_m:
         fit_terms(kit, engine, {"alpha_vane_offset": {"arm_m": aircraft.vane_arm_m}}, scenario.clock.boot_s)

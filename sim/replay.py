@@ -39,6 +39,12 @@ class Recording:
     unix_s: float
     """Host time of the first command."""
 
+    @property
+    def begins_s(self) -> float:
+        """When it is first in MANUAL, from its first command on, in s."""
+        flown = self.mode_time_s[self.mode == MANUAL]
+        return max(float(flown[0] - self.time_s[0]), 0.0) if len(flown) else 0.0
+
     def manual(self, time_s: float) -> bool:
         """Tell whether ``time_s`` (since boot) lies in MANUAL; a log without MANUAL counts as all manual."""
         if not (self.mode == MANUAL).any():

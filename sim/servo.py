@@ -84,7 +84,7 @@ class FirstOrderServo:
 
 
 class SecondOrderServo:
-    """δ̈ + 2ζω δ̇ + ω² δ = ω² u with a rate limit, in half steps of semi-implicit Euler."""
+    """δ̈ + 2ζω δ̇ + ω² δ = ω² u with a rate limit, in quarter steps of semi-implicit Euler."""
 
     def __init__(self, frequency_hz: float, damping: float, rate_limit_rad_s: float = math.inf) -> None:
         self.omega = 2 * math.pi * frequency_hz

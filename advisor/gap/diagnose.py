@@ -69,7 +69,7 @@ def diagnose(
     progress("measuring the gap", 0.9)
     diagnosis = answer(evidence, aircraft, kinematics, holdout)
     used = {flight.number for flight in evidence.problem.flights.flights}
-    missing = left_out([m.number for m in maneuvers if m.number not in used], torn)
+    missing = left_out([m for m in maneuvers if m.number not in used], torn)
     return replace(diagnosis, notes=(*diagnosis.notes, *missing))
 
 

@@ -30,7 +30,11 @@ _SIGNED = frozenset({"scale", "step", "inertia", "change", "skew_s", "bias_rad",
 """Parameters whose direction matters to the reader."""
 
 
-_IN_WORDS = {"with_pitch_rate": "the pitch rate, too", "with_moment": "the moment, too"}
+_IN_WORDS = {
+    "with_pitch_rate": "the pitch rate, too",
+    "with_moment": "the moment, too",
+    "stability_only": "of the stability alone",
+}
 """Parameters that only say that something is so."""
 
 

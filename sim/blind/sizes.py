@@ -121,7 +121,7 @@ OUTSIDE: dict[str, Draw] = {
     "vane_stop": _one("above_trim_rad", 0.2, 0.7, by="swing"),
     "gyro_saturation": _one("limit_rad_s", 0.05, 0.25),
     "gyro_quantisation": _one("step_rad_s", 0.02, 0.1),
-    "gyro_g_sensitivity": _one("per_m_s2", 6e-4, 4e-3),
+    "gyro_g_sensitivity": _one("per_m2_s4", 6e-4, 4e-3),
     "accelerometer_saturation": _one("above_1g_m_s2", 0.7, 3.5),
     "accelerometer_rectification": _one("per_m_s2", 0.008, 0.06),
     "fuel_slosh": _pair(

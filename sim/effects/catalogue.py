@@ -13,7 +13,7 @@ from sim.atmosphere import DrydenTurbulence
 from sim.effects.actuator import Backlash, Deadband, RateLimit
 from sim.effects.air import Gusts
 from sim.effects.changes import EngineSurge, FieldChange, Onset
-from sim.effects.instruments import BendingMode, Lagging, Scaled, VaneAhead
+from sim.effects.instruments import BendingMode, Lagging, Leading, Scaled, VaneAhead
 from sim.effects.kit import Kind, Kit, Sizes
 from sim.fittings import Turbulent
 from sim.servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
@@ -28,8 +28,10 @@ def _lag(kit: Kit, sizes: Sizes) -> None:
     if damping > 0.0 and lag_s > 0.0:
         # Both trail a ramp by the same time.
         servo: Mechanism = SecondOrderServo(damping / (math.pi * lag_s), damping)
-    else:
+    elif lag_s > 0.0:
         servo = FirstOrderServo(lag_s)
+    else:
+        return
     kit.fittings.mechanisms.append(servo)
 
 
@@ -90,7 +92,11 @@ def _gust(kit: Kit, sizes: Sizes) -> None:
 
 
 def _vane_lag(kit: Kit, sizes: Sizes) -> None:
-    kit.fittings.sensors.append(Lagging(sizes["lag_s"]))
+    lag_s = sizes["lag_s"]
+    if lag_s > 0.0:
+        kit.fittings.sensors.append(Lagging(lag_s))
+    elif lag_s < 0.0:
+        kit.fittings.sensors.append(Leading(-lag_s))
 
 
 def _alpha_scale(kit: Kit, sizes: Sizes) -> None:
@@ -114,6 +120,8 @@ def _q_scale(kit: Kit, sizes: Sizes) -> None:
 
 
 def _bending(kit: Kit, sizes: Sizes) -> None:
+    if sizes["frequency_hz"] <= 0.0:
+        return
     mode = BendingMode(sizes["frequency_hz"], sizes["damping"], sizes["gain"], sizes["displacement_gain"])
     kit.fittings.sensors.append(mode)
 

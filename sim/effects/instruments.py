@@ -24,6 +24,21 @@ class Lagging:
         reading.alpha = self._filter.step(reading.alpha, dt)
 
 
+class Leading:
+    """An angle of attack that is ahead, the other channels' filters being the slower ones: α + T α̇."""
+
+    def __init__(self, lead_s: float) -> None:
+        self.lead_s = lead_s
+        self._before: float | None = None
+
+    def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
+        """Show where the angle of attack will be if it goes on as it does."""
+        now, before = reading.alpha, self._before
+        self._before = now
+        if before is not None and dt > 0.0:
+            reading.alpha = now + self.lead_s * (now - before) / dt
+
+
 class Scaled:
     """A channel with a scale error and an offset."""
 

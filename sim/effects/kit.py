@@ -21,6 +21,13 @@ class Kit:
     seed: int
     height_m: float
     trim_alpha: float
+    recorded_s: float = 0.0
+    """When the first recorded command is flown, where a log is flown again instead of a plan."""
+
+    @property
+    def first_s(self) -> float:
+        """When the first manoeuvre begins, from which on slow changes count."""
+        return self.planned[0].start_s if self.planned else self.recorded_s
 
     @property
     def middle_s(self) -> float:

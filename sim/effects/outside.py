@@ -58,7 +58,7 @@ class _Spikes:
             reading.alpha += self._sign * self.height
 
 
-class _DriftingClock:
+class _AgeingVane:
     """Angle of attack filtered more and more as the flight goes on: an ageing, freezing vane."""
 
     def __init__(self, growth: float) -> None:
@@ -163,7 +163,7 @@ def _spikes(kit: Kit, s: Sizes) -> None:
 
 
 def _ageing(kit: Kit, s: Sizes) -> None:
-    kit.fittings.sensors.append(_DriftingClock(s["growth"]))
+    kit.fittings.sensors.append(_AgeingVane(s["growth"]))
 
 
 def _vane_stops(kit: Kit, s: Sizes) -> None:
@@ -182,7 +182,7 @@ def _gyro_coarse(kit: Kit, s: Sizes) -> None:
 
 
 def _gyro_feels_g(kit: Kit, s: Sizes) -> None:
-    gain = s["per_m_s2"]
+    gain = s["per_m2_s4"]
     kit.fittings.sensors.append(
         Transformed("q", lambda value, motion: value + gain * (motion.a_z + GRAVITY_M_S2) ** 2)
     )
@@ -230,7 +230,7 @@ OUTSIDE: dict[str, Kind] = {
     "vane_stop": Kind("alpha_sensor", {"above_trim_rad": 0.02}, _vane_stops),
     "gyro_saturation": Kind("pitch_rate_sensor", {"limit_rad_s": 0.2}, _gyro_clips),
     "gyro_quantisation": Kind("pitch_rate_sensor", {"step_rad_s": 0.05}, _gyro_coarse),
-    "gyro_g_sensitivity": Kind("pitch_rate_sensor", {"per_m_s2": 0.002}, _gyro_feels_g),
+    "gyro_g_sensitivity": Kind("pitch_rate_sensor", {"per_m2_s4": 0.002}, _gyro_feels_g),
     "accelerometer_saturation": Kind("accelerometer", {"above_1g_m_s2": 2.0}, _accelerometer_clips),
     "accelerometer_rectification": Kind("accelerometer", {"per_m_s2": 0.03}, _accelerometer_rectifies),
     "fuel_slosh": Kind(

@@ -48,10 +48,15 @@ def _onset(kit: Kit, sizes: Sizes, boot_s: float) -> Onset:
     return Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, sizes.get("over_s", 0.0))
 
 
-def _fields(**names: str) -> Term:
-    """A term whose parameters (keys) are fields of the linear aircraft's record (values)."""
+def _fields(none_at: str = "", **names: str) -> Term:
+    """A term whose parameters (keys) are fields of the linear aircraft's record (values).
+
+    ``none_at`` is one of them at whose zero there is no term: a lag, a length.
+    """
 
     def fit(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
+        if sizes.get(none_at) == 0.0:
+            return
         for parameter, field in names.items():
             if parameter in sizes:
                 engine.record[field] = sizes[parameter]
@@ -60,11 +65,10 @@ def _fields(**names: str) -> Term:
 
 
 def _more_mass(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-    first_s = kit.planned[0].start_s if kit.planned else 0.0
     if "rate_per_s" in sizes:
 
         def drift(t: float) -> float:
-            return sizes["rate_per_s"] * max(t - first_s, 0.0)
+            return sizes["rate_per_s"] * max(t - kit.first_s, 0.0)
 
         kit.fittings.plant.append(MoreMass(drift, drift))
     if "step" in sizes:
@@ -78,21 +82,23 @@ def _more_mass(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
 def _moved_weight(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
     """A centre of gravity that moves: all aerodynamic force gets a further arm, what carries the weight, too.
 
-    Sizes are relative changes of M_α.
+    Sizes are relative changes of M_α; with ``stability_only`` nothing else changes, as textbooks have it.
     """
     model = {name: float(engine.record[name][0]) for name in ShortPeriod.__dataclass_fields__}
     arm = model["M_alpha"] / model["Z_alpha"] if model["Z_alpha"] else 0.0
     carried = model["Z_0"] - _weight(engine)
     further = {"M_0": arm * carried, "M_q": arm * model["Z_q"], "M_delta_e": arm * model["Z_delta_e"]}
+    if sizes.get("stability_only", 0.0) > 0.0:
+        # The aircraft is trimmed anew: the moment of the trimmed angle goes with the stability.
+        further = {"M_0": -model["M_alpha"] * float(engine.record["alpha_ref"][0])}
 
     def change(onset: Onset, by: float) -> None:
         offsets = {name: by * moment for name, moment in further.items()}
         kit.fittings.plant.append(FieldChange(onset, {"M_alpha": by}, offsets))
 
     if "rate_per_s" in sizes:
-        first_s = kit.planned[0].start_s if kit.planned else 0.0
-        lasts_s = max(kit.duration_s - first_s, 1.0)
-        change(Onset(first_s, lasts_s), sizes["rate_per_s"] * lasts_s)
+        lasts_s = max(kit.duration_s - kit.first_s, 1.0)
+        change(Onset(kit.first_s, lasts_s), sizes["rate_per_s"] * lasts_s)
     if "step" in sizes:
         change(_onset(kit, sizes, boot_s), sizes["step"])
 
@@ -111,29 +117,34 @@ def _speed(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
 
 
 def _gust(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-    times = (sizes.get("at_s", boot_s + kit.middle_s) - boot_s,)
-    kit.fittings.air.append(Gusts(sizes.get("amplitude_m_s", 0.0), sizes.get("length_m", 1.0), times))
+    """A gust that is strongest at ``at_s``, as long as gusts usually are unless said."""
+    length = sizes.get("length_m", 0.0) or CATALOGUE["gust"].sizes["length_m"]
+    peak_s = sizes.get("at_s", boot_s + kit.middle_s) - boot_s
+    speed = float(engine.record["speed_ref"][0])
+    begins_s = peak_s - 0.5 * length / speed
+    kit.fittings.air.append(Gusts(sizes.get("amplitude_m_s", 0.0), length, (begins_s,)))
 
 
 _ONSET = frozenset({"rate_per_s", "step", "at_s", "over_s"})
 
 TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
     "nonlinear_lift": (
-        frozenset({"Z_alpha2", "Z_alpha3", "stall_rad", "sharpness"}),
+        frozenset({"Z_alpha2", "Z_alpha3", "about_rad", "stall_rad", "sharpness"}),
         _fields(
             Z_alpha2="Z_alpha2",
             Z_alpha3="Z_alpha3",
+            about_rad="Z_about",
             stall_rad="stall_alpha",
             sharpness="stall_sharpness",
         ),
     ),
     "nonlinear_pitching_moment": (
-        frozenset({"M_alpha2", "M_alpha3"}),
-        _fields(M_alpha2="M_alpha2", M_alpha3="M_alpha3"),
+        frozenset({"M_alpha2", "M_alpha3", "about_rad"}),
+        _fields(M_alpha2="M_alpha2", M_alpha3="M_alpha3", about_rad="M_about"),
     ),
     "elevator_nonlinearity": (
-        frozenset({"M_delta2", "M_delta3"}),
-        _fields(M_delta2="M_delta2", M_delta3="M_delta3"),
+        frozenset({"M_delta2", "M_delta3", "about_rad"}),
+        _fields(M_delta2="M_delta2", M_delta3="M_delta3", about_rad="delta_about"),
     ),
     "alpha_dot": (frozenset({"M_alpha_dot"}), _fields(M_alpha_dot="M_alpha_dot")),
     "thrust_moment": (
@@ -148,14 +159,14 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
     ),
     "unsteady_lift": (
         frozenset({"share", "lag_s", "with_moment"}),
-        _fields(share="unsteady_share", lag_s="unsteady_lag", with_moment="unsteady_moment"),
+        _fields("lag_s", share="unsteady_share", lag_s="unsteady_lag", with_moment="unsteady_moment"),
     ),
     "ground_effect": (
         frozenset({"Z_h", "lift_h", "M_h", "scale_m"}),
-        _fields(Z_h="Z_h", lift_h="lift_h", M_h="M_h", scale_m="ground_scale"),
+        _fields("scale_m", Z_h="Z_h", lift_h="lift_h", M_h="M_h", scale_m="ground_scale"),
     ),
     "airspeed_variation": (frozenset({"change", "exponent", "exponent_M"}), _speed),
-    "cg_shift": (_ONSET, _moved_weight),
+    "cg_shift": (_ONSET | {"stability_only"}, _moved_weight),
     "mass_change": (_ONSET | {"inertia"}, _more_mass),
     "gust": (frozenset({"amplitude_m_s", "length_m", "at_s"}), _gust),
     "icing": (frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e", "at_s", "over_s"}), _ice),

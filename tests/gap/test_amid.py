@@ -26,7 +26,7 @@ def test_a_change_that_comes_while_a_manoeuvre_is_flown_is_named_from_the_others
     assert found.causes[0].effect == effect
     assert {c.effect for c in found.causes if c.present} <= {effect, "turbulence"}
     assert found.causes[0].parameters["step"].value == pytest.approx(next(iter(change.values())), abs=0.02)
-    assert "Left out: manoeuvre 5. The change came while it was flown." in found.notes
+    assert "Left out: manoeuvre 5: the change came while it was flown." in found.notes
     assert found.maneuvers == (1, 2, 3, 4, 6, 7, 8)
 
 

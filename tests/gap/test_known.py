@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.effects import LEAST
+from advisor.effects import LEAST, mistakes_in
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, together, with_known
+from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.gap.verdict.causes import parameters_of
+from sim.effects.terms import problems_with
 from tests.gap.generator import Setup, fly
 
 
@@ -75,6 +78,54 @@ def test_a_file_may_have_any_effect_of_the_catalogue(effect):
     effects = {effect: dict.fromkeys(LEAST[effect], 0.02)}
     problem = Problem(flights, with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights)))
     assert np.all(np.isfinite(problem.driving(Point(np.zeros(6), np.zeros((3, 4))))))
+
+
+def everything_tried():
+    """Flights in which every effect can be told, and every description of every effect."""
+    flown = fly(
+        Setup(maneuvers=6, heights_m=(5.0, 9.0, 7.0, 6.0, 8.0, 10.0), thrust_amplitude=1.0, speed_change=0.2)
+    )
+    flights = prepare(flown, Aircraft())
+    tried = [(w, v) for v in variants_for(flights) for w in (v, *v.likewise)]
+    # Of a rate limit the other description is how the command is read, and not the servo.
+    return flights, [w for w, v in tried if not (w is not v and v.inverted)]
+
+
+def test_what_was_found_is_read_back_from_the_improved_file_as_it_was_fitted():
+    flights, tried = everything_tried()
+    assert {"about_rad"} <= {name for v in tried for name in v.fixed}
+    for variant in [v for v in tried if v.effect not in OF_ONE_FLIGHT]:
+        sizes = np.array(variant.starts[0]) + 0.01 * np.array([1.0, 2.0, 3.0, 4.0])[: len(variant.names)]
+        in_file = parameters_of(variant, sizes, np.zeros(len(sizes)))
+        fitted = np.zeros((len(flights), len(ENTRIES)))
+        variant.apply(fitted, sizes, flights)
+        effects = {variant.effect: {name: value.value for name, value in in_file.items()}}
+        read = with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights))
+        assert read == pytest.approx(fitted, abs=1e-9), variant
+
+
+def test_every_description_of_an_effect_is_one_that_the_simulator_can_fly():
+    _, tried = everything_tried()
+    for variant in tried:
+        value = np.array([0.5 * (low + high) for low, high in variant.bounds])
+        sizes = parameters_of(variant, value, np.zeros(len(value)))
+        effects = {variant.effect: {name: size.value for name, size in sizes.items()}}
+        assert [*mistakes_in(effects), *problems_with(effects)] == []
+
+
+def test_every_effect_stands_in_the_block_that_the_catalogue_says():
+    _, tried = everything_tried()
+    assert {v.effect for v in tried} == TRAITS.keys() - {"alpha_bias", "turbulence", "gust"}
+    assert all(v.block == TRAITS[v.effect].block for v in tried)
+
+
+def test_a_curve_keeps_the_angle_that_the_file_states_wherever_it_is_flown():
+    flights = prepare(fly(Setup(maneuvers=3, seed=10)), Aircraft())
+    trim = flights.flights[0].alpha_trim
+    curve = {"M_alpha2": 20.0, "M_alpha3": 0.0, "about_rad": trim - 0.05}
+    effects = {"nonlinear_pitching_moment": curve}
+    numbers = with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights))
+    assert numbers[0, INDEX["M_alpha"]] == pytest.approx(2.0 * 20.0 * 0.05)
 
 
 def test_a_dead_band_that_the_file_has_is_no_gap():

@@ -96,7 +96,7 @@ def test_wrong_numbers_that_make_nearly_all_of_a_gap_are_the_answer_beside_a_sma
     found = diagnose(bent, wrong)
     assert found.verdict == "parameters"
     assert found.where.block == "moment_equation"
-    assert "Beside the wrong numbers something small stays in the pitching moment." in found.notes
+    assert "Beside the wrong numbers something small in the pitching moment stays unexplained." in found.notes
     assert diagnose(bent, Aircraft(model=model)).verdict == "unknown"
 
 

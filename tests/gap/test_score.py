@@ -65,7 +65,7 @@ def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain
     assert replace(plain, alone=False, gain=35.0).worth_naming
     assert not replace(plain, alone=False).worth_naming
     assert not replace(plain, removed=2.0 * judged.least).worth_naming
-    assert not replace(plain, std=plain.value / 4.0).worth_naming
+    assert not replace(plain, sigmas=4.0).worth_naming
     assert not replace(plain, witness=2).worth_naming
 
 
@@ -77,14 +77,14 @@ def test_beside_turbulence_that_explains_far_more_only_what_is_plain_is_not_its_
     assert not strong.may_be(plain)
     assert strong.may_be(replace(plain, gain=12.0))
     assert strong.may_be(replace(plain, removed=5.0 * judged.least))
-    assert strong.may_be(replace(plain, std=plain.value / 4.0))
+    assert strong.may_be(replace(plain, sigmas=4.0))
     assert replace(strong, gust=True).may_be(plain)
     # Gusts meet the vane before the wing: the accelerometers seem late.
     late_by_the_gusts = replace(plain, variant=judged.variant, gain=40.0)
     assert strong.may_be(late_by_the_gusts)
     certain = replace(late_by_the_gusts, gain=60.0)
     assert not strong.may_be(certain)
-    assert strong.may_be(replace(certain, std=certain.value / 4.0))
+    assert strong.may_be(replace(certain, sigmas=4.0))
 
 
 def test_predictions_are_alike_where_they_differ_by_less_than_any_description_errs(late):

@@ -2,7 +2,11 @@
 
 import pytest
 
-from advisor.gap.result import Where
+from advisor.aircraft import Accelerometer, Aircraft, Alpha
+from advisor.effects import LEAST
+from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.result import Cause, Value, Where
+from advisor.gap.verdict.statements import in_simulator, what
 from advisor.gap.verdict.text import sentence_of
 from tests.gap.test_report_screen import diagnosis
 
@@ -18,4 +22,50 @@ from tests.gap.test_report_screen import diagnosis
 def test_two_places_that_are_as_likely_are_both_said(moment, places):
     where = Where("input", 0.9, (("input", 1.0), ("moment_equation", moment)))
     sentence = sentence_of("unknown", diagnosis().gap, where, (), None)
-    assert sentence == f"Something {places} that no known effect explains."
+    assert sentence == f"Something acts {places} that no known effect explains."
+
+
+def found(effect, **sizes):
+    parameters = {name: Value(size, 0.0) for name, size in sizes.items()}
+    return Cause(effect, TRAITS[effect].block, 1.0, parameters, (), "", 0.0, True)
+
+
+@pytest.mark.parametrize(
+    ("cause", "positive", "negative"),
+    [
+        (("alpha_vane_offset", "arm_m", 0.3), "0.30 m ahead of", "0.30 m behind"),
+        (("alpha_lag", "lag_s", 0.03), "lags by 30 ms", "is 30 ms ahead"),
+        (("alpha_scale", "scale", 0.1), "10 % too much", "10 % too little"),
+        (("gust", "amplitude_m_s", 2.0), "An upward gust of 2 m/s", "A downward gust of 2 m/s"),
+        (("attitude_skew", "skew_s", 0.04), "stamped 40 ms too late", "stamped 40 ms too early"),
+        (("transport_delay", "delay_s", 0.06), "60 ms too early", "60 ms too late"),
+    ],
+)
+def test_which_way_an_effect_goes_is_said_in_words_and_never_by_a_sign(cause, positive, negative):
+    effect, name, size = cause
+    assert positive in what(found(effect, **{name: size}))
+    assert negative in what(found(effect, **{name: -size}))
+
+
+@pytest.mark.parametrize(
+    ("aircraft", "expected"),
+    [
+        (Aircraft(), "sits 0.10 m ahead of the centre of gravity"),
+        (Aircraft(alpha=Alpha(vane_arm_m=0.0)), "sits 0.10 m ahead of the centre of gravity"),
+        (Aircraft(alpha=Alpha(vane_arm_m=0.4)), "sits 0.10 m further ahead than in the simulator"),
+        (
+            Aircraft(effects={"alpha_vane_offset": {"arm_m": 0.4}}),
+            "sits 0.10 m further ahead than in the simulator",
+        ),
+        (Aircraft(accelerometer=Accelerometer(arm_m=0.4)), "sits 0.10 m ahead of the centre of gravity"),
+    ],
+)
+def test_what_the_simulator_has_some_of_already_is_said_as_what_it_lacks(aircraft, expected):
+    assert what(found("alpha_vane_offset", arm_m=0.1), in_simulator(aircraft)) == f"The vane {expected}"
+
+
+@pytest.mark.parametrize("effect", TRAITS)
+def test_every_effect_of_the_catalogue_has_a_statement_for_either_sign(effect):
+    for sign in (1.0, -1.0):
+        sizes = dict.fromkeys(LEAST[effect], sign * 0.02)
+        assert "{" not in what(found(effect, **sizes))

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 import yaml
 
+from advisor.effects import LEAST
 from sim.compare import distances
 from sim.effects.fitting import flight_of
 from sim.linear import RESEARCH_JET
+from sim.linear_aircraft import LinearAircraft, rates
 from sim.loading import ScenarioError
 from sim.modelled import modelled_flight
 from sim.record import record
@@ -86,6 +88,7 @@ def plain(tmp_path_factory):
         ("unsteady_lift", {"share": 0.3, "lag_s": 0.3, "with_moment": 1.0}),
         ("cg_shift", {"step": 0.2, "at_s": 35.0}),
         ("cg_shift", {"step": 0.2, "at_s": 20.0, "over_s": 30.0}),
+        ("cg_shift", {"step": 0.2, "at_s": 35.0, "stability_only": 1.0}),
         ("mass_change", {"rate_per_s": 0.01}),
         ("mass_change", {"step": 0.3, "inertia": 0.1, "at_s": 35.0}),
         ("icing", {"Z_alpha": -0.2, "M_alpha": -0.2, "at_s": 35.0}),
@@ -105,6 +108,67 @@ def test_every_kind_of_added_term_can_be_flown(plain, tmp_path, effect, sizes):
     changed = [s.reading for s in modelled_flight(QUIET, path).samples()]
     moved = max(abs(a.q - b.q) + abs(a.alpha - b.alpha) for a, b in zip(plain, changed, strict=True))
     assert (moved > 1e-4) == (effect != "thrust_moment")
+
+
+NO_SIZE = {effect: dict.fromkeys(sizes, 0.0) for effect, sizes in LEAST.items()}
+NO_SIZE["actuator_rate_limit"]["rate_rad_s"] = 1e9
+
+
+# A file that names the air speed has it known to the simulator, whatever its power.
+@pytest.mark.parametrize("effect", [effect for effect in LEAST if effect != "airspeed_variation"])
+def test_an_effect_of_no_size_is_no_effect(plain, tmp_path, effect):
+    path = aircraft_file(tmp_path / "none.yaml", effects={effect: NO_SIZE[effect]})
+    same = [s.reading for s in modelled_flight(QUIET, path).samples()]
+    np.testing.assert_allclose([r.alpha for r in same], [r.alpha for r in plain], atol=1e-9)
+    np.testing.assert_allclose([r.q for r in same], [r.q for r in plain], atol=1e-9)
+
+
+def test_a_channel_that_is_ahead_shows_what_its_lag_would_hide(plain, tmp_path):
+    ahead = aircraft_file(tmp_path / "ahead.yaml", effects={"alpha_lag": {"lag_s": -0.02}})
+    shown = np.array([s.reading.alpha for s in modelled_flight(QUIET, ahead).samples()])
+    true = np.array([r.alpha for r in plain])
+    # 20 ms ahead is one sample; the rest is the curvature of the motion.
+    assert np.abs(shown[:-1] - true[1:]).max() < 0.2 * np.abs(shown - true).max()
+
+
+def test_a_gust_is_strongest_when_the_file_says(tmp_path):
+    gust = {"amplitude_m_s": 2.0, "at_s": 35.0}
+    flight = modelled_flight(QUIET, aircraft_file(tmp_path / "gust.yaml", effects={"gust": gust}))
+    met = [(flight.scenario.clock.boot_s + s.time_s, s.motion.gust_up) for s in flight.samples()]
+    at_s, strongest = max(met, key=lambda pair: pair[1])
+    assert at_s == pytest.approx(35.0, abs=0.03)
+    assert strongest == pytest.approx(2.0, rel=0.02)
+
+
+def test_a_drift_counts_from_the_first_manoeuvre_in_a_replay_too(tmp_path):
+    drift = {"mass_change": {"rate_per_s": 0.002}}
+    path = aircraft_file(tmp_path / "drift.yaml", effects=drift)
+    record(modelled_flight(QUIET, path), tmp_path / "first.tlog")
+
+    def at_the_end(flight):
+        for _ in flight.samples():
+            pass
+        return float(flight.engine.record["Z_alpha"][0])
+
+    planned = at_the_end(modelled_flight(QUIET, path))
+    replayed = at_the_end(modelled_flight(QUIET, path, tmp_path / "first.tlog"))
+    assert replayed == pytest.approx(planned, rel=0.004)
+    assert planned == pytest.approx(at_the_end(modelled_flight(QUIET, aircraft_file(path))) / 1.07, rel=0.02)
+
+
+def test_a_curve_about_another_angle_leaves_the_trim_and_is_that_curve(tmp_path):
+    alpha, elevator = RESEARCH_JET.trim()
+    model = RESEARCH_JET
+    curved = LinearAircraft(model, 100.0, 100.0)
+    curved.record["M_alpha2"], curved.record["M_about"] = 20.0, alpha - 0.05
+    at_trim, moved = np.empty(8), np.empty(8)
+    state = np.array([alpha, 0.0, alpha, 100.0, 0.0, 0.0, alpha, 0.5])
+    inputs = np.array([elevator, 0.5, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0])
+    rates(state, inputs, curved.record, at_trim)
+    up = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0, 0.01, 0.0])
+    rates(state + up, inputs, curved.record, moved)
+    assert at_trim[1] == pytest.approx(0.0, abs=1e-12)
+    assert moved[1] == pytest.approx(0.01 * model.M_alpha + 20.0 * (0.06**2 - 0.05**2))
 
 
 def test_a_change_of_mass_or_of_the_centre_of_gravity_moves_all_but_the_weights_own_part(tmp_path):

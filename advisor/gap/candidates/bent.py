@@ -4,7 +4,7 @@ Linear models know deviations from trim only. A wing or an elevator knows its an
 do the trims, and each manoeuvre is flown on another part of the same curve.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,37 +16,51 @@ from advisor.gap.simulator.layout import INDEX
 
 _APART = 0.1
 """Share of the largest deviation from trim by which trims must differ to tell the two apart."""
+_SLOPES = {"Z_alpha2": "Z_alpha", "M_alpha2": "M_alpha", "M_delta2": "M_delta_e"}
+"""The square of an angle, and the derivative that is linear in it."""
 
 
-def bent_in_alpha(variant: Variant, slope: str, flights: Flights) -> Variant:
-    """With ``variant``, a square and a cube of α, also about one angle; ``slope`` is linear in α."""
-    if "alpha" not in flights.channels:
+def bent(variant: Variant, flights: Flights) -> Variant:
+    """With ``variant``, a square and a cube of an angle about each trim, the same about one angle."""
+    if variant.entries[0] == "M_delta2":
+        moved = [f.u - f.u_trim for f in flights.flights]
+    elif "alpha" in flights.channels:
+        moved = [f.outputs["alpha"].y - f.alpha_trim for f in flights.flights]
+    else:
         return variant
-    moved = max(float(np.max(np.abs(f.outputs["alpha"].y - f.alpha_trim))) for f in flights.flights)
-    return _either_way(variant, slope, [f.alpha_trim for f in flights.flights], moved)
-
-
-def bent_in_elevator(variant: Variant, slope: str, flights: Flights) -> Variant:
-    """With ``variant``, a square and a cube of δe, also about one angle; ``slope`` is linear in δe."""
-    moved = max(float(np.max(np.abs(f.u - f.u_trim))) for f in flights.flights)
-    return _either_way(variant, slope, [f.u_trim for f in flights.flights], moved)
-
-
-def _either_way(variant: Variant, slope: str, trims: Sequence[float], moved: float) -> Variant:
-    """(x + D)² and (x + D)³ written out in x, D being a manoeuvre's trim less the usual one."""
-    square, cube = (INDEX[entry] for entry in variant.entries)
-    apart = np.array(trims) - np.median(trims)
-    if np.max(np.abs(apart)) < _APART * moved:
+    trims = _trims_of(variant, flights)
+    usual = float(np.median(trims))
+    if np.max(np.abs(np.array(trims) - usual)) < _APART * max(float(np.max(np.abs(m))) for m in moved):
         return variant
+    return replace(variant, likewise=(_about(usual, variant, trims),))
 
-    def about_one_angle(p: FloatArray, values: Values, _: Flights) -> None:
-        p[:, INDEX[slope]] += (2.0 * values[0] + 3.0 * values[1] * apart) * apart
+
+def as_in_file(variant: Variant, parameters: Mapping[str, float], flights: Flights) -> Variant:
+    """A curve about the angle that an aircraft file states for it, whatever these flights are trimmed at."""
+    if "about_rad" not in parameters or not _SLOPES.keys() & set(variant.entries):
+        return variant
+    return _about(parameters["about_rad"], variant, _trims_of(variant, flights))
+
+
+def _trims_of(variant: Variant, flights: Flights) -> list[float]:
+    of_elevator = variant.entries[0] == "M_delta2"
+    return [f.u_trim if of_elevator else f.alpha_trim for f in flights.flights]
+
+
+def _about(angle_rad: float, variant: Variant, trims: Sequence[float]) -> Variant:
+    """(x + D)² and (x + D)³ written out in x, D being a manoeuvre's trim less the angle."""
+    slope, (square, cube) = INDEX[_SLOPES[variant.entries[0]]], (INDEX[entry] for entry in variant.entries)
+    apart = np.array(trims) - angle_rad
+
+    def bend(p: FloatArray, values: Values, _: Flights) -> None:
+        p[:, slope] += (2.0 * values[0] + 3.0 * values[1] * apart) * apart
         p[:, square] += values[0] + 3.0 * values[1] * apart
         p[:, cube] += values[1]
 
     # A cube about each trim may be far too much about one angle; the square's is of the right size.
-    once = replace(variant, entries=(), apply_with=about_one_angle, carried=_square_alone)
-    return replace(variant, likewise=(once,))
+    return replace(
+        variant, entries=(), apply_with=bend, carried=_square_alone, fixed={"about_rad": angle_rad}
+    )
 
 
 def _square_alone(values: FloatArray) -> Values:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates.bent import bent_in_alpha
+from advisor.gap.candidates.bent import bent
 from advisor.gap.candidates.between import divide, ramps_and_steps, steps_in
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
@@ -63,7 +63,7 @@ def _powers(p: FloatArray, values: Values, _: Flights) -> None:
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block; those between manoeuvres depend on how many were flown."""
     return [
-        bent_in_alpha(CURVED_LIFT, "Z_alpha", flights),
+        bent(CURVED_LIFT, flights),
         replace(_UNSTEADY, likewise=(_UNSTEADY_WITH_MOMENT,)),
         *_stall(flights),
         *_mass(flights),

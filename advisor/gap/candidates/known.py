@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.bent import as_in_file
 from advisor.gap.candidates.moment import PROPELLER
 from advisor.gap.candidates.traits import OF_ONE_FLIGHT
 from advisor.gap.candidates.variant import Values, Variant
@@ -30,7 +31,8 @@ def with_known(
         described = [w for v in variants if v.effect == effect for w in (v, *v.likewise)]
         meant = [w for w in described if _says(w, parameters)]
         for variant in sorted(meant, key=lambda v: (-len(v.fixed), -len(v.names)))[:1]:
-            variant.apply(numbers, _values(variant, parameters), flights)
+            as_said = as_in_file(variant, parameters, flights)
+            as_said.apply(numbers, _values(variant, parameters), flights)
     return numbers
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.candidates.bent import bent_in_alpha, bent_in_elevator
+from advisor.gap.candidates.bent import bent
 from advisor.gap.candidates.between import ramps_and_steps, shift_moments, shift_stability
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.records.flights import Flights
@@ -72,8 +72,8 @@ def _without_rate_of_alpha(
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block; those between manoeuvres depend on how many were flown."""
     return [
-        bent_in_elevator(_CURVED_ELEVATOR, "M_delta_e", flights),
-        bent_in_alpha(_CURVED_MOMENT, "M_alpha", flights),
+        bent(_CURVED_ELEVATOR, flights),
+        bent(_CURVED_MOMENT, flights),
         Variant(
             "thrust_moment",
             BLOCK,
@@ -108,12 +108,19 @@ def variants(flights: Flights) -> list[Variant]:
             entries=("M_alpha_dot",),
             twin=_without_rate_of_alpha,
         ),
-        *(
-            replace(moments, likewise=(stability, *moments.likewise))
-            for moments, stability in zip(
-                ramps_and_steps("cg_shift", BLOCK, flights, shift_moments),
-                ramps_and_steps("cg_shift", BLOCK, flights, shift_stability),
-                strict=True,
-            )
-        ),
+        *_moved_weight(flights),
     ]
+
+
+def _moved_weight(flights: Flights) -> list[Variant]:
+    """A centre of gravity that moves: what it does to all moments, and to the stability alone."""
+    of_all = ramps_and_steps("cg_shift", BLOCK, flights, shift_moments)
+    alone = ramps_and_steps("cg_shift", BLOCK, flights, shift_stability)
+    return [
+        replace(moments, likewise=(_marked(stability), *moments.likewise))
+        for moments, stability in zip(of_all, alone, strict=True)
+    ]
+
+
+def _marked(stability: Variant) -> Variant:
+    return replace(stability, fixed={**stability.fixed, "stability_only": 1.0})

@@ -48,6 +48,27 @@ def shared_std(
     return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, independent, trusted)), 0.0)))
 
 
+def sigmas_of(values: FloatArray, known: FloatArray, places: Sequence[bool]) -> float:
+    """Standard deviations by which the size of an effect differs from nothing, the largest of its numbers.
+
+    Parameters
+    ----------
+    values
+        Shape (k,): numbers of an effect.
+    known
+        Shape (k, k): their covariance.
+    places
+        Which of them say where, when or how fast, not how much. They count as known: a step that a single
+        manoeuvre shows has no size of its own if it may have come gradually, and is there all the same.
+    """
+    at = np.array(places)
+    size, place = known[np.ix_(~at, ~at)], known[np.ix_(at, at)]
+    across = known[np.ix_(~at, at)]
+    given = size - across @ np.linalg.pinv(place, hermitian=True) @ across.T if np.any(at) else size
+    std = np.sqrt(np.maximum(np.diag(given), 1e-300))
+    return float(np.max(np.abs(values[~at]) / std))
+
+
 def covariance(
     problem: Problem, fitted: Fitted, independent: FloatArray, trusted: bool = False
 ) -> FloatArray:

@@ -22,16 +22,17 @@ from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import LEAST_SAMPLES
 from advisor.gap.search.baseline import base_entries, believed_derivatives, everywhere
-from advisor.gap.simulator.layout import NUISANCES, OUTPUTS
+from advisor.gap.simulator.layout import NUISANCES, OUTPUTS, natural_frequency
 from advisor.problems import ConfigurationError
 
 STEPS = {
-    "3211": ((3, 0.8), (2, -1.0), (1, 1.1), (1, -1.5)),
-    "rev": ((3, -0.8), (2, 1.0), (1, -1.1), (1, 1.5)),
-    "doublet": ((2, 1.0), (2, -1.0)),
-    "pulse": ((1, 1.0),),
+    "3211": ((3, -0.8), (2, 1.2), (1, -1.1), (1, 1.1)),
+    "rev": ((3, 0.8), (2, -1.2), (1, 1.1), (1, -1.1)),
+    "doublet": ((1, -1.0), (1, 1.0)),
+    "pulse": ((1, -1.0),),
 }
-"""Steps of each input: units of time and share of the amplitude."""
+"""Steps of each input: units of time and share of the amplitude, trailing edge down. The areas of all but a
+pulse sum to zero, so that the aircraft returns to trim; the first step of a ``3211`` raises the nose."""
 TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "theta": np.radians(0.1)}
 """Standard deviations taken for instruments nobody has measured yet."""
 SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
@@ -67,8 +68,7 @@ def foresee_plan(
             "model.M_delta_e: an elevator of no effect (0) shows nothing; give the moment it makes, in 1/s²."
         )
     _refuse(plan, rate_hz, amplitude_deg, without)
-    frequency = float(np.sqrt(max(-derivatives[3] + derivatives[0] * derivatives[4], 1.0)))
-    unit = min(max(2.0 / frequency, 0.2), 1.5)
+    unit = min(max(2.0 / max(natural_frequency(derivatives), 1.0), 0.2), 1.5)
     speed = aircraft.stated_airspeed_m_s or 25.0
     maneuvers = [
         _maneuver(n, name, unit, np.radians(amplitude_deg) * (1.0, 0.6)[n % 2], rate_hz, speed, without)

@@ -39,18 +39,18 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: f
     shown = None
     if measured:
         reference = aircraft.reference_airspeed_m_s or float(np.mean([np.mean(v) for v in speeds]))
-        moves = float(max(np.max(np.abs(v / np.mean(np.concatenate(speeds)) - 1.0)) for v in speeds))
     else:
         reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S
         shown = speeds_about(usable, reference)
-        moves = shown.moves
     levels = [None] * len(usable) if shown is None else [float(v) for v in shown.before_m_s]
     flights = _about_their_mean(
         _ready(m, reference, level, true_over_read) for m, level in zip(usable, levels, strict=True)
     )
     if shown is None:
+        moves = _largest_departure(flights)
         flights = _with_doubt(flights, usable)
     else:
+        moves = shown.moves
         flights = tuple(
             replace(f, speed_doubt=np.array([[doubt]]))
             for f, doubt in zip(flights, shown.doubt_m_s, strict=True)
@@ -107,6 +107,14 @@ def _with_doubt(flights: Sequence[Flight], maneuvers: Sequence[Maneuver]) -> tup
     return tuple(replace(f, speed_doubt=doubt) for f, doubt in zip(flights, doubts, strict=True))
 
 
+def _largest_departure(flights: Sequence[Flight]) -> float:
+    """Of the smoothed air speed from its mean over all manoeuvres, relative; 0 without a manoeuvre."""
+    if not flights:
+        return 0.0
+    speeds = np.concatenate([flight.slow[SPEED] for flight in flights])
+    return float(np.max(np.abs(speeds / np.mean(speeds) - 1.0)))
+
+
 def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: float) -> Flight:
     """On the grid; ``level`` is its speed in m/s before the first step, None where the log has the speed."""
     start, end = recorded(m)
@@ -147,7 +155,7 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
         return float(np.mean(out.y[out.t <= max(first, out.t[0] + 0.1)]))
 
     alpha = at_start("alpha", 0.0)
-    trim = np.array([alpha, at_start("theta", alpha), reference, 1.0])
+    trim = np.array([alpha, alpha, reference, 1.0])
     if "theta" in outputs:
         trim[THETA_FROM] = float(np.mean(outputs["theta"].y[:3]))
     return Flight(

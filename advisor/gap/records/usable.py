@@ -1,6 +1,6 @@
 """Which manoeuvres can be used, and what of each was recorded while command and pitch rate both were."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -33,13 +33,23 @@ def usable_of(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
     Left out are those without elevator or pitch rate, those that departed, and, where enough others are
     left, those in which a step of the command fell into a hole of the log or without an angle of attack.
     """
-    usable = [m for m in maneuvers if _moves(m)]
-    whole: Sequence[Callable[[Maneuver], bool]] = (_steps_seen, _has_alpha)
-    for is_whole in whole:
+    usable = [m for m in maneuvers if _is_recorded(m) and not _departed(m)]
+    for is_whole in (_steps_seen, _has_alpha):
         better = [m for m in usable if is_whole(m)]
         if len(better) >= _ENOUGH:
             usable = better
     return usable
+
+
+def why_left_out(m: Maneuver) -> str:
+    """Say of a manoeuvre that ``usable_of`` left out what it lacks."""
+    if not _is_recorded(m):
+        return "elevator or pitch rate were not recorded throughout"
+    if _departed(m):
+        return "the aircraft departed"
+    if not _steps_seen(m):
+        return "a step of the command fell into a hole of the log"
+    return "no angle of attack was recorded"
 
 
 def recorded(m: Maneuver) -> tuple[float, float]:
@@ -79,14 +89,16 @@ def condensed(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.add.reduceat(t, first) / size, np.add.reduceat(y, first) / size
 
 
-def _moves(m: Maneuver) -> bool:
+def _is_recorded(m: Maneuver) -> bool:
     found = m.channels
     if not all(name in found and len(found[name]) >= LEAST_SAMPLES for name in ("elevator", "q")):
         return False
-    if len(found["elevator"].cut(*recorded(m))) < LEAST_SAMPLES or "q" not in outputs_of(m):
-        return False
-    alpha = found.get("alpha")
-    return alpha is None or len(alpha) == 0 or float(np.ptp(alpha.y)) < DEPARTED_RAD
+    return len(found["elevator"].cut(*recorded(m))) >= LEAST_SAMPLES and "q" in outputs_of(m)
+
+
+def _departed(m: Maneuver) -> bool:
+    alpha = m.channels.get("alpha")
+    return alpha is not None and len(alpha) > 0 and float(np.ptp(alpha.y)) >= DEPARTED_RAD
 
 
 def _steps_seen(m: Maneuver) -> bool:

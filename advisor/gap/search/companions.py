@@ -73,7 +73,7 @@ def other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Va
     ]
 
 
-def one_for_another(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
+def one_for_another(problem: Problem, stages: list[Stage], _: Sequence[Variant]) -> list[Stage]:
     """What is likeliest beside the names, and takes the place of one of them: together neither can be told.
 
     Late by a filter and late by its stamps an angle of attack is much the same, and what was found first

@@ -62,6 +62,8 @@ class Judged:
     """What of ``gain`` is not the motion's: belief, the odds of an arm, less the price of its numbers."""
     value: FloatArray
     std: FloatArray
+    sigmas: float
+    """Standard deviations by which its size differs from nothing (``uncertainty.sigmas_of``)."""
     witness: int | None = None
     """The manoeuvre that alone tells of it: ``gain`` and ``removed`` are the fit's own."""
     with_the_air: bool = False
@@ -90,15 +92,6 @@ class Judged:
         return self.sigmas > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
 
     @property
-    def sigmas(self) -> float:
-        """Standard deviations by which a number of it differs from nothing.
-
-        When or how fast counts, too: a step that a single manoeuvre shows has no size of its own if it may
-        have come gradually, and is certain all the same.
-        """
-        return float(np.max(np.abs(self.value) / np.maximum(self.std, 1e-300)))
-
-    @property
     def least_gain(self) -> float:
         """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
         confirmed = LEAST_GAIN if self.witness is None else _UNCONFIRMED
@@ -122,7 +115,8 @@ class Judged:
     def at_its_bounds(self) -> bool:
         """The search ran out of its range: a shape that only resembles the effect.
 
-        A bound at zero is none: the effect does without that number, as an engine without a lag.
+        A bound at zero is none: the effect does without that number, as an engine without a lag. Nor is one
+        of its first number, its size: what is larger than any that is searched for has the name all the same.
         """
         ends = np.array(self.variant.bounds[1:]).reshape(-1, 2)
         near = np.abs(ends - self.value[1:, None]) < 1e-3 * np.ptp(ends, axis=1, keepdims=True)

@@ -9,7 +9,7 @@ from advisor.gap.fitting.belief import odds_of_arm
 from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.holdout import HeldOut, hold_out, lone_witness, mean_squares, measured_in
 from advisor.gap.fitting.problem import Problem, counts
-from advisor.gap.fitting.uncertainty import belief_in, shared_std
+from advisor.gap.fitting.uncertainty import belief_in, covariance, sigmas_of
 from advisor.gap.records.floor import doubts
 from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, Judged, size_of
 
@@ -73,6 +73,8 @@ def addition(
     odds = odds_in(problem, variant.effect, float(value[0]))
     least, beforehand = least_change(problem), belief + odds - price_of(variant, independent)
     gain = likelihood + beforehand
+    known_numbers = covariance(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[place, place]
+    placed = [name in variant.places for name in variant.names]
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
         gain=gain,
@@ -81,7 +83,7 @@ def addition(
         smallest=smallest_of(problem, variant, gain),
         belief=belief, beforehand=beforehand, value=value, witness=witness,
         with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_plain(before),
-        std=shared_std(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[place],
+        std=np.sqrt(np.maximum(np.diag(known_numbers), 0.0)), sigmas=sigmas_of(value, known_numbers, placed),
     )  # fmt: skip
 
 

@@ -39,7 +39,7 @@ _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
 _UNASKED = 0.002 * GRAVITY_M_S2
 """Thrust that nobody asked for, m/s²: what drag and engines do beyond simple laws stays below it (0.012 in
-270 flights without an effect, of nine authors) ..."""
+270 flights of nine simulators without an effect) ..."""
 _UNASKED_SWING = 0.006
 """... if the speed swings by more than this, relative ..."""
 _UNASKED_GUSTS = 1.5
@@ -69,11 +69,11 @@ def at_constant_speed(
 def airspeed_cause(
     problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
 ) -> Cause | None:
-    """The change of air speed, when ignoring it would cost."""
+    """The change of air speed, when ignoring it would cost; its probability is decided beside the others."""
     if constant is None or speed_costs(constant, last, floor) < _COSTS:
         return None
     return Cause(
-        "airspeed_variation", "force_equation", 0.9,
+        "airspeed_variation", "force_equation", 0.0,
         {"change": Value(problem.flights.speed_moves, 0.01)}, (), "",
         whole_gap(last.mean_square, floor), True,
     )  # fmt: skip

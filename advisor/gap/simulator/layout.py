@@ -63,6 +63,12 @@ ALPHA_TRIM, THETA_FROM, REFERENCE, SCALED = range(4)
 1 where they scale with the speed flown."""
 
 
+def natural_frequency(derivatives: FloatArray) -> float:
+    """Undamped frequency of the short period in rad/s, 0 without one, of derivatives of shape (6,)."""
+    z_alpha, z_q, _, m_alpha, m_q, _ = derivatives
+    return float(np.sqrt(max(z_alpha * m_q - (1.0 + z_q) * m_alpha, 0.0)))
+
+
 def short_period(p: FloatArray) -> FloatArray:
     """Z_α, Z_q, M_α, M_q of the two equations solved for their rates: M_α̇ α̇ written out by Eq. (1).
 

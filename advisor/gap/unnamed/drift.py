@@ -18,6 +18,7 @@ from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.fitting.step import own_eliminated
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.records.flights import Flights
+from advisor.gap.result import spelled
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage
@@ -142,7 +143,9 @@ def _scatter(problem: Problem, last: Fitted, named: Judged) -> _Scatter:
 def _varies(judged: Judged, scatter: _Scatter) -> str:
     (unit, scale), value = _unit(judged), float(judged.value[0])
     give = f"give or take {round(scale * scatter.std)} {unit}"
-    return f"It is another in every manoeuvre: {round(scale * value)} {unit}, {give}."
+    return (
+        f"The {spelled(judged.effect)} is another in every manoeuvre: {round(scale * value)} {unit}, {give}."
+    )
 
 
 def _unit(judged: Judged) -> tuple[str, float]:
@@ -152,4 +155,5 @@ def _unit(judged: Judged) -> tuple[str, float]:
 def _said(judged: Judged, change: float) -> str:
     (unit, scale), value = _unit(judged), float(judged.value[0])
     began, ended = (round(scale * (value + half)) for half in (-0.5 * change, 0.5 * change))
-    return f"It is not the same throughout: {began} {unit} at the beginning, {ended} {unit} at the end."
+    course = f"{began} {unit} at the beginning, {ended} {unit} at the end"
+    return f"The {spelled(judged.effect)} is not the same throughout: {course}."

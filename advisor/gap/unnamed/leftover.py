@@ -17,6 +17,7 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import SENSOR_CHANNELS, Probe, disturbance_courses, probe_blocks
 from advisor.gap.noise.quiet import unfiltered
 from advisor.gap.records.floor import DOUBT
+from advisor.gap.simulator.layout import natural_frequency
 from advisor.gap.unnamed.clock import is_of_the_clock
 from advisor.gap.unnamed.course import is_in_few, is_of_the_air
 from advisor.gap.unnamed.jumps import jumping_sensor
@@ -219,8 +220,7 @@ def _of_the_command(problem: Problem, last: Fitted) -> float:
     """
     if problem.held:
         return 0.0
-    derivatives = last.point.derivatives
-    frequency = float(np.sqrt(max(derivatives[0] * derivatives[4] - derivatives[3], 0.0)))
+    frequency = natural_frequency(last.point.derivatives)
     interval = float(np.median(np.concatenate([np.diff(f.t_u) for f in problem.flights.flights])))
     return frequency * interval / 12.0
 

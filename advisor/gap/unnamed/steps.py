@@ -33,7 +33,7 @@ _GATHERED = 0.5
 spreads them from a fifth of a step on. A surface that sticks, and a stall, leave errors that go up and down
 with a reading, too, but readings everywhere."""
 _FINE = 0.1
-"""Share of a channel's error without any name from which on what is left of it is worth a riddle."""
+"""Share of a channel's error without any name from which on what is left of it is worth an explanation."""
 _NONE = (0.0, 0.0, 0.0)
 
 

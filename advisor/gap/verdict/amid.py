@@ -28,7 +28,7 @@ def torn_by_a_change(e: Evidence) -> int | None:
     left, by far; never the first or the last, for nothing would be left to change from or to.
     """
     flights = e.problem.flights.flights
-    if _riddles(e) < 2:
+    if _explanations(e) < 2:
         return None
     left = np.mean(e.stages[-1].held_out.by_maneuver / e.floor**2, axis=1)
     changes = _changes(e)
@@ -47,7 +47,7 @@ def torn_by_a_change(e: Evidence) -> int | None:
 
 
 def is_told_without(e: Evidence, without: Evidence, number: int) -> bool:
-    """Whether the others, by themselves, tell of a change mostly at this one, and leave fewer riddles.
+    """Whether the others, by themselves, tell of a change mostly at this one, and leave less to explain.
 
     Where a gust passes through more than one of them, that was no change either.
     """
@@ -61,7 +61,9 @@ def is_told_without(e: Evidence, without: Evidence, number: int) -> bool:
         there = min(ended, latest) - max(began, earliest)
         return there >= _MOST * (ended - began)
 
-    return any(mostly_there(*change) for change in _changes(without)) and _riddles(without) < _riddles(e)
+    return any(mostly_there(*change) for change in _changes(without)) and _explanations(
+        without
+    ) < _explanations(e)
 
 
 def _end_s(flight: Flight) -> float:
@@ -81,7 +83,7 @@ def _changes(e: Evidence) -> list[tuple[float, float]]:
     return found
 
 
-def _riddles(e: Evidence) -> int:
+def _explanations(e: Evidence) -> int:
     """How much it takes: names, a gust, something without a name."""
     named = len(added_in(e.stages))
     gust = e.air is not None and e.air.gust

@@ -31,6 +31,7 @@ from advisor.gap.verdict.numbers import (
     traces_of,
     waterfall_of,
 )
+from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import sentence_of
 
 
@@ -71,7 +72,9 @@ def answer(
     effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
     nobodys_fault = effects.keys() - present if shrink is not None else ()
     return Diagnosis(
-        verdict=verdict, sentence=sentence_of(verdict, gap, where, causes, shrink), gap=gap, where=where,
+        verdict=verdict,
+        sentence=sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft)),
+        gap=gap, where=where,
         causes=causes, shrink=shrink, waterfall=waterfall,
         cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), e.floor, present),
         kinematics=kinematics, model=model_of(problem, fitted, known),

@@ -7,6 +7,7 @@ import numpy as np
 
 from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Value
@@ -22,6 +23,10 @@ _SHAPE_DOUBT = 0.03
 """Relative error of a size for describing its effect to low order only."""
 _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
+_TOLD_LATER = 0.5
+"""Confidence in an effect that was not worth a name until another was found beside it."""
+_THE_FIRST = 0.5
+"""Of all named effects' probability what the first has ahead; the rest they share by what they change."""
 _SCALED_BY = 0.2
 """Share of what a scale error makes of the trimmed angle that an offset may depart from it."""
 _BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
@@ -37,17 +42,12 @@ def causes_of(
     first = stages[0].considered
     shares = probabilities(first, unexplained)
     causes = []
-    removed = sum(max(j.removed, 1e-6) for j in added)
-    for stage, judged in zip(stages, added, strict=False):
-        confidence = probabilities(stage.considered, unexplained).get(judged.effect, 0.5)
+    removed = [max(j.removed, 1e-6) for j in added]
+    for n, (stage, judged) in enumerate(zip(stages, added, strict=False)):
+        confidence = probabilities(stage.considered, unexplained).get(judged.effect, _TOLD_LATER)
         if any(j.effect == judged.effect and not j.worth_naming for j in stage.considered):
-            # Too small for a name until the other was found beside it.
-            confidence = 0.5
-        share = (
-            1.0 if len(added) == 1 else 0.5 + 0.5 * judged.removed / removed if judged is added[0] else 0.0
-        )
-        if judged is not added[0]:
-            share = max(judged.removed, 1e-6) / removed * 0.5
+            confidence = _TOLD_LATER
+        share = _THE_FIRST * (n == 0) + (1.0 - _THE_FIRST) * removed[n] / sum(removed)
         causes.append(_cause(judged, stage.considered, confidence * share, floor, channels, True))
     taken = {c.effect for c in causes}
     rest = max(1.0 - sum(c.probability for c in causes), 0.0)
@@ -71,14 +71,13 @@ def probabilities(considered: Sequence[Judged], unexplained: float) -> dict[str,
     return {j.effect: float(w) for j, w in zip(considered, weights, strict=False)}
 
 
-def parameters_of(judged: Judged) -> dict[str, Value]:
-    """Parameters as the aircraft file spells them."""
-    v = judged.variant
-    found = {n: Value(float(x), float(s)) for n, x, s in zip(v.names, judged.value, judged.std, strict=True)}
+def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, Value]:
+    """Parameters with their errors as the aircraft file spells them; both arrays have shape (names,)."""
+    found = {n: Value(float(x), float(s)) for n, x, s in zip(v.names, values, std, strict=True)}
     if v.inverted:
-        x = max(float(judged.value[0]), 1e-9)
-        found[v.names[0]] = Value(1.0 / x, float(judged.std[0]) / x**2)
-    if judged.effect == "structural_mode":
+        x = max(float(values[0]), 1e-9)
+        found[v.names[0]] = Value(1.0 / x, float(std[0]) / x**2)
+    if v.effect == "structural_mode":
         to_hz = 1.0 / (2.0 * np.pi)
         found = {
             "frequency_hz": Value(found["omega_rad_s"].value * to_hz, found["omega_rad_s"].std * to_hz),
@@ -126,7 +125,8 @@ def _cause(
 ) -> Cause:
     ties, way = tied_with(judged, considered, channels)
     left = whole_gap(judged.held_out.mean_square, floor)
-    return Cause(judged.effect, judged.block, probability, parameters_of(judged), ties, way, left, present)
+    sizes = parameters_of(judged.variant, judged.value, judged.std)
+    return Cause(judged.effect, judged.block, probability, sizes, ties, way, left, present)
 
 
 def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, float], ...]:
@@ -149,7 +149,8 @@ def alpha_bias_cause(
 
     A scale error shifts the trim, too; only what the named one leaves over is an offset. ``left`` is the gap
     of the last model: what the motion alone shows takes nothing off it. ``alone``: nothing else was found
-    but air that moves; beside anything else what a mounting leaves is no cause.
+    but air that moves; beside anything else what a mounting leaves is no cause. Its probability is
+    decided beside the other causes.
     """
     if not np.isfinite(check.offset.rad) or not check.offset.stays or "alpha" not in problem.channels:
         return None
@@ -161,7 +162,7 @@ def alpha_bias_cause(
     if abs(check.offset.rad) < least or abs(check.offset.rad - scaled) < max(least, _SCALED_BY * abs(scaled)):
         return None
     return Cause(
-        "alpha_bias", "alpha_sensor", 0.9, {"bias_rad": Value(check.offset.rad, check.offset.std_rad)},
+        "alpha_bias", "alpha_sensor", 0.0, {"bias_rad": Value(check.offset.rad, check.offset.std_rad)},
         ("an offset of the attitude's zero", "steady up- or downwash"),
         "level the attitude reference on the ground; fly in still air", left, True,
     )  # fmt: skip
@@ -182,6 +183,6 @@ def alpha_lag_cause(
     if check.lag_s < least_s:
         return None
     return Cause(
-        "alpha_lag", "alpha_sensor", 0.9, {"lag_s": Value(check.lag_s, check.lag_std_s)},
+        "alpha_lag", "alpha_sensor", 0.0, {"lag_s": Value(check.lag_s, check.lag_std_s)},
         ("alpha_skew", "alpha_vane_offset"), _BREAK_ALPHA_LAG, left, True,
     )  # fmt: skip

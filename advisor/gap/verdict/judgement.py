@@ -15,6 +15,7 @@ from advisor.gap.result import VISIBLE, Cause, Value, Verdict
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, speed_is_unasked
 from advisor.gap.search.stage import added_in
+from advisor.gap.search.ties import breaking
 from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause, causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.kept_out import without_air
@@ -229,7 +230,7 @@ def _air_cause(e: Evidence) -> Cause | None:
             "amplitude_m_s": Value(peak, _AIR_DOUBT * abs(peak)),
             "at_s": Value(e.air.gust_at_s, _AIR_DOUBT_S),
         }
+    name, other = ("gust", "turbulence") if gust else ("turbulence", "gust")
     return Cause(
-        "gust" if gust else "turbulence", "air", 0.9, parameters, ("turbulence" if gust else "gust",),
-        "fly more manoeuvres: a gust does not come back, turbulence does", left, True,
+        name, "air", 0.0, parameters, (other,), breaking(name, other), left, True,
     )  # fmt: skip

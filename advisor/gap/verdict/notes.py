@@ -5,7 +5,9 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 
 from advisor.aircraft import Aircraft
+from advisor.flight.maneuver import Maneuver
 from advisor.gap.candidates.known import Effects, left_aside
+from advisor.gap.records.usable import why_left_out
 from advisor.gap.result import Verdict, spelled
 from advisor.gap.search.work import mean_speed
 from advisor.gap.verdict.evidence import Evidence
@@ -34,7 +36,7 @@ def notes_of(
         shown = "a_x" in flights.has and {"alpha", "a_z", "theta"} <= set(flights.channels)
         from_there = "from there it is what the accelerometers make of it" if shown else "it stays there"
         whence = (
-            "as the aircraft file says or else the motion shows"
+            "from the aircraft file, or from the motion where the file has none"
             if aircraft.stated_airspeed_m_s
             else "assumed"
         )
@@ -55,7 +57,7 @@ def notes_of(
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
         notes.append(
-            f"The air speed is wrong by {per_metre} a metre climbed: more than any wind changes."
+            f"The air speed's error grows by {per_metre} a metre climbed: more than any wind changes."
             if e.shear.is_feigned
             else f"The wind changed with height, by {per_metre} a metre."
         )
@@ -64,32 +66,32 @@ def notes_of(
     if e.weight is not None:
         notes.append(e.weight.sentence)
     if e.leftover is not None and e.leftover.note:
-        notes.append(e.leftover.note)
+        notes.append(f"Unexplained {place(e.leftover.block)}: {e.leftover.note}")
     if e.leftover is not None and verdict == "parameters":
-        notes.append(f"Beside the wrong numbers something small stays {place(e.leftover.block)}.")
+        notes.append(f"Beside the wrong numbers something small {place(e.leftover.block)} stays unexplained.")
     for judged in (stage.added for stage in e.stages):
         if judged is not None and judged.witness is not None:
             number = flights.flights[judged.witness].number
             notes.append(
-                f"Manoeuvre {number} alone tells of the {spelled(judged.effect)}: "
-                "it is measured there, for no other could confirm it."
+                f"Manoeuvre {number} alone shows the {spelled(judged.effect)}: "
+                "it is measured there, and no other manoeuvre could confirm it."
             )
     if e.air is not None:
         notes.append(
-            "What is shown as after has the likeliest course of the air in it: that belongs to the day, and "
-            "no file can hold it. It is fitted to these very samples, so that little of the gap can stay."
+            "The figures after include the gusts of this flight as they are estimated from the same samples: "
+            "they flatter the model, and no aircraft file can hold them."
         )
         if e.air.gust:
             notes.append(f"The gust shows most in manoeuvre {e.air.gust_number}.")
         if flights.alpha_is_derived:
             notes.append(
                 "The angle of attack is an estimate that sees no gust: this flight's derivatives are rough, "
-                "and the gusts read too strong."
+                "and the strength of the gusts is overestimated."
             )
     if nobodys_fault:
         notes.append(
-            f"The improved simulator has the propeller's share, too ({_listed(sorted(nobodys_fault))}): "
-            "part of every aircraft that has one, and no cause."
+            f"The improved simulator has a propeller's terms, too ({_listed(sorted(nobodys_fault))}): "
+            "every aircraft with a propeller has them, and they are not counted as a cause."
         )
     notes += _known(aircraft.effects)
     missing = [c for c in ("a_z", "theta") if c not in flights.channels]
@@ -118,15 +120,14 @@ def _command(e: Evidence) -> str:
     )
 
 
-def left_out(numbers: Sequence[int], torn: int | None) -> tuple[str, ...]:
-    """Which manoeuvres were not used, and why that may be; ``torn`` is the one in which a change came."""
-    notes = []
-    if torn is not None:
-        notes.append(f"Left out: manoeuvre {torn}. The change came while it was flown.")
-    if which := ", ".join(str(number) for number in numbers if number != torn):
-        why = "It departed, lacks a channel, or a step fell into a hole of the log."
-        notes.append(f"Left out: manoeuvre {which}. {why}")
-    return tuple(notes)
+def left_out(maneuvers: Sequence[Maneuver], torn: int | None) -> tuple[str, ...]:
+    """Which manoeuvres were not used, and why; ``torn`` is the one in which a change came."""
+    why = [
+        f"manoeuvre {m.number}: "
+        + ("the change came while it was flown" if m.number == torn else why_left_out(m))
+        for m in maneuvers
+    ]
+    return tuple(f"Left out: {reason}." for reason in why)
 
 
 def _known(effects: Effects) -> list[str]:
