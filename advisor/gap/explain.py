@@ -6,19 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft import Aircraft
-from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.holdout import HeldOut, held_out
-from advisor.gap.fitting.linear import linearise
+from advisor.gap.fitting.measure import file_model_of
 from advisor.gap.fitting.problem import Problem, counts
-from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.fitting.uncertainty import worth
-from advisor.gap.noise.quiet import quiet_rms
-from advisor.gap.noise.stamps import stamp_power
-from advisor.gap.records.floor import stated_floor, tolerance_of
+from advisor.gap.records.floor import stated_floor
 from advisor.gap.search.air import Air, gust_instead, moving_air
 from advisor.gap.search.command import (
     is_likelier_held,
@@ -38,38 +33,13 @@ from advisor.gap.search.waterfall import (
     reconsidered,
     reduced_to,
 )
-from advisor.gap.unnamed.cross_axis import crossed_axes
-from advisor.gap.unnamed.drift import drifting
-from advisor.gap.unnamed.leftover import (
-    Leftover,
-    is_of_passing_air,
-    is_the_gust,
-    left_over,
-    other_than_air,
-)
-from advisor.gap.unnamed.memory import remembering
-from advisor.gap.unnamed.remainder import (
-    bends_as_any,
-    is_all_named,
-    is_of_no_use,
-    of_the_input,
-    only_numbers,
-    only_resemble,
-    remainder,
-)
-from advisor.gap.unnamed.slosh import sloshing
-from advisor.gap.unnamed.steps import stepping
-from advisor.gap.unnamed.swing import swinging, swings_the_aircraft
+from advisor.gap.unnamed.remainder import of_the_input
+from advisor.gap.unnamed.search import scene_of, without_a_name
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
-from advisor.gap.unnamed.unnamed_air import unnamed_air
 from advisor.gap.unnamed.unnamed_law import Law, unnamed_law
-from advisor.gap.unnamed.unsteady import unsteady
-from advisor.gap.unnamed.wander import wandering_attitude, wandering_sensor
 from advisor.gap.verdict.evidence import Evidence
 
-_FAR_ABOVE = 2.0
-"""A floor over white noise from which on it is no longer an instrument's, with whatever memory."""
 _HARDLY_DAMPED = 0.02
 """Damping ratio of a structure that rings: of bare metal, or a boom."""
 
@@ -92,46 +62,21 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     progress("looking at the air", 0.7)
     law, stages, air = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
-    tolerance = tolerance_of(problem.flights)
-    stages = as_measured(problem, stages)
-    floor = _floor(problem, stages[-1], tolerance)
-    leftover = (
-        (law and law.leftover)
-        or drifting(problem, stages)
-        or remembering(problem, stages)
-        or stepping(problem, stages[0].fitted, stages[-1].fitted)
-        or wandering_attitude(problem, stages[-1].fitted)
-        or crossed_axes(problem, stages[-1].fitted)
-        or _without_a_name(problem, stages, air, tolerance, floor)
-    )
-    file_model = _file_model(problem, stages[0].fitted)
-    as_any = bends_as_any(problem, stages, file_model, floor)
-    if leftover is None and air is not None and (only_resemble(stages) or as_any):
-        stages = reduced_to(problem, stages, [])
-        air, floor = moving_air(problem, stages[0].fitted), _floor(problem, stages[0], tolerance)
-        leftover = _without_a_name(problem, stages, air, tolerance, floor)
-    if leftover is None and air is not None:
-        leftover = unnamed_air(air, stages, floor)
-    if leftover is None and not (air is not None and air.gust):
-        leftover = sloshing(problem, stages[-1].fitted)
-    if leftover is None and air is None:
-        leftover = None if as_any else remainder(problem, stages, file_model, floor)
-        needless = is_of_no_use(problem, stages, file_model, floor) or as_any
-        if leftover is None and (needless or only_numbers(problem, stages, file_model, floor)):
-            stages = reduced_to(problem, stages, [])
-        elif leftover is None and len(stages) == 1:
-            leftover = wandering_sensor(problem, stages[-1].fitted)
-        leftover = leftover or unsteady(problem, stages[-1].fitted, floor)
+    scene = scene_of(problem, as_measured(problem, stages), air)
+    leftover = None if law is None else law.leftover
+    if leftover is None:
+        leftover, scene = without_a_name(scene)
+    stages, floor, file_model = scene.stages, scene.floor, scene.file_model
     # A model without the law that was found bends its air speed to it.
     true_speed = true_speed_of(problem, stages[-1].fitted) if law is None else None
     if leftover is not None:
         leftover = of_the_input(leftover, stages, file_model, floor)
         if leftover.in_quiet is not None:
-            least = np.maximum(stated_floor(problem.flights), tolerance)
+            least = np.maximum(stated_floor(problem.flights), scene.tolerance)
             floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
-    named = _file_model(problem, stages[-1].fitted) if len(stages) > 1 else None
+    named = file_model_of(problem, stages[-1].fitted) if len(stages) > 1 else None
     speed = at_constant_speed(problem, stages[-1].fitted)
-    return Evidence(problem, stages, leftover, air, floor, file_model, named, speed, true_speed)
+    return Evidence(problem, stages, leftover, scene.air, floor, file_model, named, speed, true_speed)
 
 
 def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> Variant:
@@ -201,57 +146,3 @@ def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage],
         return stages, air
     stages = reduced_to(problem, stages, kept)
     return stages, moving_air(problem, stages[-1].fitted)
-
-
-def _without_a_name(
-    problem: Problem, stages: list[Stage], air: Air | None, tolerance: FloatArray, floor: FloatArray
-) -> Leftover | None:
-    """What the last model leaves that is neither noise nor the air."""
-    first, last = stages[0].fitted, stages[-1].fitted
-    # The filter takes a swing for noise: as a line it is seen, and placed, better than by any other sign.
-    swing = swinging(problem, first, last, tolerance) or swings_the_aircraft(problem, first, last)
-    if swing is not None:
-        return swing
-    all_named = air is None and is_all_named(stages, _of_instruments(problem, floor))
-    leftover = left_over(problem, first, last, tolerance, air is not None, all_named)
-    slight = None if leftover is None else stages[-1].slight_in(leftover.block)
-    if slight is not None:
-        # A cause that is known, and below its physical minimum, leaves nothing without a name.
-        last = slight.fitted
-        leftover = left_over(problem, first, last, tolerance, air is not None, all_named)
-    if air is None:
-        return leftover
-    if air.gust and leftover is not None and is_the_gust(problem, last, leftover):
-        return None
-    if leftover is None or leftover.block == "air" or is_of_passing_air(problem, last, leftover):
-        return other_than_air(problem, first, last)
-    return leftover
-
-
-def _of_instruments(problem: Problem, floor: FloatArray) -> FloatArray:
-    """The floor, but the white noise where it is far above that: something goes on in quiet, too."""
-    if problem.instruments is None:
-        return floor
-    return np.where(floor > _FAR_ABOVE * problem.instruments, problem.instruments, floor)
-
-
-def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:
-    """Shape (channels,): noise as it is where nothing was flown."""
-    # Stamps that jitter are the instruments', too, but show only where something moves.
-    measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
-    return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)
-
-
-def _file_model(problem: Problem, fitted: Fitted) -> HeldOut | None:
-    """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
-    if problem.believed is None:
-        return None
-    point = replace(fitted.point, derivatives=problem.believed)
-    lefts: list[FloatArray] = []
-    for _ in range(3):
-        linear = linearise(problem, point)
-        owns = solve_blocks(problem, linear, 1.0 / fitted.noise, point).free
-        still = np.zeros(len(point.shared))
-        lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
-        point = replace(point, own=point.own + np.array([o[:4] for o in owns]))
-    return held_out(problem, lefts)

@@ -1,11 +1,16 @@
 """The gap in numbers: per channel, manoeuvre, phase and frequency band."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.holdout import HeldOut, held_out
+from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.records.flights import Flight
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
@@ -89,3 +94,18 @@ def shrink_interval(before: FloatArray, after: FloatArray) -> tuple[float, float
     percent = 100.0 * (1.0 - np.sum(after[drawn], axis=1) / totals)
     low, high = np.percentile(percent, [2.5, 97.5])
     return float(max(low, -100.0)), float(min(high, 100.0))
+
+
+def file_model_of(problem: Problem, fitted: Fitted) -> HeldOut | None:
+    """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
+    if problem.believed is None:
+        return None
+    point = replace(fitted.point, derivatives=problem.believed)
+    lefts: list[FloatArray] = []
+    for _ in range(3):
+        linear = linearise(problem, point)
+        owns = solve_blocks(problem, linear, 1.0 / fitted.noise, point).free
+        still = np.zeros(len(point.shared))
+        lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
+        point = replace(point, own=point.own + np.array([o[:4] for o in owns]))
+    return held_out(problem, lefts)
