@@ -125,7 +125,9 @@ def _with_the_air(
     if law is not None:
         plain, air = _beside_the_air(problem, reduced_to(problem, stages, []))
         if not law.may_be(air):
-            return law, plain, air
+            # What the law does is no air: with it in the model there may be none.
+            still = air is None or moving_air(problem, law.fitted) is None
+            return law, plain, None if still else air
     return None, *_beside_the_air(problem, stages)
 
 

@@ -33,6 +33,7 @@ _SIGNED = frozenset({"scale", "step", "inertia", "change", "skew_s", "bias_rad",
 _IN_WORDS = {
     "with_pitch_rate": "the pitch rate, too",
     "with_moment": "the moment, too",
+    "with_attitude": "the attitude, too",
     "stability_only": "of the stability alone",
 }
 """Parameters that only say that something is so."""

@@ -73,6 +73,16 @@ def _pair(first: Draw, second: Draw) -> Draw:
     return lambda scale, g: {**first(scale, g), **second(scale, g)}
 
 
+def _mode(scale: Scale, g: np.random.Generator) -> dict[str, float]:
+    # An attitude is integrated from that gyro in half of all aircraft, and comes from elsewhere in the others.
+    return {
+        "frequency_hz": _log(g, 2.2, 9.0),
+        "damping": _log(g, 0.02, 0.1),
+        "gain": _log(g, 0.25, 4.0),
+        "with_attitude": float(g.random() < 0.5),
+    }
+
+
 _SKEW = _one("skew_s", 0.012, 0.12, signed=True)
 
 INSIDE: dict[str, Draw] = {
@@ -100,9 +110,7 @@ INSIDE: dict[str, Draw] = {
     "alpha_vane_offset": _one("arm_m", 0.15, 1.5, signed=True, by="length"),
     "pitch_rate_bias": _one("bias_rad_s", 0.003, 0.03, signed=True),
     "pitch_rate_scale": _one("scale", 0.03, 0.3, signed=True),
-    "structural_mode": _pair(
-        _one("frequency_hz", 2.2, 9.0), _pair(_one("damping", 0.02, 0.1), _one("gain", 0.25, 4.0))
-    ),
+    "structural_mode": _mode,
     "accelerometer_offset": _one("arm_m", 0.04, 0.4, signed=True, by="length"),
     "alpha_skew": _SKEW,
     "pitch_rate_skew": _SKEW,

@@ -122,7 +122,10 @@ def _q_scale(kit: Kit, sizes: Sizes) -> None:
 def _bending(kit: Kit, sizes: Sizes) -> None:
     if sizes["frequency_hz"] <= 0.0:
         return
-    mode = BendingMode(sizes["frequency_hz"], sizes["damping"], sizes["gain"], sizes["displacement_gain"])
+    mode = BendingMode(
+        sizes["frequency_hz"], sizes["damping"], sizes["gain"], sizes["displacement_gain"],
+        sizes["with_attitude"] > 0.0,
+    )  # fmt: skip
     kit.fittings.sensors.append(mode)
 
 
@@ -211,7 +214,7 @@ CATALOGUE: dict[str, Kind] = {
     "pitch_rate_scale": Kind("pitch_rate_sensor", {"scale": 0.1}, _q_scale),
     "structural_mode": Kind(
         "pitch_rate_sensor",
-        {"frequency_hz": 4.0, "damping": 0.04, "gain": 2.0, "displacement_gain": 0.0},
+        {"frequency_hz": 4.0, "damping": 0.04, "gain": 2.0, "displacement_gain": 0.0, "with_attitude": 0.0},
         _bending,
     ),
     "accelerometer_offset": Kind("accelerometer", {"arm_m": 0.2}, _imu_arm),

@@ -66,12 +66,21 @@ class BendingMode:
     """The gyro sits on a fuselage that bends when the elevator pushes the tail.
 
     η̈ + 2ζω η̇ + ω² η = ω² (δ − δ_trim); the gyro turns with the local slope's rate, q + gain η̇/ω,
-    and whatever it feels of the bend itself, ``displacement_gain`` η.
+    and whatever it feels of the bend itself, ``displacement_gain`` η. An attitude that is integrated from the
+    gyro has the local slope in it, gain η/ω.
     """
 
-    def __init__(self, frequency_hz: float, damping: float, gain: float, displacement_gain: float) -> None:
+    def __init__(
+        self,
+        frequency_hz: float,
+        damping: float,
+        gain: float,
+        displacement_gain: float,
+        with_attitude: bool = False,
+    ) -> None:
         self.omega = 2 * math.pi * frequency_hz
         self.damping, self.gain, self.displacement_gain = damping, gain, displacement_gain
+        self.with_attitude = with_attitude
         self._trim: float | None = None
         self._bend = self._rate = 0.0
 
@@ -83,6 +92,8 @@ class BendingMode:
         self._rate += (push - 2 * self.damping * self.omega * self._rate) * dt
         self._bend += self._rate * dt
         reading.q += self.gain * self._rate / self.omega + self.displacement_gain * self._bend
+        if self.with_attitude:
+            reading.theta += self.gain * self._bend / self.omega
 
 
 class Transformed:

@@ -57,7 +57,7 @@ SWITCHES = {
     "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9, "stop_low": -9.0, "stop_high": 9.0,
     "ring_hz": 0.0, "ring_zeta": 0.2, "stall_at": 9.0, "stall_sharpness": 40.0,
     "lets_go_at": 9.0, "holds_below": -9.0, "lost_cl": 0.0, "bank": 0.0,
-    "breaks_at": 0.0, "drags": 0.0, "moment_power": 0.0,
+    "breaks_at": 0.0, "drags": 0.0, "moment_power": 0.0, "mode_attitude": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, MLAGS, ICET,
@@ -65,7 +65,7 @@ _K = {name: i for i, name in enumerate(SWITCHES)}
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
  MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST, RINGHZ,
  RINGZETA, STALLAT, STALLS, LETSGO, HOLDS, LOST, BANK,
- BREAKS, DRAGS, MPOWER) = range(len(SWITCHES))  # fmt: skip
+ BREAKS, DRAGS, MPOWER, MATT) = range(len(SWITCHES))  # fmt: skip
 
 
 @njit(cache=True)
@@ -199,7 +199,9 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
             vane += H * (a - sw[VARM] * q / V - vane) / sw[VLAG]
         else:
             vane = a - sw[VARM] * q / V
-        out[0, k], out[1, k], out[2, k], out[3, k] = vane, q + deta / om, az - sw[AARM] * qdot, th
+        out[0, k], out[1, k], out[2, k] = vane, q + deta / om, az - sw[AARM] * qdot
+        # An attitude that is integrated from this gyro has what it turned by in it.
+        out[3, k] = th + sw[MATT] * eta / om
         r = G * np.cos(th) * sb / u
         out[4, k], out[5, k], out[6, k], out[7, k] = V, ax, u * np.sin(th) - w * np.cos(th) * cb, de
         out[8, k] = r

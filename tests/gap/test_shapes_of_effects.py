@@ -175,3 +175,21 @@ def test_a_dead_band_that_takes_most_of_the_command_is_no_elevator_that_bends():
     assert [c.effect for c in found.causes if c.present] == ["actuator_deadband"]
     half_width = found.causes[0].parameters["half_width_rad"]
     assert abs(half_width.value - 0.035) < 3.0 * half_width.std
+
+
+@pytest.mark.parametrize("integrated", [0.0, 1.0])
+def test_a_structure_swings_in_an_attitude_that_is_integrated_from_its_gyro_or_not(integrated):
+    bending = {"mode_gain": 0.6, "mode_hz": 4.0, "mode_attitude": integrated}
+    found = diagnose(fly(Setup(maneuvers=6, switches=bending, seed=16)), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["structural_mode"]
+    sizes = found.causes[0].parameters
+    assert sizes["frequency_hz"].value == pytest.approx(4.0, rel=0.03)
+    assert ("with_attitude" in sizes) == bool(integrated)
+
+
+def test_beside_another_name_a_structure_that_swings_in_the_attitude_is_described_anew():
+    bending = {"mode_gain": 0.6, "mode_hz": 4.0, "mode_attitude": 1.0, "cm_a3": -60.0}
+    found = diagnose(fly(Setup(maneuvers=6, switches=bending, seed=17)), Aircraft())
+    present = {c.effect: c.parameters for c in found.causes if c.present}
+    assert present.keys() == {"structural_mode", "nonlinear_pitching_moment"}
+    assert "with_attitude" in present["structural_mode"]

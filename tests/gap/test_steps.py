@@ -24,7 +24,12 @@ def rounded(flown, channel, step, noise=0.0, seed=0):
 
 @pytest.mark.parametrize(
     ("channel", "block", "step", "noise"),
-    [("q", "pitch_rate_sensor", 0.025, 0.002), ("alpha", "alpha_sensor", 0.006, 0.0005)],
+    [
+        ("q", "pitch_rate_sensor", 0.025, 0.002),
+        ("alpha", "alpha_sensor", 0.006, 0.0005),
+        # So coarse, and without noise, that it repeats itself for most of the time.
+        ("alpha", "alpha_sensor", 0.02, 0.0),
+    ],
 )
 def test_an_instrument_that_reads_in_steps_is_unknown_and_its_step_is_said(channel, block, step, noise):
     flown = rounded(fly(Setup(maneuvers=6, noise=0.005, seed=71)), channel, step, noise)
@@ -52,7 +57,7 @@ def test_steps_as_fine_as_a_messages_resolution_are_none():
     assert diagnose(rounded(flown, "q", 0.001), Aircraft()).verdict == "none"
 
 
-def test_beside_an_effect_that_explains_nearly_all_a_coarse_reading_is_no_riddle():
+def test_beside_an_effect_that_explains_nearly_all_a_coarse_reading_is_not_asked_about():
     iced = fly(Setup(maneuvers=6, noise=0.002, switches={"ice": 0.4}, ice_after=3, seed=71))
     found = diagnose(rounded(iced, "alpha", 0.003), Aircraft())
     assert found.verdict == "effect"

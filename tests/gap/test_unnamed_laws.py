@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft import Aircraft, Elevator
 from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.air import Air
@@ -137,6 +137,14 @@ def test_a_servo_that_overshoots_is_no_delay_with_a_structure_that_bends(setup, 
     assert any("The surface overshoots its command" in note for note in found.notes)
 
 
+def test_a_servo_that_rings_is_known_where_the_file_has_it_later_than_it_is():
+    setup = Setup(maneuvers=6, seed=44, switches={"ring_hz": 3.0, "ring_zeta": 0.12})
+    found = diagnose(fly(setup), Aircraft(elevator=Elevator(lag_s=0.03)))
+    assert (found.verdict, found.where.block) == ("unknown", "input")
+    assert any("The surface overshoots its command" in note for note in found.notes)
+    assert not any(c.present for c in found.causes)
+
+
 @pytest.mark.parametrize("switches", [
     {"lag": 0.03, "before_lag": 0.03}, pytest.param({"delay": 0.04, "lag": 0.04}, marks=pytest.mark.study)
 ])  # fmt: skip
@@ -234,6 +242,7 @@ def test_an_accelerometer_that_misses_as_much_of_the_weight_as_of_the_path_is_sc
 def test_a_law_that_brings_a_fraction_of_what_moving_air_does_is_its_shape(gust, least):
     air = Air(0.01, 1000.0, gust, 1, 0.02, 0.0, (), np.zeros(4), (), np.zeros(4), 100.0)
     somewhere = Leftover("moment_equation", 0.2, (("moment_equation", 1.0),))
-    assert Law(somewhere, 900.0 * least, False).may_be(air)
-    assert not Law(somewhere, 1100.0 * least, False).may_be(air)
-    assert not Law(somewhere, 30.0, False).may_be(None)
+    plain = fit_baseline(prepare(fly(Setup(maneuvers=2)), Aircraft()), Aircraft())[1]
+    assert Law(somewhere, plain, 900.0 * least, False).may_be(air)
+    assert not Law(somewhere, plain, 1100.0 * least, False).may_be(air)
+    assert not Law(somewhere, plain, 30.0, False).may_be(None)

@@ -86,9 +86,9 @@ def _beyond(variant: Variant, known: float) -> Variant:
 
 
 def _says(variant: Variant, parameters: Mapping[str, float]) -> bool:
-    if variant.effect == "structural_mode":
-        return "frequency_hz" in parameters
     same = all(parameters.get(name) == value for name, value in variant.fixed.items())
+    if variant.effect == "structural_mode":
+        return same and "frequency_hz" in parameters
     return same and all(name in parameters for name in variant.names)
 
 

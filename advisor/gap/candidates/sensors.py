@@ -1,8 +1,13 @@
 """The instruments: the α channel, the rate gyro, the place of the accelerometer."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from advisor.gap.candidates.variant import Variant
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.records.flights import Flights
+from advisor.gap.simulator.layout import INDEX
 
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
 """Where the search for a structural mode begins; it ends between them."""
@@ -10,6 +15,27 @@ _LEAST_BIAS_RAD_S = 0.00175
 """0.1 deg/s: what a rate gyro keeps after it was set to zero on the ground."""
 _LEAST_ARM_M, _OF_A_DELAY = 0.02, 0.75
 """Arm below which none has a name, and over the speed beside the least delay."""
+
+_MODE = Variant(
+    "structural_mode",
+    "pitch_rate_sensor",
+    ("gain", "rate_gain", "omega_rad_s", "damping"),
+    tuple((0.0, 0.0, 2.0 * np.pi * hz, 0.05) for hz in _MODES_HZ),
+    (0.02, 0.02, 0.1, 0.005),
+    ((-50.0, 50.0), (-50.0, 50.0), (12.0, 80.0), (0.003, 0.15)),
+    0.0,
+    entries=("mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping"),
+    places=("omega_rad_s", "damping"),
+)
+
+
+def _with_attitude(p: FloatArray, values: Values, flights: Flights) -> None:
+    """An attitude that is integrated from the gyro swings with it."""
+    _MODE.apply(p, values, flights)
+    p[:, INDEX["mode_attitude"]] = 1.0
+
+
+_MODE_OF_ALL = replace(_MODE, apply_with=_with_attitude, fixed={"with_attitude": 1.0})
 
 TRUE_AIR_SPEED = Variant(
     "true_air_speed",
@@ -87,17 +113,7 @@ def variants(least_s: float, speed_m_s: float) -> list[Variant]:
             0.01,
             entries=("q_scale",),
         ),
-        Variant(
-            "structural_mode",
-            "pitch_rate_sensor",
-            ("gain", "rate_gain", "omega_rad_s", "damping"),
-            tuple((0.0, 0.0, 2.0 * np.pi * hz, 0.05) for hz in _MODES_HZ),
-            (0.02, 0.02, 0.1, 0.005),
-            ((-50.0, 50.0), (-50.0, 50.0), (12.0, 80.0), (0.003, 0.15)),
-            0.0,
-            entries=("mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping"),
-            places=("omega_rad_s", "damping"),
-        ),
+        replace(_MODE, likewise=(_MODE_OF_ALL,)),
         Variant(
             "accelerometer_offset",
             "accelerometer",

@@ -40,6 +40,8 @@ _NO_LESS = 0.98
 """Weight of a sample from which on it is as good as any."""
 _LEAST_GAIN = 15.0
 """Log likelihood by which colour or air must beat white noise before a filter is worth it."""
+_NONE_OF_PEAK = 1e-9
+"""Share of a channel's peak that stands for no noise at all."""
 
 
 def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> Whitening | None:
@@ -179,8 +181,12 @@ def quiet_rms(problem: Problem, fitted: Fitted) -> FloatArray:
 
 
 def instrument_noise(problem: Problem) -> FloatArray:
-    """Shape (4,): white noise of each channel from differences of its samples; 1 for one that is missing."""
-    white = dict(zip(problem.channels, problem.flights.white, strict=True))
+    """Shape (4,): white noise of each channel from differences of its samples; 1 for one that is missing.
+
+    A channel that reads in steps coarser than its noise does not differ at all where nothing is flown.
+    """
+    least = _NONE_OF_PEAK * problem.flights.peaks
+    white = dict(zip(problem.channels, np.maximum(problem.flights.white, least), strict=True))
     return np.array([white.get(c, 1.0) for c in CHANNELS])
 
 

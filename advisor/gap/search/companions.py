@@ -5,22 +5,19 @@ A single effect fitted to the sum of two may be neither.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.traits import BY_NATURE
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import belief_in, worth
-from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN, LEAST_SIGMA
+from advisor.gap.fitting.uncertainty import worth
+from advisor.gap.search.merit import LEAST_GAIN, LEAST_SIGMA
 from advisor.gap.search.ranking import candidates_for, judge
-from advisor.gap.search.score import addition, price_of
-from advisor.gap.search.screen import Screen
-from advisor.gap.search.stage import Stage, added_in, only, rebuilt
+from advisor.gap.search.score import addition
+from advisor.gap.search.stage import Stage, added_in, is_likelier, only, rebuilt, replaced_by
 
 _CLEARLY = 20.0
 """Cost by which a pair of names must beat those that were found first."""
@@ -30,8 +27,6 @@ _TRIED = 3
 """... and how many of its likenesses, and companions of each, are tried."""
 _PROMISING = 0.5
 """Share of what the first effect brings that the screening must promise of another companion."""
-_WORTH_A_FIT = 2
-"""Likeliest candidates that are fitted where the derivatives are held at the file's."""
 _BESIDE = 2
 """Names from which on one of them stands beside another."""
 _SEVERAL = 2
@@ -88,8 +83,8 @@ def one_for_another(problem: Problem, stages: list[Stage], _: Sequence[Variant])
         others = [[name for name in names[:n] if name != left_out] for left_out in names[:n]]
         fits = [only(problem, rival.fitted, [*kept, rival.effect]) for kept in others]
         best = min(fits, key=lambda f: f.cost)
-        if _is_likelier(problem, best, last):
-            return _replaced(problem, stages[0], best)
+        if is_likelier(problem, best, last):
+            return replaced_by(problem, stages[0], best)
     return stages
 
 
@@ -112,7 +107,39 @@ def two_in_place_of_one(problem: Problem, stages: list[Stage], variants: Sequenc
         for companion in judge(problem, alone, hold_out(problem, alone), near):
             if companion.worth_naming and companion.fitted.cost < least:
                 best, least = companion.fitted, companion.fitted.cost
-    return stages if best is None else _replaced(problem, stages[0], best)
+    return stages if best is None else replaced_by(problem, stages[0], best)
+
+
+def other_description(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
+    """Another description of a name, which was judged when those after it were not yet in the model."""
+    names = [j.effect for j in added_in(stages)]
+    if len(names) < _BESIDE:
+        return stages
+    best = stages[-1].fitted
+    for name in names:
+        point = best.point
+        k = point.index_of(name)
+        for form in _forms_beside(point.effects[k], variants):
+            values = point.values[k] if form.carried is None else np.array(form.carried(point.values[k]))
+            there = replace(
+                point,
+                effects=(*point.effects[:k], form, *point.effects[k + 1 :]),
+                values=(*point.values[:k], values, *point.values[k + 1 :]),
+            )
+            otherwise = fit(problem, there, best.noise, tolerance=0.5, beaten_by=best.cost)
+            if is_likelier(problem, otherwise, best):
+                best = otherwise
+    if best is stages[-1].fitted:
+        return stages
+    considered = {s.added.effect: s.considered for s in stages if s.added is not None}
+    return rebuilt(problem, stages[0], names, best, considered, stages[-1].considered)
+
+
+def _forms_beside(named: Variant, variants: Sequence[Variant]) -> list[Variant]:
+    """The other descriptions that have the same numbers, of one that may itself be another's other."""
+    families = ((v, *v.likewise) for v in variants if v.effect == named.effect)
+    family = next((f for f in families if any(form is named for form in f)), ())
+    return [form for form in family if form is not named and form.names == named.names]
 
 
 def one_early(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
@@ -134,7 +161,7 @@ def one_early(problem: Problem, stages: list[Stage], variants: Sequence[Variant]
     best = min(pairs, key=lambda f: f.cost, default=last)
     if best.cost > last.cost - _CLEARLY:
         return stages
-    return _replaced(problem, first, best)
+    return replaced_by(problem, first, best)
 
 
 def one_number_for_ice(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
@@ -161,67 +188,4 @@ def one_number_for_ice(problem: Problem, stages: list[Stage], variants: Sequence
     ]
     fits = [fit(problem, point, last.noise, tolerance=0.5) for point in points]
     best = min(fits, key=lambda f: f.cost, default=last)
-    return _replaced(problem, stages[0], best) if _is_likelier(problem, best, last) else stages
-
-
-def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
-    """Other names that explain as much with the file's own derivatives, where those found need other ones.
-
-    Two effects may look like one effect and wrong numbers. Held at the file's numbers, each shows as it is.
-    """
-    names, last = len(added_in(stages)), stages[-1].fitted
-    if not names or problem.believed is None:
-        return stages
-    independent = worth(problem, last.innovations)
-    as_filed = replace(last, point=replace(last.point, derivatives=problem.believed))
-    believed = belief_in(problem, last, independent)
-    if belief_in(problem, as_filed, independent) - believed < LEAST_BELIEF:
-        return stages
-    found = _held_at_the_file(replace(problem, holds_the_file=True), stages[0].fitted, variants, names + 1)
-    others = fit(problem, found.point, found.noise, tolerance=0.5, beaten_by=last.cost + 2.0 * LEAST_GAIN)
-    gained = belief_in(problem, others, independent) - believed + 0.5 * (last.cost - others.cost)
-    priced = _price_of_all(others, independent) - _price_of_all(last, independent)
-    if gained - priced < LEAST_GAIN:
-        return stages
-    again = _replaced(problem, stages[0], others)
-    # One of them alone may throw the model far off: then the names do not stand one after the other.
-    falls = all(after.fitted.cost < before.fitted.cost for before, after in pairwise(again))
-    # Of several, those that the whole does not miss are dropped later; a single one must stand by itself.
-    named = added_in(again)
-    stands = len(named) > 1 or any(judged.worth_naming for judged in named)
-    return again if falls and stands else stages
-
-
-def _held_at_the_file(held: Problem, plain: Fitted, variants: Sequence[Variant], names: int) -> Fitted:
-    """The model built up by so many names at most, the derivatives held."""
-    assert held.believed is not None
-    model = fit(held, replace(plain.point, derivatives=held.believed), plain.noise, tolerance=0.5)
-    for _ in range(names):
-        present = {effect.effect for effect in model.point.effects}
-        others = [v for v in variants if v.effect not in present]
-        likeliest = Screen(held, model).try_all(others, lambda _: 0.0)[:_WORTH_A_FIT]
-        fits = [fit(held, s.point, s.noise, tolerance=0.5) for s in likeliest]
-        best = min(fits, key=lambda f: f.cost, default=model)
-        if best.cost > model.cost - _CLEARLY:
-            break
-        model = best
-    return model
-
-
-def _is_likelier(problem: Problem, one: Fitted, other: Fitted) -> bool:
-    """Whether one model is likelier than the other, with what the file is worth and the names' price."""
-    independent = worth(problem, other.innovations)
-    gained = 0.5 * (other.cost - one.cost) + belief_in(problem, one, independent)
-    gained += _price_of_all(other, independent) - belief_in(problem, other, independent)
-    return gained >= _price_of_all(one, independent)
-
-
-def _price_of_all(fitted: Fitted, independent: FloatArray) -> float:
-    return sum(price_of(v, independent) for v in fitted.point.effects if not v.always)
-
-
-def _replaced(problem: Problem, first: Stage, model: Fitted) -> list[Stage]:
-    """Stages of the names of another model; what was thought of beside those that they replace is refuted."""
-    names = [effect.effect for effect in model.point.effects if not effect.always]
-    again = rebuilt(problem, first, names, model, dict.fromkeys(names, ()), ())
-    return [replace(s, considered=(s.added,) if s.added is not None else ()) for s in again]
+    return replaced_by(problem, stages[0], best) if is_likelier(problem, best, last) else stages

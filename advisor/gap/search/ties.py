@@ -6,6 +6,9 @@ from advisor.gap.search.merit import Judged
 
 NEAR = 5.0
 """Difference of held-out log likelihood below which two explanations are a tie."""
+_TWINS = ({"alpha_vane_offset", "accelerometer_offset"}, {"alpha_lag", "alpha_skew"})
+"""Two arms that one measurement parts; and a vane's filter of second order is between a lag and a skew."""
+_LITTLE = 0.1
 _ARMS = "measure where the vane and the IMU sit: alpha.vane_arm_m, accelerometer.arm_m"
 _SURFACE = "log the measured surface position"
 _AMPLITUDES = "fly two amplitudes: a rate limit answers larger steps later"
@@ -45,9 +48,9 @@ def breaking(effect: str, other: str) -> str:
 
 
 def _near(a: Judged, b: Judged) -> bool:
-    """As good as each other; the two arms always, if either is any good."""
-    arms = {a.effect, b.effect} == {"alpha_vane_offset", "accelerometer_offset"}
-    return abs(a.gain - b.gain) < (0.1 * abs(b.gain) if arms else NEAR)
+    """As good as each other; twins if what parts them is little beside what either explains."""
+    twins = {a.effect, b.effect} in _TWINS
+    return abs(a.gain - b.gain) < (max(NEAR, _LITTLE * abs(b.gain)) if twins else NEAR)
 
 
 def tied_with(best: Judged, others: Sequence[Judged], channels: Sequence[str]) -> tuple[tuple[str, ...], str]:

@@ -8,12 +8,13 @@ from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import hold_out, measured_in
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import shared_std, worth
+from advisor.gap.search.by_the_file import by_the_file
 from advisor.gap.search.companions import (
-    by_the_file,
     one_early,
     one_for_another,
     one_number_for_ice,
     other_companion,
+    other_description,
     two_in_place_of_one,
 )
 from advisor.gap.search.merit import LEAST_BELIEF, Judged
@@ -42,7 +43,8 @@ def build_up(
 def reconsidered(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
     """Stages of the names that explain most together, in the order of what the whole loses without each."""
     replacements = (
-        other_companion, one_for_another, two_in_place_of_one, one_early, one_number_for_ice, by_the_file,
+        other_description, other_companion, one_for_another, two_in_place_of_one, one_early,
+        one_number_for_ice, by_the_file,
     )  # fmt: skip
     for better in replacements:
         stages = better(problem, stages, variants)

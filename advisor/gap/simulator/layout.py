@@ -43,6 +43,8 @@ EFFECT_ENTRIES = (
     "filter_lag_s", "filter_shape", "filter_output",
     # a vane that friction holds until the air has turned by this much, and that turns as far as to stops
     "vane_play_rad", "vane_stop_up_rad", "vane_stop_down_rad",
+    # 1: the attitude swings with the structure, too
+    "mode_attitude",
 )  # fmt: skip
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}

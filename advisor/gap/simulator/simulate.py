@@ -61,6 +61,7 @@ _ANYWHERE = 9.0
     A_Z_READ2, A_Z_READ3, ALPHA_READ2, ALPHA_READ3, Q_PULL, Q_PULL2,
     SPEED_LEVEL, SPEED_SLOPE, SPEED_BOW, SPEED_SCALE,
     FILTER_LAG, FILTER_SHAPE, FILTER_OUTPUT, VANE_PLAY, VANE_STOP_UP, VANE_STOP_DOWN,
+    MODE_ATTITUDE,
 ) = range(len(ENTRIES))  # fmt: skip
 # Rows of a pack behind the driving numbers: what follows from them once, the state, what a step hands on.
 (
@@ -290,7 +291,9 @@ def simulate(
                                    + (x[Q_PULL, m] + x[Q_PULL2, m] * pulled) * pulled)  # fmt: skip
                 bent = (x[A_Z_READ2, m] + x[A_Z_READ3, m] * pulled) * pulled
                 out[k, i, 2, m] = (1.0 + x[A_Z_SCALE, m]) * a_z + bent * pulled
-                out[k, i, 3, m] = theta_from + (1.0 + x[THETA_SCALE, m]) * (theta - theta_from)
+                # The slope of the bent structure, which is what the gyro's part of its rate adds up to.
+                slope = x[MODE_ATTITUDE, m] * x[MODE_RATE_GAIN, m] * x[BEND, m] * x[SOFTNESS, m]
+                out[k, i, 3, m] = theta_from + (1.0 + x[THETA_SCALE, m]) * (theta - theta_from) + slope
                 # A search may try an unstable aircraft: its motion stays finite, and is rejected by its cost.
                 x[ALPHA, m] = min(max(alpha + h * x[KA, m], -1.5), 1.5)
                 x[Q, m] = min(max(q + h * x[KQ, m], -15.0), 15.0)

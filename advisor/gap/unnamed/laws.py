@@ -97,9 +97,18 @@ _MOMENTS = (
         ((-300.0, 300.0), (-2000.0, 2000.0)), 0.0, entries=("M_alpha_q", "M_alpha_delta_e"),
     ),
 )  # fmt: skip
-_RINGING = Variant(
-    _RINGS, "input", ("lag_s", "damping"), ((0.05, 0.25), (0.025, 0.25), (0.012, 0.25)), (5e-4, 0.01),
-    ((0.002, 0.3), (0.02, 0.45)), 0.0, entries=("lag_s", "lag_damping"),
+
+
+def _rings(p: FloatArray, values: Values, _: Flights) -> None:
+    """What the file says of the servo's lag gives way: it is late by 2ζ/ω, however long it rings."""
+    omega, damping = values
+    p[:, INDEX["lag_s"]], p[:, INDEX["lag_damping"]] = 2.0 * damping / omega, damping
+
+
+RINGING = Variant(
+    _RINGS, "input", ("omega_rad_s", "damping"),
+    tuple((2.0 * np.pi * hz, 0.2) for hz in (1.5, 2.1, 3.0, 4.2, 6.0)),
+    (0.05, 0.01), ((4.0, 80.0), (0.02, 0.45)), 0.0, apply_with=_rings,
 )  # fmt: skip
 _SAID = {
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
@@ -155,7 +164,7 @@ def laws_for(flights: Flights) -> list[Variant]:
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
     of_readings += vane_stops(flights) if "alpha" in readings else []
     of_lift = [lift_memory(flights), flow_lets_go(flights)]
-    of_input = [*surface_stops(flights), _RINGING, _sticking(flights), *_weaker(flights)]
+    of_input = [*surface_stops(flights), RINGING, _sticking(flights), *_weaker(flights)]
     return [*of_readings, *_MOMENTS, *of_input, *of_lift]
 
 

@@ -12,7 +12,7 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import SENSOR_CHANNELS
 from advisor.gap.unnamed.leftover import OF_PEAK, Leftover
 
-_FINEST, _COARSEST = OF_PEAK * np.sqrt(12.0), 0.15
+_FINEST, _COARSEST = OF_PEAK * np.sqrt(12.0), 0.6
 """Steps that are looked for, as shares of a channel's peak: errors of finer ones are small, and coarser ones
 are seen as any other law is."""
 _CELLS = 16

@@ -41,7 +41,7 @@ def unnamed_air(air: Air, stages: Sequence[Stage], floor: FloatArray) -> Leftove
     if air.power < LEAST_OF_GAP * (before - after):
         return None
     if air.gust and unlike_gusts(air.course) > _UNLIKE:
-        return _something("The air's course is no gust's: rather a wake, or the edge of air that sinks.")
+        return _something("The air moved, but not as a gust does: a wake, or the edge of sinking air.")
     period_s, share = (0.0, 0.0) if air.gust else wave_in(air.course)
     if share > _SWINGS:
         return _something(f"The air rises and sinks every {period_s:.1f} s: a wave.")

@@ -26,7 +26,7 @@ from advisor.gap.search.score import (
 )
 from advisor.gap.search.screen import Screen, penalty
 from advisor.gap.search.stage import Stage, added_in
-from advisor.gap.unnamed.laws import PLAIN, laws_for, said
+from advisor.gap.unnamed.laws import PLAIN, RINGING, laws_for, said
 from advisor.gap.unnamed.leftover import Leftover
 from advisor.gap.unnamed.stops import SURFACE_STOP
 
@@ -58,6 +58,8 @@ side effects."""
 _BEYOND_DOUBT, _OF_WHAT_NAMES_LEAVE = 50.0, 0.5
 """By how much a law beats what was named, and what it leaves of that, beside the noise, if no names that
 explain more together need be sought: of 50 laws of the truth that were found first, all stayed."""
+_MISSING = 0.03
+"""Share of some channel's peak that names leave where most of the motion is another."""
 _OF_A_GUST, _OF_TURBULENCE = 0.2, 0.05
 """Share of the log likelihood that moving air brings alone, below which a law is a part of what that does."""
 
@@ -67,6 +69,8 @@ class Law:
     """A law that was found, and what it brings."""
 
     leftover: Leftover
+    fitted: Fitted
+    """The plain model with the law."""
     gain: float
     is_beyond_doubt: bool
     """Likelier than all that was named by far, of which it leaves a part: no other names come near it."""
@@ -94,6 +98,10 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
         if s.cost <= most:
             fits.append((s.variant, fit(problem, s.point, s.noise, tolerance=0.5, beaten_by=lost)))
             lost = min(lost, fits[-1][1].cost + _OUT_OF_REACH)
+    if np.any(np.sqrt(stages[-1].held_out.mean_square) > _MISSING * problem.flights.peaks):
+        # Nothing small leads to a servo that rings for the whole record: its search begins everywhere.
+        points = [plain.point.with_effect(RINGING, start) for start in RINGING.starts]
+        fits += [(RINGING, fit(problem, p, plain.noise, tolerance=0.5, beaten_by=lost)) for p in points]
     if not fits:
         return None
     law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
@@ -125,7 +133,8 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
         for h in (stages[-1].held_out, bent.held_out)
     )
     sure = bent.gain > named + _BEYOND_DOUBT and leaves < _OF_WHAT_NAMES_LEAVE * names_leave
-    return Law(Leftover(block, share, ((block, 1.0), *ranking), note=said(bent)), bent.gain, sure)
+    leftover = Leftover(block, share, ((block, 1.0), *ranking), note=said(bent))
+    return Law(leftover, fitted, bent.gain, sure)
 
 
 def _shows(problem: Problem, before: HeldOut, after: HeldOut) -> bool:

@@ -48,7 +48,10 @@ _FAR_MORE = 3.0
 _HALF = 0.5
 """The same of all that was named where something without a name is there besides."""
 _AIR_DOUBT = 0.25
-"""Relative error of the air's strength: its course is known to low order only."""
+"""Relative error of a gust's strength: its course is known to low order only."""
+_WAVES_DOUBT = 0.5
+"""The same of turbulence: waves longer than a record pass for its trim. Dryden's air reads 0.5 to 0.7 of its
+strength where the scale length takes three seconds and more to fly through, 1.2 where it takes one."""
 _AIR_DOUBT_S = 0.1
 """Of a gust's time: the distance between two knots of its course."""
 
@@ -224,7 +227,7 @@ def _air_cause(e: Evidence) -> Cause | None:
     gust, stays = e.air.gust, without_air(e.stages[-1].held_out, e.air).mean_square
     left = whole_gap(stays, np.minimum(e.floor, np.sqrt(e.air.left)))
     peak, spread = e.air.gust_angle * reference, e.air.angle_std * reference
-    parameters = {"sigma_w_m_s": Value(spread, _AIR_DOUBT * spread)}
+    parameters = {"sigma_w_m_s": Value(spread, _WAVES_DOUBT * spread)}
     if gust:
         parameters = {
             "amplitude_m_s": Value(peak, _AIR_DOUBT * abs(peak)),

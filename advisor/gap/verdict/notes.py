@@ -78,8 +78,8 @@ def notes_of(
             )
     if e.air is not None:
         notes.append(
-            "The figures after include the gusts of this flight as they are estimated from the same samples: "
-            "they flatter the model, and no aircraft file can hold them."
+            "What is given as 'after' includes this flight's gusts as estimated from the same samples: that "
+            "flatters the model, and no aircraft file can hold them."
         )
         if e.air.gust:
             notes.append(f"The gust shows most in manoeuvre {e.air.gust_number}.")

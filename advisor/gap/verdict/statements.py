@@ -42,7 +42,7 @@ _WHAT: dict[str, str | tuple[str, str]] = {
     "airspeed_variation exponent_M": "The real moments grow with the air speed's power "
     "{exponent_M_power:.1f}, the lift with {exponent_power:.1f}",
     "ground_effect": "The ground was near enough to be felt",
-    "turbulence": "The air was not still: gusts of {sigma_w_m_s:.2g} m/s",
+    "turbulence": "The air was not still: gusts of about {sigma_w_m_s:.2g} m/s",
     "gust": (
         "An upward gust of {amplitude_m_s:.2g} m/s passed",
         "A downward gust of {amplitude_m_s:.2g} m/s passed",
