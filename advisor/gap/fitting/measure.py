@@ -79,19 +79,21 @@ def by_band(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[tuple[float,
     )
 
 
-def shrink_interval(before: FloatArray, after: FloatArray) -> tuple[float, float]:
+def shrink_interval(before: FloatArray, after: FloatArray, floor: FloatArray) -> tuple[float, float]:
     """95 % interval of the shrink in per cent, by resampling manoeuvres.
 
     Parameters
     ----------
     before, after
-        Shape (manoeuvres,): gap of each manoeuvre.
+        Shape (manoeuvres, channels): mean squares of what is left.
+    floor
+        Shape (channels,).
     """
     rng = np.random.default_rng(20)
     n = len(before)
     drawn = rng.integers(0, n, (2000, n))
-    totals = np.maximum(np.sum(before[drawn], axis=1), 1e-12)
-    percent = 100.0 * (1.0 - np.sum(after[drawn], axis=1) / totals)
+    was, now = (np.mean(gap_of(np.mean(left[drawn], axis=1), floor), axis=1) for left in (before, after))
+    percent = 100.0 * (1.0 - now / np.maximum(was, 1e-12))
     low, high = np.percentile(percent, [2.5, 97.5])
     return float(max(low, -100.0)), float(min(high, 100.0))
 

@@ -57,11 +57,11 @@ def shrink_of(
         by_numbers = _by_numbers(e)
     elif e.air is not None and (len(e.stages) > 1 or wrong_numbers):
         beyond_air = _by_effects(e) if len(e.stages) > 1 else _by_numbers(e)
-    was = np.mean(before.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
-    now = np.mean(last.by_maneuver / e.floor**2 - 1.0, axis=1)[list(kept)]
+    which = list(kept)
     percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
-    low, high = shrink_interval(was, now)
+    low, high = shrink_interval(before.by_maneuver[which], last.by_maneuver[which], e.floor)
     numbers = tuple(e.problem.flights.flights[i].number for i in kept)
+    # A long manoeuvre has more samples, and counts for more in the gap than in a draw of manoeuvres.
     interval = (min(low, percent), max(high, percent))
     return Shrink(numbers, gap.before, gap.after, percent, interval, beyond_air, by_numbers)
 
