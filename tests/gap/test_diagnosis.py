@@ -48,6 +48,34 @@ def test_effects_of_every_kind_are_named_in_noise_with_memory_and_jitter(effect,
     assert found.verdict == "effect"
 
 
+def test_when_the_autopilot_was_booted_is_no_part_of_the_answer():
+    flown = fly(Setup(maneuvers=6, mass_step=0.12, noise=0.03, seed=12))
+    early, late = diagnose(flown, Aircraft()), diagnose([booted_before(m, 7200.0) for m in flown], Aircraft())
+    assert early.causes[0].effect == "mass_change"
+    assert [c.effect for c in late.causes] == [c.effect for c in early.causes]
+    for one, other in zip(early.causes, late.causes, strict=True):
+        assert other.probability == pytest.approx(one.probability, abs=1e-3)
+        sizes = {name: v.value - 7200.0 * (name == "at_s") for name, v in other.parameters.items()}
+        assert sizes == pytest.approx(
+            {name: v.value for name, v in one.parameters.items()}, rel=1e-2, abs=1e-4
+        )
+
+
+def booted_before(maneuver, seconds):
+    """The manoeuvre of a vehicle that had been on for so much longer."""
+    span = maneuver.span
+    later = replace(
+        span,
+        **{
+            name: getattr(span, name) + seconds
+            for name in ("record_from_s", "start_s", "last_step_s", "end_s")
+        },
+        steps=tuple((t + seconds, level) for t, level in span.steps),
+    )
+    channels = {name: replace(c, t=c.t + seconds) for name, c in maneuver.channels.items()}
+    return replace(maneuver, span=later, channels=channels)
+
+
 @pytest.mark.parametrize(
     ("mass", "inertia_of_mass"), [(0.4, 0.6), pytest.param(-0.25, 0.4, marks=pytest.mark.study)]
 )

@@ -28,7 +28,8 @@ def test_waterfall_manoeuvres_and_interval_tell_of_the_same_gap_as_the_total(eff
     assert found.gap.before == pytest.approx(np.mean(kept), rel=0.1)
     assert found.shrink.percent > 90.0
     assert found.shrink.ci95_percent[0] > 50.0
-    assert sum(found.gap.by_phase.values()) > found.gap.before
+    # The total has the lead-in, too, where nothing is flown.
+    assert max(found.gap.by_phase.values()) > found.gap.before
 
 
 def test_what_is_plotted_as_after_is_what_the_channel_read_where_its_offset_is_the_cause():
