@@ -14,7 +14,7 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES
 from advisor.gap.unnamed.wind import blows_along, wind_shear
-from advisor.gap.verdict.causes import alpha_bias_cause, alpha_lag_cause
+from advisor.gap.verdict.apart import alpha_bias_cause, alpha_lag_cause
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 

@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.search.merit import Judged, least_offset_rad
+from advisor.gap.search.merit import Judged
 from advisor.gap.search.score import TIME_DOUBT_S, TIMES
 from advisor.gap.search.stage import Stage, added_in
 from advisor.gap.search.ties import tied_with
@@ -27,11 +26,6 @@ _TOLD_LATER = 0.5
 """Confidence in an effect that was not worth a name until another was found beside it."""
 _THE_FIRST = 0.5
 """Of all named effects' probability what the first has ahead; the rest they share by what they change."""
-_SCALED_BY = 0.2
-"""Share of what a scale error makes of the trimmed angle that an offset may depart from it."""
-_BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
-_OF_INTERVAL = 0.2
-"""Share of the interval between an estimate's samples that its lag must reach to be named."""
 
 
 def causes_of(
@@ -140,49 +134,3 @@ def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, flo
         if best > 0.0 and j.gain > 0.0:
             scores[j.block] = max(scores.get(j.block, 0.0), round(j.gain / best, 4))
     return tuple(sorted(scores.items(), key=lambda item: -item[1]))
-
-
-def alpha_bias_cause(
-    check: KinematicCheck, named: Sequence[Judged], problem: Problem, left: float, alone: bool
-) -> Cause | None:
-    """A constant offset of α, from the climb rate: the dynamics cannot tell it from Z_0 and M_0.
-
-    A scale error shifts the trim, too; only what the named one leaves over is an offset. ``left`` is the gap
-    of the last model: what the motion alone shows takes nothing off it. ``alone``: nothing else was found
-    but air that moves; beside anything else what a mounting leaves is no cause. Its probability is
-    decided beside the other causes.
-    """
-    if not np.isfinite(check.offset.rad) or not check.offset.stays or "alpha" not in problem.channels:
-        return None
-    least = least_offset_rad(check.offset.std_rad, problem.flights.alpha_is_derived, alone)
-    trim = float(np.mean([flight.alpha_trim for flight in problem.flights.flights]))
-    scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
-    # The trim was read with the offset taken out already: what a scale makes of it is no offset.
-    scaled = scale * trim
-    if abs(check.offset.rad) < least or abs(check.offset.rad - scaled) < max(least, _SCALED_BY * abs(scaled)):
-        return None
-    return Cause(
-        "alpha_bias", "alpha_sensor", 0.0, {"bias_rad": Value(check.offset.rad, check.offset.std_rad)},
-        ("an offset of the attitude's zero", "steady up- or downwash"),
-        "level the attitude reference on the ground; fly in still air", left, True,
-    )  # fmt: skip
-
-
-def alpha_lag_cause(
-    check: KinematicCheck, problem: Problem, named: Sequence[Judged], left: float
-) -> Cause | None:
-    """A late α that the motion shows and the fit cannot: an autopilot's estimate is smooth and coarse.
-
-    A lag far below the interval of its samples is none: their stamps are not known that well.
-    """
-    intervals = [np.diff(f.outputs["alpha"].t) for f in problem.flights.flights if "alpha" in f.outputs]
-    least_s = _OF_INTERVAL * float(np.median(np.concatenate(intervals))) if intervals else 0.0
-    found_there = any(j.block in ("alpha_sensor", "accelerometer") for j in named)
-    if not problem.flights.alpha_is_derived or found_there or check.finding != "late":
-        return None
-    if check.lag_s < least_s:
-        return None
-    return Cause(
-        "alpha_lag", "alpha_sensor", 0.0, {"lag_s": Value(check.lag_s, check.lag_std_s)},
-        ("alpha_skew", "alpha_vane_offset"), _BREAK_ALPHA_LAG, left, True,
-    )  # fmt: skip
