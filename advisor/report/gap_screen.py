@@ -58,7 +58,8 @@ class GapScreen:
         d = self.diagnosis
         yield Panel(Text(d.sentence), title=_VERDICTS[d.verdict], title_align="left")
         yield _numbers(d)
-        yield Panel(Group(*_picture(d)), title=_where(d), title_align="left")
+        if d.verdict != "none":
+            yield Panel(Group(*_picture(d)), title=_where(d), title_align="left")
         yield Panel(whereabouts(d.gap), title="where in the flight", title_align="left")
         added = [step for step in d.waterfall if step != (_SPEED, d.gap.before)]
         if added:
@@ -96,7 +97,10 @@ def _note(text: str) -> Table:
 
 
 def _numbers(d: Diagnosis) -> Text:
-    lines = [f"gap {short(d.gap.before)} → {short(d.gap.after)} times the noise floor's power"]
+    before, after = short(d.gap.before), short(d.gap.after)
+    lines = [f"gap {before} → {after} times the noise floor's power"]
+    if d.verdict == "none":
+        lines = [f"gap {before} times the noise floor's power, {after} with fitted numbers"]
     if d.shrink is not None:
         low, high = d.shrink.ci95_percent
         lines.append(

@@ -222,3 +222,11 @@ def test_thousands_are_written_out():
 def test_what_is_as_good_as_nothing_is_written_so():
     assert short(2.22e-16) == short(0.0) == "0"
     assert short(0.0004) == "<0.001"
+
+
+def test_without_a_gap_no_block_is_pointed_at_and_fitted_numbers_are_no_improvement():
+    none = diagnosis(verdict="none", causes=(), shrink=None, waterfall=())
+    lines = printed(none, 80)
+    assert any("12,346 times the noise floor's power, 0.21 with fitted numbers" in line for line in lines)
+    assert not any("[pitching moment]" in line for line in lines)
+    assert any("[pitching moment]" in line for line in printed(diagnosis(), 80))
