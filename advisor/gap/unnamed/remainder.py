@@ -36,6 +36,8 @@ _BESIDE_IT = frozenset({"thrust_moment"})
 _LITTLE, _NEAR_THE_NOISE = 0.012, 2.0
 """Beside what any airframe has, thrust that misses the centre of gravity; the RMS that they must change of
 some channel's peak in some manoeuvre to be a cause, and the gap from which on they are one."""
+_WIDER = 1.5
+"""Gap with the names, over the one without, from which on they are no cause."""
 _BENT_BY_INPUT = frozenset({"moment_equation", "force_equation", "air"})
 """Where that seems to be: what an instrument does is told by other signs."""
 _BENDS = frozenset({"actuator_backlash", "actuator_deadband"})
@@ -102,6 +104,15 @@ def only_resemble(stages: Sequence[Stage]) -> bool:
         return False
     removed = removed_beyond_air(stages)
     return removed is not None and removed < _BESIDE_THE_AIR
+
+
+def widen(stages: Sequence[Stage], floor: FloatArray) -> bool:
+    """Whether names make the gap on manoeuvres kept out wider, the air's motion in it.
+
+    ``floor`` is the instruments' noise. What the air's filter takes for a better model is none then.
+    """
+    before, after = (whole_gap(s.held_out.mean_square, floor) for s in (stages[0], stages[-1]))
+    return len(stages) > 1 and after > max(_WIDER * before, VISIBLE)
 
 
 def is_all_named(stages: Sequence[Stage], floor: FloatArray) -> bool:

@@ -33,6 +33,7 @@ from advisor.gap.unnamed.remainder import (
     only_numbers,
     only_resemble,
     remainder,
+    widen,
 )
 from advisor.gap.unnamed.slosh import sloshing
 from advisor.gap.unnamed.steps import stepping
@@ -91,7 +92,11 @@ def without_a_name(scene: Scene) -> tuple[Leftover | None, Scene]:
     found = next((found for ask in IN_ANY_AIR if (found := ask(scene)) is not None), None)
     if found is not None:
         return found, scene
-    if scene.air is not None and (only_resemble(scene.stages) or scene.bends_as_any):
+    if scene.air is not None and (
+        only_resemble(scene.stages)
+        or widen(scene.stages, np.minimum(scene.floor, scene.air.instruments))
+        or scene.bends_as_any
+    ):
         scene = scene.without_names()
         found = _disturbance(scene)
     if found is None and scene.air is not None:
