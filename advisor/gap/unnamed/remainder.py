@@ -36,7 +36,7 @@ _BESIDE_IT = frozenset({"thrust_moment"})
 _LITTLE, _NEAR_THE_NOISE = 0.012, 2.0
 """Beside what any airframe has, thrust that misses the centre of gravity; the RMS that they must change of
 some channel's peak in some manoeuvre to be a cause, and the gap from which on they are one."""
-_WIDER = 1.5
+_WIDER = 1.2
 """Gap with the names, over the one without, from which on they are no cause."""
 _BENT_BY_INPUT = frozenset({"moment_equation", "force_equation", "air"})
 """Where that seems to be: what an instrument does is told by other signs."""
@@ -106,12 +106,15 @@ def only_resemble(stages: Sequence[Stage]) -> bool:
     return removed is not None and removed < _BESIDE_THE_AIR
 
 
-def widen(stages: Sequence[Stage], floor: FloatArray) -> bool:
+def widen(stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray) -> bool:
     """Whether names make the gap on manoeuvres kept out wider, the air's motion in it.
 
-    ``floor`` is the instruments' noise. What the air's filter takes for a better model is none then.
+    ``floor`` is the instruments' noise. What the air's filter takes for a better model is none then. Of some
+    240 right answers in moving air none makes it wider.
     """
-    before, after = (whole_gap(s.held_out.mean_square, floor) for s in (stages[0], stages[-1]))
+    without = [stages[0].held_out, *([] if file_model is None else [file_model])]
+    before = min(whole_gap(held.mean_square, floor) for held in without)
+    after = whole_gap(stages[-1].held_out.mean_square, floor)
     return len(stages) > 1 and after > max(_WIDER * before, VISIBLE)
 
 

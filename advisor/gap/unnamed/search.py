@@ -94,7 +94,7 @@ def without_a_name(scene: Scene) -> tuple[Leftover | None, Scene]:
         return found, scene
     if scene.air is not None and (
         only_resemble(scene.stages)
-        or widen(scene.stages, np.minimum(scene.floor, scene.air.instruments))
+        or widen(scene.stages, scene.file_model, np.minimum(scene.floor, scene.air.instruments))
         or scene.bends_as_any
     ):
         scene = scene.without_names()
