@@ -74,7 +74,7 @@ def _pair(first: Draw, second: Draw) -> Draw:
 
 
 def _mode(scale: Scale, g: np.random.Generator) -> dict[str, float]:
-    # An attitude is integrated from that gyro in half of all aircraft, and comes from elsewhere in the others.
+    # In half of all aircraft the attitude is integrated from that gyro.
     return {
         "frequency_hz": _log(g, 2.2, 9.0),
         "damping": _log(g, 0.02, 0.1),
