@@ -55,10 +55,10 @@ class Point:
 
         Raises
         ------
-        StopIteration
+        ValueError
             None has.
         """
-        return next(k for k, effect in enumerate(self.effects) if effect.effect == name)
+        return [effect.effect for effect in self.effects].index(name)
 
     def with_effect(
         self, effect: Variant, values: Sequence[float] | FloatArray, sides: FloatArray | None = None
