@@ -9,7 +9,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.flights import Flight
 from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUTS, SPEED
-from advisor.gap.simulator.reading import lane
+from advisor.gap.simulator.reading import differences, lane
 
 _DERIVATIVE_STEP = 1e-3
 """Finite-difference step of a derivative, relative to its size: far above rounding, far below curvature."""
@@ -132,19 +132,17 @@ def measured_columns(
     doses[-1] = _PULSE
     packs = problem.fly_all(flight, rows, unit_pulse(flight, DISTURB_INPUT, p[INDEX["lag_s"]]), doses)
     read = problem.read_all(flight, packs, rows[:-1])
-    base, shared, answers = read[:, :1], slice(1, k + 1), slice(k + 1, None)
-    read[:, 1:] -= base
-    read[:, shared] /= steps
-    read[:, answers] /= moves
-    own, speeds = read[:, answers][:, : len(NUISANCES)], read[:, answers][:, len(NUISANCES) :]
+    moved = np.concatenate([[0.0], steps, moves])
+    seen = differences(read, problem.measured(flight), np.zeros(len(moved), dtype=np.int64), moved)
+    left, shared, answers = seen[:, :1], seen[:, 1 : k + 1], seen[:, k + 1 :]
+    own, speeds = answers[:, : len(NUISANCES)], answers[:, len(NUISANCES) :]
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
     late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
     begin = flight.edges[:, 0] + late
     if problem.held:
         begin += 0.5 * (flight.edges[:, 2] - flight.edges[:, 3])
     doubts, edges = speeds @ flight.speed_doubt, _answers_to_edges(problem, flight, pulse, begin, p)
-    left = problem.measured(flight)[:, None] - base
-    columns = np.hstack([own, _offsets(problem, flight), doubts, edges, read[:, shared], left])
+    columns = np.hstack([own, _offsets(problem, flight), doubts, edges, shared, left])
     return Columns(columns, columns.shape[1] - k - 1)
 
 

@@ -5,6 +5,9 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 
 from advisor.flight.messages import FloatArray
 
+_SOUND = 1e-2
+"""Least pivot of a matrix with a unit diagonal that leaves no doubt: no direction is below its square."""
+
 
 def factored(normal: FloatArray) -> FloatArray:
     """Lower Cholesky factor of a symmetric positive definite matrix, shape (m, m).
@@ -34,15 +37,23 @@ def solved_within(
     solution instead leads away from the optimum, where numbers trade against one another. H is scaled to a
     unit diagonal; directions in which it is relatively below ``indifferent`` stay put.
     """
-    x, free = np.zeros(len(g)), np.ones(len(g), dtype=bool)
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-    normal = H / np.outer(scale, scale)
-    while np.any(free):
-        right = g[free] / scale[free] - normal[np.ix_(free, ~free)] @ (x * scale)[~free]
-        x[free] = np.linalg.lstsq(normal[np.ix_(free, free)], right, rcond=indifferent)[0] / scale[free]
-        outside = free & ((x < least) | (x > most))
-        if not np.any(outside):
-            break
+    normal, right = H / np.outer(scale, scale), g / scale
+    x = _solution(normal, right, indifferent) / scale
+    free = np.ones(len(g), dtype=bool)
+    while np.any(outside := free & ((x < least) | (x > most))):
         x[outside] = np.clip(x, least, most)[outside]
         free &= ~outside
+        if not np.any(free):
+            break
+        with_them = right[free] - normal[np.ix_(free, ~free)] @ (x * scale)[~free]
+        x[free] = _solution(normal[np.ix_(free, free)], with_them, indifferent) / scale[free]
     return x
+
+
+def _solution(normal: FloatArray, right: FloatArray, indifferent: float) -> FloatArray:
+    """Of a matrix with a unit diagonal; its singular values are asked for only where some may be tiny."""
+    factor, info = dpotrf(normal, lower=1, clean=0)
+    if info == 0 and np.min(np.diag(factor)) > _SOUND:
+        return solved(factor, right)
+    return np.asarray(np.linalg.lstsq(normal, right, rcond=indifferent)[0])

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -42,7 +43,8 @@ class Point:
 
     def moved(self, shared: FloatArray, own: FloatArray) -> "Point":
         """The same model elsewhere."""
-        values = tuple(shared[self.place(k)] for k in range(len(self.effects)))
+        ends = accumulate((len(effect.names) for effect in self.effects), initial=len(self.derivatives))
+        values = tuple(shared[begin:end] for begin, end in pairwise(ends))
         return replace(self, derivatives=shared[: len(DERIVATIVES)], own=own, values=values)
 
     def place(self, k: int) -> slice:

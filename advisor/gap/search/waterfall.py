@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.holdout import hold_out, measured_in
+from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import shared_std, worth
 from advisor.gap.search.by_the_file import by_the_file
@@ -19,6 +19,7 @@ from advisor.gap.search.companions import (
 )
 from advisor.gap.search.merit import LEAST_BELIEF, Judged
 from advisor.gap.search.ranking import candidates_for, judge
+from advisor.gap.search.restarts import from_every_start
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage, added_in, only, rebuilt
 
@@ -62,7 +63,7 @@ def one_after_another(
         if n == MOST_EFFECTS:
             stages.append(Stage(fitted, held, (), None))
             break
-        considered = ahead or judge(problem, fitted, held, candidates_for(problem, fitted, variants))
+        considered = ahead or _judged(problem, fitted, held, variants)
         added, ahead = next((j for j in considered if j.worth_naming), None), None
         if added is None and n < MOST_EFFECTS - 1:
             added, ahead = _leading_on(problem, considered, variants)
@@ -84,8 +85,14 @@ def _leading_on(
     if not considered or considered[0].gain < _CERTAIN:
         return None, None
     first = considered[0]
-    beside = judge(problem, first.fitted, first.held_out, candidates_for(problem, first.fitted, variants))
+    beside = _judged(problem, first.fitted, first.held_out, variants)
     return (first, beside) if any(j.worth_naming for j in beside) else (None, None)
+
+
+def _judged(problem: Problem, fitted: Fitted, held: HeldOut, variants: Sequence[Variant]) -> list[Judged]:
+    """What may be added to a model, best first."""
+    candidates = candidates_for(problem, fitted, variants)
+    return from_every_start(problem, fitted, held, judge(problem, fitted, held, candidates), candidates)
 
 
 def as_measured(problem: Problem, stages: Sequence[Stage]) -> list[Stage]:

@@ -40,11 +40,15 @@ def surfaces(
     which = np.empty(packs * lanes, dtype=np.int64)
     count = 0
     for j in range(packs * lanes):
-        if j == 0 or (j < len(p) and _differ(p[j], p[j - 1])):
+        if j > 0 and (j >= len(p) or not _differ(p[j], p[j - 1])):
+            which[j] = which[j - 1]
+        elif j > 0 and not _differ(p[j], p[0]):
+            which[j] = 0
+        else:
             different[count, 0] = surface(h, n, t_u, u, held, trim, p[j])
             different[count, 1] = _above_start(different[count, 0])
+            which[j] = count
             count += 1
-        which[j] = count - 1
     delta, above = np.empty((packs, n, lanes)), np.empty((packs, n, lanes))
     for pack in range(packs):
         for i in range(n):
