@@ -14,7 +14,7 @@ from advisor.gap.fitting.measure import file_model_of
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.records.floor import stated_floor
-from advisor.gap.search.air import Air, gust_instead, moving_air
+from advisor.gap.search.air import Air, gust_instead, moving_air, one_stands_out
 from advisor.gap.search.command import (
     is_likelier_held,
     is_plainer,
@@ -135,7 +135,7 @@ def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage],
     """The air's motion, and the stages without what is no more than its shape."""
     last = stages[-1].fitted
     nearly_white = np.all(worth(problem, last.innovations) >= 0.5 * counts(problem))
-    if not problem.knows_the_noise and nearly_white:
+    if not problem.knows_the_noise and nearly_white and not one_stands_out(problem, last):
         return stages, None
     if (gust := gust_instead(problem, stages)) is not None:
         return reduced_to(problem, stages, []), gust

@@ -43,6 +43,12 @@ def test_a_gust_that_passes_in_two_of_six_manoeuvres_is_told_by_its_peak(pulse_m
     assert found.causes[0].parameters["amplitude_m_s"].value == pytest.approx(pulse_m_s, rel=0.35)
 
 
+def test_a_gust_is_told_from_where_it_passed_though_a_drift_elsewhere_leaves_more():
+    found = diagnose(fly(Setup(maneuvers=9, gust_pulse=0.25, seed=2)), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["gust"]
+    assert found.causes[0].parameters["amplitude_m_s"].value == pytest.approx(0.25, rel=0.35)
+
+
 def test_a_gust_in_one_manoeuvre_is_no_change():
     found = diagnose(fly(Setup(maneuvers=3, gust_pulse=2.0, seed=26)), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["gust"]

@@ -11,8 +11,9 @@ from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.noise.probes import KNOTS_S
+from advisor.gap.noise.quiet import unfiltered
 from advisor.gap.records.prepare import prepare
-from advisor.gap.search.air import gust_instead
+from advisor.gap.search.air import gust_instead, one_stands_out
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage
@@ -80,6 +81,14 @@ def test_a_gust_has_its_name_and_a_wake_has_none():
     assert diagnose(fly(gusts), Aircraft()).causes[0].effect == "gust"
     found = diagnose(fly(Setup(maneuvers=6, gust_pulse=1.5, wake=True, seed=45)), Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "air")
+
+
+def test_manoeuvres_with_a_gust_stand_out_and_those_of_a_still_flight_do_not():
+    """In most manoeuvres the rest is white then, and says nothing of the air in the others."""
+    for gust_m_s, stands_out in ((0.6, True), (0.0, False)):
+        flights = prepare(fly(Setup(maneuvers=6, gust_pulse=gust_m_s, seed=7)), Aircraft())
+        problem, plain = unfiltered(*fit_baseline(flights, Aircraft()))
+        assert one_stands_out(problem, plain) == stands_out
 
 
 def test_turbulence_has_its_name_and_a_wave_has_none():

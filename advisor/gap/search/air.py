@@ -106,7 +106,7 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     power = np.mean(before / floor**2, axis=1)
     loudest = np.argsort(-power, kind="stable")[:AIR_MANEUVERS]
     found = _moving_in(problem, fitted, loudest)
-    if found.gain < AIR_GAIN and power[loudest[0]] > _STANDS_OUT * np.median(power):
+    if found.gain < AIR_GAIN and _stands_out(power):
         found = _moving_in(problem, fitted, loudest[:1])
     if found.gain < AIR_GAIN:
         return None
@@ -122,8 +122,10 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
         return None
     if gust:
         course = _of_a_gust(problem, fitted, instruments, found.gust_angle)
-    # The loudest manoeuvre shows the gust: where none was, a course may wander far and change little.
-    number = int(np.argmax(np.mean((before - mean_squares(problem, course.lefts)) / floor**2, axis=1)))
+    # Where no gust was, a course may wander far and change little, or hardly move and take up a slow drift.
+    changed = np.mean((before - mean_squares(problem, course.lefts)) / floor**2, axis=1)
+    peaks = np.array([np.max(np.abs(knots)) for knots in course.knots])
+    number = int(np.argmax(peaks**2 * np.maximum(changed, 0.0)))
     at = int(np.argmax(np.abs(course.knots[number])))
     flight = problem.flights.flights[number]
     left = _mean_square(problem, course.lefts)
@@ -137,6 +139,16 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     )  # fmt: skip
 
 
+def one_stands_out(problem: Problem, fitted: Fitted) -> bool:
+    """Whether a model leaves far more of one manoeuvre than of most: a gust may have passed in it."""
+    return _stands_out(np.mean(mean_squares(problem, fitted.innovations) / fitted.noise**2, axis=1))
+
+
+def _stands_out(powers: FloatArray) -> bool:
+    """Whether the loudest of the manoeuvres' powers, shape (manoeuvres,), does so beside the median."""
+    return bool(np.max(powers) > _STANDS_OUT * np.median(powers))
+
+
 def gust_instead(problem: Problem, stages: Sequence[Stage]) -> Air | None:
     """A gust in one manoeuvre, where all that was named only softens what happened there; None otherwise.
 
@@ -148,7 +160,7 @@ def gust_instead(problem: Problem, stages: Sequence[Stage]) -> Air | None:
         return None
     was, leaves = (np.mean(mean_squares(problem, f.left) / last.noise**2, axis=1) for f in (plain, last))
     loudest = int(np.argmax(leaves))
-    if int(np.argmax(was)) != loudest or leaves[loudest] < _STANDS_OUT * np.median(leaves):
+    if int(np.argmax(was)) != loudest or not _stands_out(leaves):
         return None
     air = moving_air(problem, plain)
     if air is None or not air.gust or air.gust_number != problem.flights.flights[loudest].number:

@@ -13,10 +13,8 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import worth
-from advisor.gap.search.merit import LEAST_GAIN, LEAST_SIGMA
+from advisor.gap.search.merit import LEAST_SIGMA
 from advisor.gap.search.ranking import candidates_for, judge
-from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage, added_in, is_likelier, only, rebuilt, replaced_by
 
 _CLEARLY = 20.0
@@ -31,41 +29,6 @@ _BESIDE = 2
 """Names from which on one of them stands beside another."""
 _SEVERAL = 2
 """Streams that are late, from which on the command may be, and another stream early."""
-
-
-def other_companion(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
-    """With two effects in the model, is the first still the best companion of the second?
-
-    A single effect fitted to the sum of two may be neither; once one of them is right the other shows.
-    """
-    if len(stages) != 3:
-        return stages
-    first, second = stages[0].added, stages[1].added
-    if first is None or second is None:
-        return stages
-    alone = only(problem, second.fitted, [second.effect])
-    held = hold_out(problem, alone)
-    independent = worth(problem, second.fitted.innovations)
-    same = addition(problem, alone, held, second.fitted, first.effect, independent)
-    others = candidates_for(problem, alone, [v for v in variants if v.effect != first.effect])
-    near = [c for c in others if 0.5 * (alone.cost - c.cost) + c.belief > _PROMISING * same.gain]
-    companions = judge(problem, alone, held, near)
-    best = next((j for j in companions if j.worth_naming), None)
-    if best is None:
-        return stages
-    # What one sample is worth depends on the fit that says so: both are held against the same.
-    likewise = addition(problem, alone, held, best.fitted, best.effect, independent)
-    if likewise.gain < same.gain + LEAST_GAIN:
-        return stages
-    independent = worth(problem, best.fitted.innovations)
-    only_second = addition(problem, stages[0].fitted, stages[0].held_out, alone, second.effect, independent)
-    after = judge(problem, best.fitted, best.held_out, candidates_for(problem, best.fitted, variants))
-    return [
-        # Its rivals were those beside the first, which the companion has replaced.
-        Stage(stages[0].fitted, stages[0].held_out, stages[1].considered, only_second),
-        Stage(alone, held, (*companions, same), best),
-        Stage(best.fitted, best.held_out, tuple(after), None),
-    ]
 
 
 def one_for_another(problem: Problem, stages: list[Stage], _: Sequence[Variant]) -> list[Stage]:

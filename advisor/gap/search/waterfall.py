@@ -13,7 +13,6 @@ from advisor.gap.search.companions import (
     one_early,
     one_for_another,
     one_number_for_ice,
-    other_companion,
     other_description,
     two_in_place_of_one,
 )
@@ -44,7 +43,7 @@ def build_up(
 def reconsidered(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
     """Stages of the names that explain most together, in the order of what the whole loses without each."""
     replacements = (
-        other_description, other_companion, one_for_another, two_in_place_of_one, one_early,
+        other_description, one_for_another, two_in_place_of_one, one_early,
         one_number_for_ice, by_the_file,
     )  # fmt: skip
     for better in replacements:
