@@ -58,6 +58,26 @@ def test_a_late_channel_may_be_a_filtered_one_and_how_to_tell_is_said(late):
     assert "before any filter" in ways
 
 
+def test_what_other_derivatives_imitate_exactly_is_tied_with_them_whatever_the_file_says(late):
+    problem, _, judged = late
+    m_alpha_dot = next(v for v in variants_for(problem.flights) if v.effect == "alpha_dot")
+    names, ways = tied_with(replace(judged, variant=m_alpha_dot), [judged], ("alpha", "q", "a_z", "theta"))
+    assert "other derivatives of the pitching moment" in names
+    assert "trims level flight" in ways
+
+
+@pytest.mark.parametrize(("less", "tied"), [(0.05, True), (0.2, False)])
+def test_ice_that_explains_nearly_as_much_as_more_mass_is_tied_with_it(late, less, tied):
+    problem, _, judged = late
+    mass, ice = (
+        replace(judged, variant=next(v for v in variants_for(problem.flights) if v.effect == name), gain=gain)
+        for name, gain in (("mass_change", 1000.0), ("icing", 1000.0 * (1.0 - less)))
+    )
+    names, ways = tied_with(mass, [mass, ice], ("alpha", "q", "a_z", "theta"))
+    assert names == (("icing",) if tied else ())
+    assert ("fuel" in ways) == tied
+
+
 def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain_and_alone(late):
     *_, judged = late
     plain = replace(judged, with_the_air=True, gain=18.0, removed=20.0 * judged.least)

@@ -6,14 +6,18 @@ from advisor.gap.search.merit import Judged
 
 NEAR = 5.0
 """Difference of held-out log likelihood below which two explanations are a tie."""
-_TWINS = ({"alpha_vane_offset", "accelerometer_offset"}, {"alpha_lag", "alpha_skew"})
-"""Two arms that one measurement parts; and a vane's filter of second order is between a lag and a skew."""
+_TWINS = (
+    {"alpha_vane_offset", "accelerometer_offset"}, {"alpha_lag", "alpha_skew"}, {"mass_change", "icing"},
+)  # fmt: skip
+"""Two arms that one measurement parts; a vane's filter of second order is between a lag and a skew; and ice
+that takes the same share of everything is a heavier aircraft."""
 _LITTLE = 0.1
 _ARMS = "measure where the vane and the IMU sit: alpha.vane_arm_m, accelerometer.arm_m"
 _SURFACE = "log the measured surface position"
 _AMPLITUDES = "fly two amplitudes: a rate limit answers larger steps later"
 _SPEEDS = "fly at two air speeds: the arm's part goes with 1/V, the other does not"
 _WEIGHT = "log fuel and weight; ice moves lift and control by different shares"
+_TRIM = "see which elevator trims level flight at several speeds: there the angle of attack is steady"
 _REPEAT = "repeat the same manoeuvre at the same air speed, early and late"
 _FILTERED = frozenset({"pitch_rate_skew", "accelerometer_skew", "attitude_skew"})
 """Late channels that may as well be filtered ones; of the angle of attack that has a name of its own."""
@@ -70,6 +74,9 @@ def tied_with(best: Judged, others: Sequence[Judged], channels: Sequence[str]) -
     if best.effect == "alpha_scale" and "a_z" not in channels:
         names.append("Z_q of the model")
         ways.append("log the accelerometer (RAW_IMU) at 50 Hz")
+    if best.variant.twin is not None:
+        names.append("other derivatives of the pitching moment")
+        ways.append(_TRIM)
     if best.effect == "actuator_deadband":
         names.append("lower elevator effectiveness, at one amplitude")
         ways.append("fly two amplitudes")
