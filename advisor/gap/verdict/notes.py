@@ -7,6 +7,7 @@ import numpy as np
 from advisor.aircraft import Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.gap.candidates.known import left_aside
+from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.usable import why_left_out
 from advisor.gap.result import Verdict, spelled
@@ -17,6 +18,8 @@ from advisor.gap.verdict.text import place
 
 _ANOTHER_SPEED = 0.005
 """Relative: by less two ways of taking the mean differ."""
+_MATTERS = 0.3
+"""Gap that a simulator at constant speed must leave besides, to be worth a word."""
 _FEW = 6
 """Manoeuvres below which little can be told of what changes between them."""
 
@@ -32,6 +35,7 @@ def notes_of(
         *_of_the_hold_out(holdout, len(e.problem.flights)),
         _command(e),
         *_of_the_speed(e, aircraft),
+        *_of_a_constant_speed(e, verdict),
         *_of_the_unexplained(e, verdict),
         *_of_single_witnesses(e),
         *_of_the_air(e),
@@ -70,6 +74,19 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
         yield e.true_speed.sentence
     if e.weight is not None:
         yield e.weight.sentence
+
+
+def _of_a_constant_speed(e: Evidence, verdict: Verdict) -> Iterator[str]:
+    """What "like the aircraft" takes for granted where the speed moved."""
+    if verdict != "none" or e.constant_speed is None or not e.problem.flights.speed_measured:
+        return
+    constant, given = (whole_gap(h.mean_square, e.floor) for h in (e.constant_speed, e.stages[-1].held_out))
+    if constant - given > _MATTERS:
+        percent = 100.0 * e.problem.flights.speed_moves
+        yield (
+            f"The simulator was given the air speed of the log, which moved by up to {percent:.0f} %: "
+            f"one at constant speed would leave a gap of {constant:.1f}."
+        )
 
 
 def _without_air_speed(flights: Flights, is_known: bool) -> str:
