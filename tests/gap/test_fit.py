@@ -127,6 +127,23 @@ def test_a_simulator_without_the_delay_pays_for_the_edges_it_shifts():
     assert price_of_edges(problem, right) < price_of_edges(problem, plain) - 10.0
 
 
+def test_a_search_ends_where_no_shift_of_time_leaves_less_though_edges_lie_far_from_their_stamps():
+    """Answers to the edges of a command logged 25 times a second shift with it, by as much as noise shows."""
+    early = Setup(maneuvers=4, rate_hz=25.0, noise=0.003, skew={"a_z": -0.02}, seed=2)
+    problem, plain = fit_baseline(prepare(fly(early), Aircraft()), Aircraft())
+    skew = next(v for v in variants_for(problem.flights) if v.effect == "accelerometer_skew")
+    begun = [plain.point.with_effect(skew, (skew_s,)) for skew_s in (-0.02, 0.01)]
+    near, far = (fit(problem, point, plain.noise, 30, 0.01) for point in begun)
+    assert near.cost == pytest.approx(far.cost, abs=0.5)
+    assert near.point.values[-1] == pytest.approx([-0.02], abs=0.001)
+    latency = len(plain.point.derivatives)
+    for later_s in (-0.0003, 0.0003):
+        shared = near.point.shared.copy()
+        shared[latency] += later_s
+        there = fit(problem, near.point.moved(shared, near.point.own), near.noise, iterations=1)
+        assert there.cost > near.cost + 1.0
+
+
 def test_only_a_time_has_the_error_of_a_grid_of_time_in_its_size(settled):
     problem, _ = settled
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.linear import Linear, linearise
+from advisor.gap.fitting.linear import Linear, linearise, with_moved_edges
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
 from advisor.gap.fitting.step import Step, solve_blocks
 from advisor.gap.simulator.layout import NUISANCES
@@ -99,10 +99,12 @@ def fit(
     aside
         Manoeuvres that have no say: the cost is that of the others.
     """
-    point = start
-    linear = _without(linearise(problem, point), aside)
+    unmoved = linearise(problem, start)
+    linear = _without(unmoved, aside)
     weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
-    kept = _settled(problem, point, linear, weights)
+    kept = _settled(problem, start, linear, weights)
+    linear = _without(with_moved_edges(problem, start, unmoved, kept.step.free), aside)
+    kept = _settled(problem, start, linear, kept.weights)
     length, done = 1.0, 1
     while done < iterations and length > _SHORTEST:
         change = length * kept.step.shared
@@ -113,7 +115,7 @@ def fit(
         point = kept.point.moved(
             kept.point.shared + change, kept.point.own + np.array([o[: len(NUISANCES)] for o in owns])
         )
-        linear = _without(linearise(problem, point), aside)
+        linear = _without(with_moved_edges(problem, point, linearise(problem, point), owns), aside)
         here = _settled(problem, point, linear, kept.weights)
         done += 1
         if here.cost < kept.cost:

@@ -1,6 +1,7 @@
 """The model about a point: sensitivities to shared numbers and to each manoeuvre's own."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -9,7 +10,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.flights import Flight
 from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUTS, SPEED
-from advisor.gap.simulator.reading import differences, lane
+from advisor.gap.simulator.reading import differences, lane, packed, superposed
 
 _DERIVATIVE_STEP = 1e-3
 """Finite-difference step of a derivative, relative to its size: far above rounding, far below curvature."""
@@ -18,6 +19,8 @@ _OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
 _SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
 _SPEED_STEP = 1e-3
 """Of the air speed, relative."""
+_TIMES = frozenset({"latency_s", "delay_s", "skew_s"})
+"""Numbers that shift the answer to an edge as a whole."""
 _PULSE = 1e-4
 """Area of the disturbance by which a response to a pulse is found."""
 _EDGE_VARIANCE = 1.0 / 12.0
@@ -35,6 +38,8 @@ class Columns:
     columns: FloatArray
     """Shape (rows, m + k + 1): own, shared, left."""
     m: int
+    pulse: FloatArray
+    """Shape (4, n + 1): the response on the grid to an edge of unit area that is moved at the start."""
 
     @property
     def own(self) -> FloatArray:
@@ -89,7 +94,7 @@ def _stepped(step: FloatArray, own: FloatArray) -> FloatArray:
 def as_measured(block: Linear) -> Linear:
     """The same without a filter: in the units of the channels."""
     raw = block.measured
-    return Linear(raw.columns, raw.m, block.prior, raw, block.channels)
+    return Linear(raw.columns, raw.m, raw.pulse, block.prior, raw, block.channels)
 
 
 def shared_steps(point: Point) -> FloatArray:
@@ -137,28 +142,31 @@ def measured_columns(
     left, shared, answers = seen[:, :1], seen[:, 1 : k + 1], seen[:, k + 1 :]
     own, speeds = answers[:, : len(NUISANCES)], answers[:, len(NUISANCES) :]
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
-    late = p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
-    begin = flight.edges[:, 0] + late
+    doubts, edges = speeds @ flight.speed_doubt, _answers_to_edges(problem, flight, pulse, p)
+    columns = np.hstack([own, _offsets(problem, flight), doubts, edges, shared, left])
+    return Columns(columns, columns.shape[1] - k - 1, pulse)
+
+
+def _answers_to_edges(problem: Problem, flight: Flight, pulse: FloatArray, p: FloatArray) -> FloatArray:
+    """Shape (rows, edges): what a shift of each edge by its interval changes."""
+    delays, areas = _pulses(problem, flight, p)
+    parts = [problem.read_delayed(flight, pulse, begin, p) * areas for begin in delays]
+    return np.asarray(sum(parts))
+
+
+def _pulses(problem: Problem, flight: Flight, p: FloatArray) -> tuple[list[FloatArray], FloatArray]:
+    """Where the pulses are that a shift of each edge by its interval is like, and the area of each.
+
+    That is one pulse at the edge. A servo at its limit runs on after it, and is later all that time.
+    """
+    begin = flight.edges[:, 0] + p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
     if problem.held:
         begin += 0.5 * (flight.edges[:, 2] - flight.edges[:, 3])
-    doubts, edges = speeds @ flight.speed_doubt, _answers_to_edges(problem, flight, pulse, begin, p)
-    columns = np.hstack([own, _offsets(problem, flight), doubts, edges, shared, left])
-    return Columns(columns, columns.shape[1] - k - 1)
-
-
-def _answers_to_edges(
-    problem: Problem, flight: Flight, pulse: FloatArray, begin: FloatArray, p: FloatArray
-) -> FloatArray:
-    """Shape (rows, edges): what a shift of each edge by its interval changes.
-
-    That is a pulse at the edge. A servo at its limit runs on after it, and is later all that time.
-    """
     area, interval = flight.edges[:, 1], flight.edges[:, 2]
     longer = np.maximum(np.abs(area / interval) * p[INDEX["slowness_s_rad"]] - interval, 0.0)
     if not np.any(longer > 0.0):
-        return problem.read_delayed(flight, pulse, begin, p) * area
-    parts = [problem.read_delayed(flight, pulse, begin + share * longer, p) for share in _SHARES]
-    return np.asarray(sum(parts) * area / len(_SHARES))
+        return [begin], area
+    return [begin + share * longer for share in _SHARES], area / len(_SHARES)
 
 
 def _offsets(problem: Problem, flight: Flight) -> FloatArray:
@@ -216,5 +224,41 @@ def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:
         measured = measured_columns(problem, i, p[i], shifted[i], steps)
         prior = _own_prior(problem, flight, measured.m)
         columns = problem.innovations(i, measured.columns)
-        blocks.append(Linear(columns, measured.m, prior, measured, tuple(problem.rows(flight))))
+        blocks.append(
+            Linear(columns, measured.m, measured.pulse, prior, measured, tuple(problem.rows(flight)))
+        )
     return tuple(blocks)
+
+
+def with_moved_edges(
+    problem: Problem, point: Point, linear: Sequence[Linear], owns: Sequence[FloatArray]
+) -> tuple[Linear, ...]:
+    """The same with what a time changes of the answers to edges that are moved as the own numbers say.
+
+    The answers are those of unmoved edges. Where edges lie far from there (a command that is logged 25 times
+    a second), a search that took the answers to stay while a delay or a skew changes would go astray, and end
+    where its gradient vanishes and the cost's does not.
+    """
+    p, steps = problem.driving(point), shared_steps(point)
+    times = [k for k, name in enumerate(point.names) if name in _TIMES]
+    shifted = [problem.driving(shifted_points(point, range(k, k + 1))[0]) for k in times]
+    blocks = []
+    for i, (flight, block, own) in enumerate(zip(problem.flights.flights, linear, owns, strict=True)):
+        rows = np.stack([p[i], *(there[i] for there in shifted)])
+        moved = own[len(own) - len(flight.edges) :]
+        courses = [_course_of(problem, flight, block.pulse, moved, row) for row in rows]
+        read = problem.read_all(flight, packed(courses), rows)
+        turned = (read[:, 1:] - read[:, :1]) / steps[times]
+        raw, white, at = block.measured.columns.copy(), block.columns.copy(), [block.m + k for k in times]
+        raw[:, at] += turned
+        white[:, at] += problem.innovations(i, turned)
+        blocks.append(replace(block, columns=white, measured=replace(block.measured, columns=raw)))
+    return tuple(blocks)
+
+
+def _course_of(
+    problem: Problem, flight: Flight, pulse: FloatArray, moved: FloatArray, p: FloatArray
+) -> FloatArray:
+    """What edges change that are moved by shares of their intervals, on the grid, shape (4, n + 1)."""
+    delays, areas = _pulses(problem, flight, p)
+    return np.asarray(sum(superposed(pulse, flight.h, begin, areas * moved) for begin in delays))

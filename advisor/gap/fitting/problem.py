@@ -41,6 +41,11 @@ class Point:
         """All shared numbers as one vector: derivatives, then parameters of effects."""
         return np.concatenate([self.derivatives, *self.values])
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the shared numbers, in their order."""
+        return (*DERIVATIVES, *(name for effect in self.effects for name in effect.names))
+
     def moved(self, shared: FloatArray, own: FloatArray) -> "Point":
         """The same model elsewhere."""
         ends = accumulate((len(effect.names) for effect in self.effects), initial=len(self.derivatives))

@@ -97,6 +97,22 @@ def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
 
 
 @njit(cache=True, error_model="numpy")
+def superposed(response: FloatArray, h: float, delays: FloatArray, weights: FloatArray) -> FloatArray:
+    """The sum of the responses that ``delayed`` gives, each by its weight, shape (4, n + 1)."""
+    n = response.shape[1]
+    out = np.zeros((4, n))
+    for j in range(len(delays)):
+        steps = max(delays[j], 0.0) / h
+        first = int(steps)
+        part = steps - first
+        for c in range(4):
+            for i in range(first, n):
+                before = response[c, i - first - 1] if i > first else 0.0
+                out[c, i] += weights[j] * ((1.0 - part) * response[c, i - first] + part * before)
+    return out
+
+
+@njit(cache=True, error_model="numpy")
 def _passed(out: complex, before: complex, here: complex, steps: complex, decay: complex) -> complex:
     """What a pole passes on at the end of a step in which its input moves linearly."""
     trail = steps * (here - before)
