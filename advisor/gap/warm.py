@@ -4,16 +4,17 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.gap.foresight.plan import foresee_plan
-from advisor.gap.simulator.reading import differences, filtered
+from advisor.gap.simulator.reading import differences, filtered, superposed
 
 _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -50.0), strict=True))
 
 
 def warm_up() -> None:
-    """Foresee a tiny plan, compare and filter some samples: this runs through all that is compiled here."""
+    """Foresee a tiny plan, compare, sum and filter some samples: this runs through all that is compiled here."""
     foresee_plan(Aircraft(model=_ANY_AIRCRAFT), ("pulse", "pulse"), 50.0, 1.0)
     none = np.zeros(2, dtype=np.int64)
     differences(np.ones((4, 2)), np.ones(4), none, np.ones(2))
+    superposed(np.ones((4, 4)), 0.005, np.ones(2), np.ones(2))
     filtered(np.ones((1, 4, 4, 2)), 0.005, none, np.asfortranarray(np.ones((2, 3))))
 
 
