@@ -104,7 +104,7 @@ def fit(
     weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
     kept = _settled(problem, start, linear, weights)
     linear = _without(with_moved_edges(problem, start, unmoved, kept.step.free), aside)
-    kept = _settled(problem, start, linear, kept.weights)
+    kept = replace(kept, linear=linear, step=solve_blocks(problem, linear, kept.weights, start))
     length, done = 1.0, 1
     while done < iterations and length > _SHORTEST:
         change = length * kept.step.shared
