@@ -238,6 +238,13 @@ def with_moved_edges(
     The answers are those of unmoved edges. Where edges lie far from there (a command that is logged 25 times
     a second), a search that took the answers to stay while a delay or a skew changes would go astray, and end
     where its gradient vanishes and the cost's does not.
+
+    Parameters
+    ----------
+    linear
+        Of every manoeuvre, about ``point``, as ``linearise`` returns them.
+    owns
+        Per manoeuvre, shape (m,): own numbers, the edges last, in intervals.
     """
     p, steps = problem.driving(point), shared_steps(point)
     times = [k for k, name in enumerate(point.names) if name in _TIMES]
