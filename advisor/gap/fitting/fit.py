@@ -12,10 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.linear import Linear, linearise, with_moved_edges
+from advisor.gap.fitting.linear import Linear, linearise
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
 from advisor.gap.fitting.step import Step, solve_blocks
-from advisor.gap.simulator.layout import NUISANCES
 
 _SETTLED = 0.02
 """Relative change of the weights below which they and the own numbers have settled together."""
@@ -25,6 +24,9 @@ _SHORTEST = 0.05
 """... but not below this: the cost is rough at the grid of the simulation."""
 _FURTHER = 5.0
 """How many times what a step promises the rest of a search may still bring."""
+_APART = 0.05
+"""Of an interval, root mean square: where edges are found so far from where they were, the model is made
+linear about there before a search ends."""
 
 
 @dataclass(frozen=True)
@@ -99,23 +101,18 @@ def fit(
     aside
         Manoeuvres that have no say: the cost is that of the others.
     """
-    unmoved = linearise(problem, start)
-    linear = _without(unmoved, aside)
+    linear = _without(linearise(problem, start), aside)
     weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
     kept = _settled(problem, start, linear, weights)
-    linear = _without(with_moved_edges(problem, start, unmoved, kept.step.free), aside)
-    kept = replace(kept, linear=linear, step=solve_blocks(problem, linear, kept.weights, start))
     length, done = 1.0, 1
     while done < iterations and length > _SHORTEST:
         change = length * kept.step.shared
         promised = kept.step.promised(change)
-        if promised < tolerance or kept.cost - _FURTHER * promised > beaten_by:
+        if (promised < tolerance and kept.has_its_edges) or kept.cost - _FURTHER * promised > beaten_by:
             break
-        owns = kept.step.owns(change)
-        point = kept.point.moved(
-            kept.point.shared + change, kept.point.own + np.array([o[: len(NUISANCES)] for o in owns])
-        )
-        linear = _without(with_moved_edges(problem, point, linearise(problem, point), owns), aside)
+        point = kept.point.moved(kept.point.shared + change, kept.point.own)
+        point = problem.with_own(point, kept.step.owns(change))
+        linear = _without(linearise(problem, point), aside)
         here = _settled(problem, point, linear, kept.weights)
         done += 1
         if here.cost < kept.cost:
@@ -128,6 +125,14 @@ def fit(
     )
     information = solve_blocks(problem, kept.linear, 1.0 / kept.noise, kept.point).information
     return Fitted(kept.point, kept.noise, kept.cost, kept.left, measured, information, kept.linear, done)
+
+
+def _are_apart(one: Point, other: Point) -> bool:
+    """Whether edges of two points differ, those that are not known being at their stamps."""
+    assert other.edges is not None
+    there = np.concatenate(other.edges)
+    apart = there if one.edges is None else there - np.concatenate(one.edges)
+    return float(np.sum(apart**2)) > _APART**2 * len(apart)
 
 
 def _without(linear: tuple[Linear, ...], aside: Collection[int]) -> tuple[Linear, ...]:
@@ -145,6 +150,9 @@ class _Place:
     """A point that was flown, with the step from there."""
 
     point: Point
+    """With the edges where they are found from there."""
+    has_its_edges: bool
+    """Whether they are about where the model was made linear."""
     linear: tuple[Linear, ...]
     weights: FloatArray
     """Shape (channels,): of the model after the step."""
@@ -165,7 +173,10 @@ def _settled(problem: Problem, point: Point, linear: tuple[Linear, ...], weights
             break
     left = tuple(block.left - block.own @ own for block, own in zip(linear, step.free, strict=True))
     cost = cost_of(problem, point, left, step.free, linear)
-    return _Place(point, linear, weights, step, left, noise_of(problem, left), cost)
+    there = replace(point, edges=problem.with_own(point, step.free).edges)
+    return _Place(
+        there, not _are_apart(point, there), linear, weights, step, left, noise_of(problem, left), cost
+    )
 
 
 def evidence_of(problem: Problem, fitted: Fitted) -> float:

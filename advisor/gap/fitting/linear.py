@@ -1,7 +1,7 @@
 """The model about a point: sensitivities to shared numbers and to each manoeuvre's own."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -38,8 +38,6 @@ class Columns:
     columns: FloatArray
     """Shape (rows, m + k + 1): own, shared, left."""
     m: int
-    pulse: FloatArray
-    """Shape (4, n + 1): the response on the grid to an edge of unit area that is moved at the start."""
 
     @property
     def own(self) -> FloatArray:
@@ -94,7 +92,7 @@ def _stepped(step: FloatArray, own: FloatArray) -> FloatArray:
 def as_measured(block: Linear) -> Linear:
     """The same without a filter: in the units of the channels."""
     raw = block.measured
-    return Linear(raw.columns, raw.m, raw.pulse, block.prior, raw, block.channels)
+    return Linear(raw.columns, raw.m, block.prior, raw, block.channels)
 
 
 def shared_steps(point: Point) -> FloatArray:
@@ -110,7 +108,13 @@ def shifted_points(point: Point, which: range) -> list[Point]:
 
 
 def measured_columns(
-    problem: Problem, i: int, p: FloatArray, shifted: FloatArray, steps: FloatArray
+    problem: Problem,
+    i: int,
+    p: FloatArray,
+    shifted: FloatArray,
+    steps: FloatArray,
+    edges: FloatArray | None,
+    times: Sequence[int],
 ) -> Columns:
     """Manoeuvre ``i`` in the units of its channels; sensitivities are one-sided differences.
 
@@ -125,6 +129,10 @@ def measured_columns(
         Shape (k, entries): the same with each of the shared numbers moved by its step ...
     steps
         ... shape (k,).
+    edges
+        Shape (edges,): where the command's are, or None if their answers are not looked at ...
+    times
+        ... which of the shared numbers shift them.
     """
     flight, k = problem.flights.flights[i], len(steps)
     names = (*NUISANCES, *_SPEEDS[: len(flight.speed_doubt)])
@@ -142,9 +150,13 @@ def measured_columns(
     left, shared, answers = seen[:, :1], seen[:, 1 : k + 1], seen[:, k + 1 :]
     own, speeds = answers[:, : len(NUISANCES)], answers[:, len(NUISANCES) :]
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
-    doubts, edges = speeds @ flight.speed_doubt, _answers_to_edges(problem, flight, pulse, p)
-    columns = np.hstack([own, _offsets(problem, flight), doubts, edges, shared, left])
-    return Columns(columns, columns.shape[1] - k - 1, pulse)
+    if edges is not None:
+        with_them = rows[[0, *(1 + k for k in times)]]
+        shared[:, times] += _turned(problem, flight, pulse, edges, with_them) / steps[times]
+    answers_to_edges = _answers_to_edges(problem, flight, pulse, p)
+    doubts = speeds @ flight.speed_doubt
+    columns = np.hstack([own, _offsets(problem, flight), doubts, answers_to_edges, shared, left])
+    return Columns(columns, columns.shape[1] - k - 1)
 
 
 def _answers_to_edges(problem: Problem, flight: Flight, pulse: FloatArray, p: FloatArray) -> FloatArray:
@@ -216,56 +228,36 @@ def unit_pulse(flight: Flight, where: int, lag_s: float = 0.0) -> FloatArray:
 
 
 def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:
-    """The whole model made linear about a point."""
-    p, steps = problem.driving(point), shared_steps(point)
-    shifted = np.stack([problem.driving(moved) for moved in shifted_points(point, range(len(steps)))], axis=1)
-    blocks = []
-    for i, flight in enumerate(problem.flights.flights):
-        measured = measured_columns(problem, i, p[i], shifted[i], steps)
-        prior = _own_prior(problem, flight, measured.m)
-        columns = problem.innovations(i, measured.columns)
-        blocks.append(
-            Linear(columns, measured.m, measured.pulse, prior, measured, tuple(problem.rows(flight)))
-        )
-    return tuple(blocks)
+    """The whole model made linear about a point.
 
-
-def with_moved_edges(
-    problem: Problem, point: Point, linear: Sequence[Linear], owns: Sequence[FloatArray]
-) -> tuple[Linear, ...]:
-    """The same with what a time changes of the answers to edges that are moved as the own numbers say.
-
-    The answers are those of unmoved edges. Where edges lie far from there (a command that is logged 25 times
-    a second), a search that took the answers to stay while a delay or a skew changes would go astray, and end
-    where its gradient vanishes and the cost's does not.
-
-    Parameters
-    ----------
-    linear
-        Of every manoeuvre, about ``point``, as ``linearise`` returns them.
-    owns
-        Per manoeuvre, shape (m,): own numbers, the edges last, in intervals.
+    Where edges lie far from their stamps (a command that is logged 25 times a second), a search that took the
+    answers to them to stay while a delay or a skew changes would go astray, and end where its gradient
+    vanishes and the cost's does not.
     """
     p, steps = problem.driving(point), shared_steps(point)
+    shifted = np.stack([problem.driving(moved) for moved in shifted_points(point, range(len(steps)))], axis=1)
     times = [k for k, name in enumerate(point.names) if name in _TIMES]
-    shifted = [problem.driving(shifted_points(point, range(k, k + 1))[0]) for k in times]
     blocks = []
-    for i, (flight, block, own) in enumerate(zip(problem.flights.flights, linear, owns, strict=True)):
-        rows = np.stack([p[i], *(there[i] for there in shifted)])
-        moved = own[len(own) - len(flight.edges) :]
-        courses = [_course_of(problem, flight, block.pulse, moved, row) for row in rows]
-        read = problem.read_all(flight, packed(courses), rows)
-        turned = (read[:, 1:] - read[:, :1]) / steps[times]
-        raw, white, at = block.measured.columns.copy(), block.columns.copy(), [block.m + k for k in times]
-        raw[:, at] += turned
-        white[:, at] += problem.innovations(i, turned)
-        blocks.append(replace(block, columns=white, measured=replace(block.measured, columns=raw)))
+    for i, flight in enumerate(problem.flights.flights):
+        moved = None if point.edges is None or not times else point.edges[i]
+        measured = measured_columns(problem, i, p[i], shifted[i], steps, moved, times)
+        prior = _own_prior(problem, flight, measured.m)
+        columns = problem.innovations(i, measured.columns)
+        blocks.append(Linear(columns, measured.m, prior, measured, tuple(problem.rows(flight))))
     return tuple(blocks)
 
 
-def _course_of(
-    problem: Problem, flight: Flight, pulse: FloatArray, moved: FloatArray, p: FloatArray
+def _turned(
+    problem: Problem, flight: Flight, pulse: FloatArray, edges: FloatArray, rows: FloatArray
 ) -> FloatArray:
-    """What edges change that are moved by shares of their intervals, on the grid, shape (4, n + 1)."""
-    delays, areas = _pulses(problem, flight, p)
-    return np.asarray(sum(superposed(pulse, flight.h, begin, areas * moved) for begin in delays))
+    """Shape (channel rows, k - 1): what the answers to moved edges change from the first of ``rows`` on.
+
+    ``rows`` has shape (k, entries): with what the simulation is driven, and with a time moved by its step.
+    """
+    courses = []
+    for p in rows:
+        delays, areas = _pulses(problem, flight, p)
+        parts = [superposed(pulse, flight.h, begin, areas * edges) for begin in delays]
+        courses.append(np.asarray(sum(parts)))
+    read = problem.read_all(flight, packed(courses), rows)
+    return read[:, 1:] - read[:, :1]

@@ -125,7 +125,7 @@ class Neighbourhood:
         squares, prior = np.zeros((len(self.count), len(asked))), np.zeros(len(asked))
         JX = np.zeros((len(self.information), width))
         XX = np.zeros((width, width))
-        owns = np.empty((len(asked), *self.fitted.point.own.shape))
+        owns: list[FloatArray] = []
         for i, kept in enumerate(self.kept):
             X = self._seen(i, asked, width, failed)
             AX = kept.A.T @ X
@@ -135,14 +135,16 @@ class Neighbourhood:
             after = (X[:, firsts] - kept.A @ own) / kept.weights[:, None]
             squares += [np.sum(after[rows] ** 2, axis=0) for rows in problem.rows(kept.flight)]
             prior += self.fitted.linear[i].prior @ own**2
-            owns[:, i] = own[: owns.shape[2]].T
+            owns.append(own.T)
             XX += X.T @ X - AX.T @ GX
         noise = above_floor(problem, np.sqrt(squares / np.maximum(self.count, 1.0)[:, None]).T)
         costs = 2.0 * np.log(noise) @ self.count + prior
         return [
             None
             if failed[j]
-            else self._place(a, costs[j], noise[j], owns[j], JX[:, a.columns], XX[a.columns, a.columns])
+            else self._place(
+                a, costs[j], noise[j], [own[j] for own in owns], JX[:, a.columns], XX[a.columns, a.columns]
+            )
             for j, a in enumerate(asked)
         ]
 
@@ -158,7 +160,13 @@ class Neighbourhood:
         return _Asked(point, p, shifted, steps, changes, flown, moved, first)
 
     def _place(
-        self, a: _Asked, cost: float, noise: FloatArray, own: FloatArray, JX: FloatArray, XX: FloatArray
+        self,
+        a: _Asked,
+        cost: float,
+        noise: FloatArray,
+        owns: Sequence[FloatArray],
+        JX: FloatArray,
+        XX: FloatArray,
     ) -> Place:
         pull, missed = self.problem.pull(a.point)
         known = len(self.information)
@@ -168,7 +176,7 @@ class Neighbourhood:
         H[known:, :known] += JX[:, 1:].T
         H[known:, known:] += XX[1:, 1:]
         g += np.concatenate([JX[:, 0], XX[1:, 0]])
-        there = a.point.moved(a.point.shared, a.point.own + own)
+        there = self.problem.with_own(a.point, owns)
         return Place(there, float(cost + pull @ missed**2), noise, H, g)
 
     def _seen(self, i: int, asked: Sequence[_Asked], width: int, failed: np.ndarray) -> FloatArray:

@@ -35,6 +35,9 @@ class Point:
     """Parameters of each effect."""
     sides: FloatArray | None = None
     """Shape (manoeuvres,): the side chosen in each manoeuvre, for an effect that has sides."""
+    edges: tuple[FloatArray, ...] | None = None
+    """Per manoeuvre, shape (edges,): where each edge of the command is, in intervals from its stamps. What
+    that changes is linear, and not simulated; but times shift the answers to edges, too."""
 
     @property
     def shared(self) -> FloatArray:
@@ -119,6 +122,17 @@ class Problem:
     def channels(self) -> tuple[str, ...]:
         """Outputs that are compared."""
         return self.flights.channels
+
+    def with_own(self, point: Point, owns: Sequence[FloatArray]) -> Point:
+        """The point after a step of the manoeuvres' own numbers, each of shape (m,).
+
+        Initial states and trim terms come first; the edges, where they are rather than by how much they move,
+        last.
+        """
+        n = point.own.shape[1]
+        found = zip(owns, self.flights.flights, strict=True)
+        edges = tuple(own[len(own) - len(flight.edges) :] for own, flight in found)
+        return replace(point, own=point.own + np.array([own[:n] for own in owns]), edges=edges)
 
     def pull(self, point: Point) -> tuple[FloatArray, FloatArray]:
         """Inverse variances with which shared numbers are drawn to what is expected, and what they lack.
