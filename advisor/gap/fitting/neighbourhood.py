@@ -15,7 +15,7 @@ from advisor.gap.fitting.fit import Fitted, above_floor
 from advisor.gap.fitting.linear import shared_steps, shifted_points
 from advisor.gap.fitting.normal import solved, solved_within
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
-from advisor.gap.fitting.step import bounds_of, factor
+from advisor.gap.fitting.step import bounds_of, factor_of
 from advisor.gap.records.flights import Flight
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.reading import differences
@@ -54,15 +54,37 @@ class _Kept:
     measured: FloatArray
     """... and what would have been measured, were the fitted model right but for what it leaves."""
     weights: FloatArray
-    still: FloatArray
-    """Shape (rows, 7): sensitivities to the derivatives, and what the fit left, own numbers not refitted:
-    what is known without a flight."""
-    A: FloatArray
-    """Own columns, shape (rows, m) ..."""
-    J: FloatArray
-    """... and shared ones, shape (rows, k)."""
+    """Shape (rows,)."""
+    columns: FloatArray
+    """Shape (rows, m + k + 1): own, shared, and what the fit left, own numbers not refitted ..."""
+    products: FloatArray
+    """... shape (channels, m + k + 1, m + k + 1): their inner products, by channel ..."""
+    inner: FloatArray
+    """... and over all."""
+    m: int
     chol: FloatArray
-    AJ: FloatArray
+
+    @property
+    def own(self) -> FloatArray:
+        """Shape (rows, m)."""
+        return self.columns[:, : self.m]
+
+    @property
+    def still(self) -> list[int]:
+        """Columns that are known without a flight: of the derivatives, and what was left."""
+        return [*range(self.m, self.m + len(DERIVATIVES)), self.columns.shape[1] - 1]
+
+
+@dataclass(frozen=True)
+class _Flown:
+    """Of one manoeuvre, of many points: the columns that had to be flown."""
+
+    columns: FloatArray
+    """Shape (rows, flown): weighted innovations and their sensitivities ..."""
+    at: list[int]
+    """... and where they stand among all."""
+    points: list[tuple[int, slice]]
+    """Which point each run of them belongs to: first what is left, then sensitivities."""
 
 
 @dataclass(frozen=True)
@@ -103,16 +125,15 @@ class Neighbourhood:
         k = len(fitted.point.shared)
         self.information = np.zeros((k, k))
         for i, (flight, block) in enumerate(zip(problem.flights.flights, fitted.linear, strict=True)):
-            w = row_weights(problem, i, weights)
-            A, J = block.own * w[:, None], block.shared * w[:, None]
-            chol = factor(A, block.prior)
-            AJ = A.T @ J
-            self.information += J.T @ J - AJ.T @ solved(chol, AJ)
-            r = block.left * w
-            still = np.column_stack([J[:, : len(DERIVATIVES)], r])
-            coarser = flight.coarser()
+            coarser, by_row, m = flight.coarser(), row_weights(problem, i, weights), block.m
             measured = problem.fly_and_read(coarser, self.p[i : i + 1])[:, 0] + block.measured.left
-            self.kept.append(_Kept(coarser, measured, w, still, A, J, chol, AJ))
+            products = block.products * weights[:, None, None] ** 2
+            inner = np.sum(products, axis=0)
+            chol = factor_of(inner[:m, :m].copy(), block.prior)
+            across = inner[:m, m : m + k]
+            self.information += inner[m : m + k, m : m + k] - across.T @ solved(chol, across)
+            columns = block.columns * by_row[:, None]
+            self.kept.append(_Kept(coarser, measured, by_row, columns, products, inner, m, chol))
 
     def at_all(self, points: Sequence[Point]) -> list[Place | None]:
         """Fly to every point, the manoeuvres' own numbers refitted; None where a simulation fails."""
@@ -127,16 +148,23 @@ class Neighbourhood:
         XX = np.zeros((width, width))
         owns: list[FloatArray] = []
         for i, kept in enumerate(self.kept):
-            X = self._seen(i, asked, width, failed)
-            AX = kept.A.T @ X
+            still = _still(i, asked, width)
+            flown = self._flown(i, asked, failed)
+            along = np.array(
+                [kept.columns[rows].T @ flown.columns[rows] for rows in problem.rows(kept.flight)]
+            )
+            # Of what is known without a flight inner products with all columns are known, too.
+            CX = kept.inner[:, kept.still] @ still
+            CX[:, flown.at] = np.sum(along, axis=0)
+            m, shared = kept.m, slice(kept.m, kept.m + len(JX))
+            AX = CX[:m]
             GX = solved(kept.chol, AX)
-            JX += kept.J.T @ X - kept.AJ.T @ GX
+            JX += CX[shared] - kept.inner[:m, shared].T @ GX
+            XX += _with_one_another(still, CX[kept.still], flown) - AX.T @ GX
             own = GX[:, firsts]
-            after = (X[:, firsts] - kept.A @ own) / kept.weights[:, None]
-            squares += [np.sum(after[rows] ** 2, axis=0) for rows in problem.rows(kept.flight)]
             prior += self.fitted.linear[i].prior @ own**2
+            squares += self._squares(kept, flown, along, own)
             owns.append(own.T)
-            XX += X.T @ X - AX.T @ GX
         noise = above_floor(problem, np.sqrt(squares / np.maximum(self.count, 1.0)[:, None]).T)
         costs = 2.0 * np.log(noise) @ self.count + prior
         return [
@@ -147,6 +175,22 @@ class Neighbourhood:
             )
             for j, a in enumerate(asked)
         ]
+
+    def _squares(self, kept: _Kept, flown: _Flown, along: FloatArray, own: FloatArray) -> FloatArray:
+        """Shape (channels, points): sums of squares of what is left in one manoeuvre, own numbers refitted.
+
+        ``along`` has the inner products of the kept columns with those that were flown, by channel.
+        """
+        m, points = kept.m, own.shape[1]
+        Ar = np.repeat(kept.products[:, :m, -1:], points, axis=2)
+        rr = np.repeat(kept.products[:, -1, -1:], points, axis=1)
+        of, begin = [j for j, _ in flown.points], [run.start for _, run in flown.points]
+        Ar[:, :, of] = along[:, :m, begin]
+        rows = self.problem.rows(kept.flight)
+        left = flown.columns[:, begin]
+        rr[:, of] = [np.einsum("ij,ij->j", left[r], left[r]) for r in rows]
+        after = rr + np.sum(own * (kept.products[:, :m, :m] @ own - 2.0 * Ar), axis=1)
+        return np.asarray(np.maximum(after, 0.0) * self.fitted.noise[:, None] ** 2)
 
     def _asked(self, point: Point, first: int) -> _Asked:
         known, k = len(self.information), len(DERIVATIVES)
@@ -179,39 +223,33 @@ class Neighbourhood:
         there = self.problem.with_own(a.point, owns)
         return Place(there, float(cost + pull @ missed**2), noise, H, g)
 
-    def _seen(self, i: int, asked: Sequence[_Asked], width: int, failed: np.ndarray) -> FloatArray:
-        """Weighted innovations of manoeuvre ``i`` and their sensitivities, shape (rows, width).
+    def _flown(self, i: int, asked: Sequence[_Asked], failed: np.ndarray) -> _Flown:
+        """What of manoeuvre ``i`` must be flown.
 
         A change of derivatives from one manoeuvre to the next is a sum of sensitivities known already,
         and none at all in manoeuvres it does not touch: nothing is flown for it.
         """
         problem, kept = self.problem, self.kept[i]
-        k = len(DERIVATIVES)
-        still = np.zeros((k + 1, width))
         rows: list[FloatArray] = []
-        begun, base, columns, step = [], [], [], []
+        base, step, at, points = [], [], [], []
         for j, a in enumerate(asked):
-            still[k, a.first] = 1.0
-            still[:k, a.first + 1 : a.columns.stop] = a.changes[:, i].T
             if not a.moved[i]:
                 continue
             flown = np.flatnonzero(a.flown[:, i])
-            begun.append((j, len(rows)))
+            points.append((j, slice(len(rows), len(rows) + 1 + len(flown))))
             base += [len(rows)] * (1 + len(flown))
-            columns += [a.first, *(a.first + 1 + flown)]
+            at += [a.first, *(a.first + 1 + flown)]
             step += [0.0, *a.steps[flown]]
             rows += [a.p[i], *a.shifted[flown, i]]
-        X = np.asarray(kept.still @ still)
         if not rows:
-            return X
+            return _Flown(np.zeros((len(kept.weights), 0)), at, points)
         read = problem.fly_and_read(kept.flight, np.array(rows))
         finite = np.isfinite(np.sum(read, axis=0))
         read[:, ~finite] = 0.0
-        for j, at in begun:
-            failed[j] |= not finite[at]
+        for j, run in points:
+            failed[j] |= not finite[run.start]
         raw = differences(read, kept.measured, np.array(base), np.array(step))
-        X[:, columns] = problem.innovations(i, raw) * kept.weights[:, None]
-        return X
+        return _Flown(problem.innovations(i, raw) * kept.weights[:, None], at, points)
 
     def choose_sides(self, point: Point, entries: Sequence[float]) -> Point:
         """In every manoeuvre the side that leaves least, own numbers refitted."""
@@ -222,8 +260,32 @@ class Neighbourhood:
             rows = np.stack([q[i] for q in p])
             left = kept.measured[:, None] - problem.fly_and_read(kept.flight, rows)
             r = problem.innovations(i, left) * kept.weights[:, None]
-            Ar = kept.A.T @ r
+            Ar = kept.own.T @ r
             costs = np.sum(r * r, axis=0) - np.sum(Ar * solved(kept.chol, Ar), axis=0)
             # Without play all sides are alike but for rounding: the first is taken.
             best.append(entries[int(np.argmax(costs <= np.min(costs) * (1.0 + 1e-9)))])
         return replace(point, sides=np.array(best))
+
+
+def _still(i: int, asked: Sequence[_Asked], width: int) -> FloatArray:
+    """Shape (7, width): every column of manoeuvre ``i`` as a sum of those that are known without a flight."""
+    k = len(DERIVATIVES)
+    still = np.zeros((k + 1, width))
+    for a in asked:
+        still[k, a.first] = 1.0
+        still[:k, a.first + 1 : a.columns.stop] = a.changes[:, i].T
+    return still
+
+
+def _with_one_another(still: FloatArray, known: FloatArray, flown: _Flown) -> FloatArray:
+    """Shape (width, width): inner products of the columns of each point with one another, and no others.
+
+    ``still`` has the columns as sums of what is known, ``known`` the products of that with all columns.
+    """
+    XX = still.T @ known
+    XX[flown.at] = XX[:, flown.at].T
+    both = np.zeros((len(flown.at), len(flown.at)))
+    for _, run in flown.points:
+        both[run, run] = flown.columns[:, run].T @ flown.columns[:, run]
+    XX[np.ix_(flown.at, flown.at)] = both
+    return XX

@@ -16,13 +16,13 @@ from advisor.gap.fitting.problem import Point, Problem
 
 def factor(A: FloatArray, prior: FloatArray) -> FloatArray:
     """Cholesky factor of AᵀA + Λ⁻¹ for one manoeuvre's own columns, weighted."""
-    return _factor_of(A.T @ A, prior)
+    return factor_of(A.T @ A, prior)
 
 
-def _factor_of(normal: FloatArray, prior: FloatArray) -> FloatArray:
+def factor_of(normal: FloatArray, prior: FloatArray) -> FloatArray:
     """The same of the product AᵀA, shape (m, m), which is overwritten."""
-    diagonal = np.diagonal(normal) + prior
-    np.fill_diagonal(normal, diagonal * (1.0 + 1e-10) + 1e-12 * np.mean(diagonal))
+    diagonal = normal.diagonal() + prior
+    np.fill_diagonal(normal, diagonal * (1.0 + 1e-10) + 1e-12 * diagonal.sum() / len(diagonal))
     return factored(normal)
 
 
@@ -65,9 +65,10 @@ def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, Floa
     (m, k + 1).
     """
     m = len(block.prior)
-    normal: FloatArray = np.tensordot(weights**2, block.products, 1)
+    q = block.products.shape[1]
+    normal = (weights**2 @ block.products.reshape(len(weights), q * q)).reshape(q, q)
     AX = normal[:m, m:]
-    eliminated = solved(_factor_of(normal[:m, :m].copy(), block.prior), AX)
+    eliminated = solved(factor_of(normal[:m, :m].copy(), block.prior), AX)
     inner: FloatArray = normal[m:, m:] - AX.T @ eliminated
     return inner, eliminated
 
