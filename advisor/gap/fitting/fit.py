@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.linear import Linear, linearise
+from advisor.gap.fitting.linear import Linear, are_near, linearise
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
 from advisor.gap.fitting.step import Step, solve_blocks
 
@@ -104,7 +104,7 @@ def fit(
     linear = _without(linearise(problem, start), aside)
     weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
     kept = _settled(problem, start, linear, weights)
-    length, done = 1.0, 1
+    length, done, answered_at = 1.0, 1, start
     while done < iterations and length > _SHORTEST:
         change = length * kept.step.shared
         promised = kept.step.promised(change)
@@ -112,11 +112,12 @@ def fit(
             break
         point = kept.point.moved(kept.point.shared + change, kept.point.own)
         point = problem.with_own(point, kept.step.owns(change))
-        linear = _without(linearise(problem, point), aside)
+        near = are_near(answered_at, point)
+        linear = _without(linearise(problem, point, kept.linear if near else None), aside)
         here = _settled(problem, point, linear, kept.weights)
         done += 1
         if here.cost < kept.cost:
-            kept, length = here, 1.0
+            kept, length, answered_at = here, 1.0, answered_at if near else point
         else:
             length *= _SHORTER
     still = np.zeros(len(kept.point.shared))

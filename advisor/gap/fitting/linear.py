@@ -14,6 +14,11 @@ from advisor.gap.simulator.reading import differences, lane, packed, superposed
 
 _DERIVATIVE_STEP = 1e-3
 """Finite-difference step of a derivative, relative to its size: far above rounding, far below curvature."""
+_LEAST_SCALE = np.array([0.5, 0.05, 0.1, 1.0, 0.5, 1.0])
+"""Least size that a derivative is taken to have."""
+_NEAR, _STEPS = 0.02, 2.0
+"""Change of each derivative, relative to its size, and of an effect's numbers, in steps of theirs, over which
+answers to a manoeuvre's own numbers stay what they are."""
 _OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
 """Of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
 _SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
@@ -97,8 +102,18 @@ def as_measured(block: Linear) -> Linear:
 
 def shared_steps(point: Point) -> FloatArray:
     """Finite-difference steps of the shared numbers."""
-    scale = np.maximum(np.abs(point.derivatives), np.array([0.5, 0.05, 0.1, 1.0, 0.5, 1.0]))
-    return np.concatenate([_DERIVATIVE_STEP * scale, *[np.array(e.steps) for e in point.effects]])
+    return np.concatenate([_DERIVATIVE_STEP * _scale(point), *[np.array(e.steps) for e in point.effects]])
+
+
+def _scale(point: Point) -> FloatArray:
+    """Of each derivative, shape (6,)."""
+    return np.asarray(np.maximum(np.abs(point.derivatives), _LEAST_SCALE))
+
+
+def are_near(one: Point, other: Point) -> bool:
+    """Whether initial states, trims and air speeds have nearly the same answers at two points of a model."""
+    reach = np.concatenate([_NEAR * _scale(one), *[_STEPS * np.array(e.steps) for e in one.effects]])
+    return bool(np.all(np.abs(other.shared - one.shared) <= reach))
 
 
 def shifted_points(point: Point, which: range) -> list[Point]:
@@ -115,6 +130,7 @@ def measured_columns(
     steps: FloatArray,
     edges: FloatArray | None,
     times: Sequence[int],
+    answers: FloatArray | None = None,
 ) -> Columns:
     """Manoeuvre ``i`` in the units of its channels; sensitivities are one-sided differences.
 
@@ -133,11 +149,12 @@ def measured_columns(
         Shape (edges,): where the command's are, or None if their answers are not looked at ...
     times
         ... which of the shared numbers shift them.
+    answers
+        Shape (rows, m - edges): to own numbers other than edges, where they are known.
     """
     flight, k = problem.flights.flights[i], len(steps)
-    names = (*NUISANCES, *_SPEEDS[: len(flight.speed_doubt)])
-    moves = np.full(len(names), _SPEED_STEP * flight.slow[SPEED, 0])
-    moves[: len(NUISANCES)] = _OWN_STEPS
+    names = () if answers is not None else (*NUISANCES, *_SPEEDS[: len(flight.speed_doubt)])
+    moves = np.array([*_OWN_STEPS, *[_SPEED_STEP * flight.slow[SPEED, 0]] * len(_SPEEDS)])[: len(names)]
     others = np.tile(p, (len(names), 1))
     others[range(len(names)), [INDEX[name] for name in names]] += moves
     rows = np.vstack([p, shifted, others, p])
@@ -147,15 +164,15 @@ def measured_columns(
     read = problem.read_all(flight, packs, rows[:-1])
     moved = np.concatenate([[0.0], steps, moves])
     seen = differences(read, problem.measured(flight), np.zeros(len(moved), dtype=np.int64), moved)
-    left, shared, answers = seen[:, :1], seen[:, 1 : k + 1], seen[:, k + 1 :]
-    own, speeds = answers[:, : len(NUISANCES)], answers[:, len(NUISANCES) :]
+    left, shared = seen[:, :1], seen[:, 1 : k + 1]
+    if answers is None:
+        own, speeds = seen[:, k + 1 :][:, : len(NUISANCES)], seen[:, k + 1 + len(NUISANCES) :]
+        answers = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_doubt])
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
     if edges is not None:
         with_them = rows[[0, *(1 + k for k in times)]]
         shared[:, times] += _turned(problem, flight, pulse, edges, with_them) / steps[times]
-    answers_to_edges = _answers_to_edges(problem, flight, pulse, p)
-    doubts = speeds @ flight.speed_doubt
-    columns = np.hstack([own, _offsets(problem, flight), doubts, answers_to_edges, shared, left])
+    columns = np.hstack([answers, _answers_to_edges(problem, flight, pulse, p), shared, left])
     return Columns(columns, columns.shape[1] - k - 1)
 
 
@@ -227,8 +244,11 @@ def unit_pulse(flight: Flight, where: int, lag_s: float = 0.0) -> FloatArray:
     return disturbance
 
 
-def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:
+def linearise(problem: Problem, point: Point, near: Sequence[Linear] | None = None) -> tuple[Linear, ...]:
     """The whole model made linear about a point.
+
+    ``near`` is the same model about a point that is near, whose answers to own numbers other than edges it
+    takes over.
 
     Where edges lie far from their stamps (a command that is logged 25 times a second), a search that took the
     answers to them to stay while a delay or a skew changes would go astray, and end where its gradient
@@ -240,7 +260,8 @@ def linearise(problem: Problem, point: Point) -> tuple[Linear, ...]:
     blocks = []
     for i, flight in enumerate(problem.flights.flights):
         moved = None if point.edges is None or not times else point.edges[i]
-        measured = measured_columns(problem, i, p[i], shifted[i], steps, moved, times)
+        known = None if near is None else near[i].measured.own[:, : near[i].m - len(flight.edges)]
+        measured = measured_columns(problem, i, p[i], shifted[i], steps, moved, times, known)
         prior = _own_prior(problem, flight, measured.m)
         columns = problem.innovations(i, measured.columns)
         blocks.append(Linear(columns, measured.m, prior, measured, tuple(problem.rows(flight))))

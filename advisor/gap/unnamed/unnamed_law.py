@@ -59,7 +59,7 @@ _BEYOND_DOUBT, _OF_WHAT_NAMES_LEAVE = 50.0, 0.5
 """By how much a law beats what was named, and what it leaves of that, beside the noise, if no names that
 explain more together need be sought: of 50 laws of the truth that were found first, all stayed."""
 _MISSING = 0.03
-"""Share of some channel's peak that names leave where most of the motion is another."""
+"""Share of some channel's peak that names leave beyond the noise where most of the motion is another."""
 _OF_A_GUST, _OF_TURBULENCE = 0.2, 0.05
 """Share of the log likelihood that moving air brings alone, below which a law is a part of what that does."""
 
@@ -98,7 +98,9 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
         if s.cost <= most:
             fits.append((s.variant, fit(problem, s.point, s.noise, tolerance=0.5, beaten_by=lost)))
             lost = min(lost, fits[-1][1].cost + _OUT_OF_REACH)
-    if np.any(np.sqrt(stages[-1].held_out.mean_square) > _MISSING * problem.flights.peaks):
+    noise = 0.0 if problem.instruments is None else problem.instruments
+    missing = np.sqrt(np.maximum(stages[-1].held_out.mean_square - noise**2, 0.0))
+    if np.any(missing > _MISSING * problem.flights.peaks):
         # Nothing small leads to a servo that rings for the whole record: its search begins everywhere.
         points = [plain.point.with_effect(RINGING, start) for start in RINGING.starts]
         fits += [(RINGING, fit(problem, p, plain.noise, tolerance=0.5, beaten_by=lost)) for p in points]
