@@ -163,7 +163,8 @@ class Problem:
 
     def driving(self, point: Point) -> FloatArray:
         """Shape (manoeuvres, entries): the numbers each manoeuvre is simulated with."""
-        p = np.array(np.broadcast_to(self.base, (len(self.flights), self.base.shape[-1])))
+        p = np.empty((len(self.flights), self.base.shape[-1]))
+        p[:] = self.base
         p[:, : len(DERIVATIVES)] = point.derivatives
         p[:, len(DERIVATIVES) : len(DERIVATIVES) + len(NUISANCES)] = point.own
         for effect, values in zip(point.effects, point.values, strict=True):
@@ -188,9 +189,14 @@ class Problem:
         doses = np.zeros(len(p)) if doses is None else doses
         return simulate(flight.h, delta, above, flight.slow, disturbance, doses, flight.trim, p)
 
-    def read_all(self, flight: Flight, packs: FloatArray, p: FloatArray) -> FloatArray:
-        """Shape (rows, k): of every simulation all channels at their own stamps, one after another."""
-        return self._read(flight, packs, np.arange(len(p)), p)
+    def read_all(
+        self, flight: Flight, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None
+    ) -> FloatArray:
+        """Shape (rows, k): all channels at their own stamps, one after another, as the rows of ``p`` have them.
+
+        ``flown``, shape (k,), says which simulation each reads; each its own where it is not given.
+        """
+        return self._read(flight, packs, np.arange(len(p)) if flown is None else flown, p)
 
     def fly_and_read(self, flight: Flight, p: FloatArray) -> FloatArray:
         """Shape (rows, k): one manoeuvre as every row of ``p``, shape (k, entries), says it was measured.

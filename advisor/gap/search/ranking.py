@@ -25,7 +25,7 @@ _FITS = 5
 """Candidates that get a full fit after the screening."""
 _RIVAL = 0.3
 """Share of the best promise below which a candidate is no rival."""
-_LACKING = 0.5
+_LACKING = 0.2
 """Share of what the best explains that a candidate may lack and still be followed to its end."""
 GROSS = 300.0
 """Log likelihood promised by the best from which on the right model is far from where the screening looks."""

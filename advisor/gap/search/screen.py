@@ -54,20 +54,23 @@ class Screen:
         found = [replace(s, belief=believed(s.point)) for s in self.quick_fits(variants)]
         return likeliest_first(found, float(np.sum(self.around.count)))
 
-    def quick_fits(self, variants: Sequence[Variant]) -> list[Screened]:
-        """The best of each variant's starts, where one of them leads anywhere."""
+    def quick_fits(self, variants: Sequence[Variant], most: float = 0.0) -> list[Screened]:
+        """The best of each variant's starts, where one of them leads anywhere.
+
+        ``most`` is a decrease of the cost that something else brings: what promises next to nothing beside it
+        is not followed.
+        """
         began = [(n, start) for n, variant in enumerate(variants) for start in variant.starts]
-        ended = self._together([self._descend(variants[n], start) for n, start in began])
+        ended = self._together([self._descend(variants[n], start) for n, start in began], most)
         best: dict[int, Screened] = {}
         for (n, _), end in zip(began, ended, strict=True):
             if end is not None and (n not in best or end.cost < best[n].cost):
                 best[n] = end
         return list(best.values())
 
-    def _together(self, descents: Sequence[_Descent]) -> list[Screened | None]:
+    def _together(self, descents: Sequence[_Descent], most: float) -> list[Screened | None]:
         """All descents side by side: the next points of many are flown at once."""
         ended: list[Screened | None] = [None] * len(descents)
-        most = 0.0
         asked = {n: next(descent) for n, descent in enumerate(descents)}
         while asked:
             some = list(asked)[:_AT_ONCE]

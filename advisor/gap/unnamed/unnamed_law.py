@@ -87,13 +87,14 @@ class Law:
 def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     """The law that explains more than everything that was named; None where none does."""
     plain, held = stages[0].fitted, stages[0].held_out
-    found = Screen(problem, plain).quick_fits(laws_for(problem.flights))
+    named_cost = stages[-1].fitted.cost
+    found = Screen(problem, plain).quick_fits(laws_for(problem.flights), plain.cost - named_cost)
     samples = float(np.sum(worth(problem, plain.innovations)))
     best = min((s.cost for s in found), default=plain.cost)
     most = plain.cost - 2.0 * max(_CERTAIN, 0.5 * _WORTH_A_FIT * (plain.cost - best))
     # A law that changes what the derivatives are takes more steps than a screening makes.
     fits: list[tuple[Variant, Fitted]] = []
-    lost = stages[-1].fitted.cost + _OUT_OF_REACH
+    lost = named_cost + _OUT_OF_REACH
     for s in sorted(found, key=lambda s: s.cost):
         if s.cost <= most:
             fits.append((s.variant, fit(problem, s.point, s.noise, tolerance=0.5, beaten_by=lost)))
