@@ -214,14 +214,19 @@ class _Translation:
         )
 
     def _heartbeat(self) -> Columns:
-        """One before everything else, so that the vehicle is known, and one at each change of mode."""
+        """One before everything else, so that the vehicle is known, and two at each change of mode.
+
+        A log tells of a change when it happens. The mode of before lasted until then, which the first of the
+        two says: heard once a second, as over a link, it may have ended any time since the heartbeat before.
+        """
         order, modes, time_us = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(1, np.int64)
         if "MODE" in self._tables:
             mode = self._tables["MODE"]
             numbers = mode.fields["ModeNum"].astype(np.int64)
-            order = np.concatenate([order, mode.order])
-            modes = np.concatenate([numbers[:1], numbers])
-            time_us = np.concatenate([mode.time_us[:1], mode.time_us])
+            changes = np.column_stack([np.append(numbers[:1], numbers[:-1]), numbers])
+            order = np.append(order, np.column_stack([mode.order - 1, mode.order]))
+            modes = np.append(numbers[:1], changes)
+            time_us = np.append(mode.time_us[:1], np.repeat(mode.time_us, 2))
         fields: dict[str, ArrayLike] = {
             "type": self._mav_type(),
             "autopilot": _ARDUPILOTMEGA,

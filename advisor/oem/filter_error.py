@@ -21,6 +21,11 @@ from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.innovations import gains_of
 from advisor.oem.turbulence import Turbulence, system_of, turbulence_in
 
+_GROWTH = 25.0
+"""Powers of e by which a model may grow over a record: one that runs away says nothing of the aircraft."""
+_GRID_S = 0.005
+"""Step of the linear model."""
+
 
 def filter_error_estimate(
     maneuvers: Sequence[Maneuver],
@@ -57,6 +62,8 @@ def filter_error_estimate(
     theta = fitted_at.copy()
     information, step = np.eye(len(theta)), np.zeros(len(theta))
     for _ in range(3):
+        if any(_runs_away(theta, maneuver) for maneuver in maneuvers):
+            return NoEstimate("not_converged", "The filter error estimate did not settle.")
         information, gradient = np.zeros((8, 8)), np.zeros(8)
         for maneuver, fits in zip(maneuvers, start.fits, strict=False):
             t, channel, columns = _linear(maneuver, fits, theta, fitted_at)
@@ -71,8 +78,6 @@ def filter_error_estimate(
         theta = theta + step
         if np.all(np.abs(step) < 0.1 / scale):
             break
-    if not np.all(np.isfinite(theta)):
-        return NoEstimate("not_converged", "The filter error estimate did not settle.")
     covariance = np.asarray(np.linalg.pinv(information, rcond=1e-12, hermitian=True), float)
     note = (
         f"Filter error: gusts of {np.degrees(found.gust_angle):.2f} deg allowed for." if found.present
@@ -81,6 +86,16 @@ def filter_error_estimate(
     return replace(
         start, theta=theta, covariance=covariance, covariance_cr=covariance, notes=(*start.notes, note)
     )
+
+
+def _runs_away(theta: FloatArray, maneuver: Maneuver) -> bool:
+    """Whether no linear model can be followed over the record: it diverges, or is too fast for the grid."""
+    if not np.all(np.isfinite(theta)):
+        return True
+    z_a, z_q, m_a, m_q = (theta[PARAMETERS.index(name)] for name in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
+    eigenvalues = np.linalg.eigvals(np.array([[z_a, 1.0 + z_q], [m_a, m_q]]))
+    record_s = float(np.ptp(maneuver.channels["q"].t))
+    return bool(np.max(eigenvalues.real) * record_s > _GROWTH or np.max(np.abs(eigenvalues)) * _GRID_S > 1.0)
 
 
 def _linear(
@@ -92,18 +107,18 @@ def _linear(
     """
     t_all, channel_all, column_all = [], [], []
     base = fits["q"].t[0]
-    grid = np.arange(base, fits["q"].t[-1], 0.005)
+    grid = np.arange(base, fits["q"].t[-1], _GRID_S)
     a = np.interp(grid, fits["alpha"].t, fits["alpha"].fitted)
     q = np.interp(grid, fits["q"].t, fits["q"].fitted)
     d = np.interp(grid, maneuver.channels["elevator"].t, maneuver.channels["elevator"].y)
     drives = np.zeros((10, 2, len(grid)))
     for k, signal in enumerate((np.ones_like(grid), a, q, d)):
         drives[k, 0], drives[4 + k, 1] = signal, signal
-    drives[8, 0, 0], drives[9, 1, 0] = 200.0, 200.0
+    drives[8, 0, 0], drives[9, 1, 0] = 1.0 / _GRID_S, 1.0 / _GRID_S
     names = PARAMETERS
     z_a, z_q = theta[names.index("Z_alpha")], theta[names.index("Z_q")]
     m_a, m_q = theta[names.index("M_alpha")], theta[names.index("M_q")]
-    states = _respond(drives, 0.005, z_a, 1.0 + z_q, m_a, m_q)
+    states = _respond(drives, _GRID_S, z_a, 1.0 + z_q, m_a, m_q)
     for c, name in enumerate(("alpha", "q")):
         fit = fits[name]
         response = np.column_stack([np.interp(fit.t, grid, states[k, c]) for k in range(10)])

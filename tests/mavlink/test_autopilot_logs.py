@@ -4,7 +4,7 @@ import contextlib
 import math
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from pymavlink import DFReader
 
 from advisor.aircraft import Aircraft, Elevator
+from advisor.flight.events import ManeuverFlown
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
 from advisor.mavlink.dataflash import read_tables
@@ -49,7 +50,8 @@ def motion(t: float) -> tuple[float, float]:
     return 0.05 + 0.01 * math.sin(t), 0.01 * math.cos(t)
 
 
-def dataflash_flight(seconds: float = FLIGHT_S) -> bytes:
+def dataflash_flight(seconds: float = FLIGHT_S, changes: Mapping[float, int] | None = None) -> bytes:
+    """A flight; ``changes`` has the modes that it is put into, by the time in s."""
     log = [dataflash_head()]
     log.append(dataflash_record("VER", 900, 0, 0, 4, 5, 6, 255, 0, b"ArduPlane V4.5.6", 0, 3, 0))
     log.append(dataflash_record("MSG", 1000, b"ArduPlane V4.5.6 (0123abcd)"))
@@ -60,6 +62,11 @@ def dataflash_flight(seconds: float = FLIGHT_S) -> bytes:
         us = 1_000_000 + 20_000 * i
         t = us * 1e-6
         theta, q = motion(t)
+        log += [
+            dataflash_record("MODE", us, mode, mode, 1)
+            for at_s, mode in (changes or {}).items()
+            if t <= at_s < t + 0.02
+        ]
         log.append(dataflash_record("IMU", us, 0, 0.0, q, 0.0, 0.1, 0.0, -G))
         log.append(dataflash_record("IMU", us, 1, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0))
         log.append(dataflash_record("RCOU", us + 300, 1500, elevator_us(t), 1400, 1500))
@@ -172,7 +179,7 @@ class TestArduPilot:
         assert heartbeat.order[0] == 0
         assert set(heartbeat.fields["autopilot"].tolist()) == {3}
         assert set(heartbeat.fields["type"].tolist()) == {1}
-        assert heartbeat.fields["custom_mode"].tolist() == [0, 0]
+        assert heartbeat.fields["custom_mode"].tolist() == [0, 0, 0]
         assert messages["PARAM_VALUE"].fields["param_id"].tolist()[0] == b"SERVO2_FUNCTION"
         assert messages["STATUSTEXT"].fields["text"].tolist() == [b"ArduPlane V4.5.6 (0123abcd)"]
         assert messages["AUTOPILOT_VERSION"].fields["flight_sw_version"].tolist() == [0x040506FF]
@@ -241,6 +248,19 @@ class TestArduPilot:
         assert {"elevator", "q", "alpha", "theta", "a_z", "airspeed"} <= stream.channels.keys()
         assert stream.channels["q"].rate_hz == pytest.approx(50.0, rel=0.01)
         assert stream.channels["theta"].rate_hz == pytest.approx(25.0, rel=0.01)
+
+    @pytest.mark.parametrize("after_s", [1.0, 2.0])
+    def test_a_manoeuvre_lasts_until_the_log_says_that_the_mode_changed(
+        self, tmp_path: Path, after_s: float
+    ) -> None:
+        """Over a link it may have changed any time since the heartbeat before."""
+        stream, last_step_s = FlightStream(Aircraft()), FIRST_STEP_S + 7 * 0.5
+        path = tmp_path / "flight.bin"
+        path.write_bytes(dataflash_flight(changes={0.5: 0, last_step_s + after_s: 12}))
+        events = [event for batch in open_log(path) for event in stream.feed(batch)]
+        [flown] = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+        assert flown.mode == "MANUAL"
+        assert flown.span.end_s - flown.span.last_step_s == pytest.approx(after_s, abs=0.1)
 
     def test_a_log_without_flight_data_is_refused(self, tmp_path: Path) -> None:
         path = tmp_path / "empty.bin"

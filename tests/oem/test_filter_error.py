@@ -1,15 +1,16 @@
 """Filter error: right where the air moves, the same as output error where it does not."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft import PARAMETERS, Aircraft, Elevator
 from advisor.assessment import assess
 from advisor.flight.maneuver import Maneuver
-from advisor.oem.estimate import Estimate
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
 from advisor.oem.filter_error import filter_error_estimate
 from advisor.oem.turbulence import Rows, find_turbulence, turbulence_in
@@ -124,3 +125,15 @@ def test_the_search_for_moving_air_ends_without_noise_and_with_absurd_noise(size
     rows = Rows(np.repeat(t, 4), np.tile(np.arange(4), len(t)), size * np.sin(np.arange(4.0 * len(t))), 25.0)
     found = find_turbulence([rows], np.array([-4.0, 0.0, -40.0, -4.0]), np.full(4, 1e-3), True)
     assert not found.present or size > 1.0
+
+
+@pytest.mark.parametrize(("name", "value"), [("Z_alpha", 30.0), ("M_q", -1000.0), ("M_alpha", np.inf)])
+def test_a_model_that_runs_away_is_no_estimate(name, value):
+    flight = flown(0.005, seed=3)
+    first = estimate(flight, KNOWN_SERVO)
+    theta = first.theta.copy()
+    theta[PARAMETERS.index(name)] = value
+    away = replace(first, theta=theta, theta_of_lowest_cost=None)
+    assert isinstance(
+        filter_error_estimate([flight], KNOWN_SERVO, away, turbulence_in(first, True)), NoEstimate
+    )

@@ -192,7 +192,7 @@ class Problem:
     def read_all(
         self, flight: Flight, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None
     ) -> FloatArray:
-        """Shape (rows, k): all channels at their own stamps, one after another, as the rows of ``p`` have them.
+        """Shape (rows, k): all channels at their own stamps, one after another, as ``p`` has them by row.
 
         ``flown``, shape (k,), says which simulation each reads; each its own where it is not given.
         """
