@@ -13,7 +13,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.records.flights import Flights
-from advisor.gap.simulator.layout import INDEX, SPEED, short_period
+from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS, SPEED, short_period
 from advisor.oem.innovations import CHANNELS, AirModel, Gains, gains_of
 
 
@@ -75,7 +75,7 @@ def filters_for(
     """
     gains, orders = [], []
     for i, flight in enumerate(flights.flights):
-        t, channel, order = rows_in_time(flights, i)
+        t, channel, order = rows_in_time(flights, i, p[i])
         system = np.array([*short_period(p[i]), float(np.mean(flight.slow[SPEED]))])
         arms = (float(p[i, INDEX["vane_arm_m"]]), float(p[i, INDEX["imu_arm_m"]]))
         # Every manoeuvre has initial states of its own in the fit: none are left to the filter.
@@ -84,10 +84,16 @@ def filters_for(
     return Filters(tuple(airs), tuple(gains), tuple(orders))
 
 
-def rows_in_time(flights: Flights, i: int) -> tuple[FloatArray, np.ndarray, np.ndarray]:
-    """Times and channels (indices into ``CHANNELS``) of one manoeuvre in order of time, and that order."""
+def rows_in_time(flights: Flights, i: int, p: FloatArray) -> tuple[FloatArray, np.ndarray, np.ndarray]:
+    """Times and channels (indices into ``CHANNELS``) of one manoeuvre in order of time, and that order.
+
+    Times are those that channels speak of: one that is late by ``p``, shape (entries,), saw the air before
+    its stamp.
+    """
     flight = flights.flights[i]
-    t = np.concatenate([flight.outputs[c].t for c in flights.channels])
+    late = {name: float(p[INDEX[skew]]) for name, skew in zip(OUTPUTS, SKEWS, strict=True)}
+    late["alpha"] += float(p[INDEX["alpha_lag_s"]])
+    t = np.concatenate([flight.outputs[c].t - late[c] for c in flights.channels])
     channel = np.concatenate(
         [np.full(len(flight.outputs[c].t), CHANNELS.index(c), dtype=np.int64) for c in flights.channels]
     )

@@ -70,7 +70,7 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
     """Coloured instruments or moving air, where nothing was flown; None where white noise describes it."""
     if not {"alpha", "q"} <= set(problem.channels):
         return None
-    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, i, fitted.left[i])]
+    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
     rows = _without_offsets(parts)
     if sum(r.t[-1] - r.t[0] for r in rows) < _LEAST_QUIET_S:
         return None
@@ -88,7 +88,7 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
 def loudness(problem: Problem, fitted: Fitted) -> float:
     """Power of what is left in quiet stretches beside the instruments' noise: the median of the stretches."""
     white = instrument_noise(problem)
-    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, i, fitted.left[i])]
+    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
     powers = [float(np.mean((r.left / white[r.channel]) ** 2)) for r in _without_offsets(parts)]
     return float(np.median(powers)) if powers else 0.0
 
@@ -195,16 +195,16 @@ def system_of(problem: Problem, fitted: Fitted) -> FloatArray:
     return short_period(problem.driving(fitted.point)[0])
 
 
-def rows_of(problem: Problem, i: int, left: FloatArray) -> Rows:
-    """A residual of manoeuvre ``i``, stacked by channels, in order of time."""
-    t, channel, order = rows_in_time(problem.flights, i)
-    return Rows(t, channel, left[order], float(np.mean(problem.flights.flights[i].slow[SPEED])))
+def rows_of(problem: Problem, fitted: Fitted, i: int) -> Rows:
+    """What a fit leaves of manoeuvre ``i``, in order of time."""
+    t, channel, order = rows_in_time(problem.flights, i, problem.driving(fitted.point)[i])
+    return Rows(t, channel, fitted.left[i][order], float(np.mean(problem.flights.flights[i].slow[SPEED])))
 
 
-def _quiet_parts(problem: Problem, i: int, left: FloatArray) -> list[Rows]:
+def _quiet_parts(problem: Problem, fitted: Fitted, i: int) -> list[Rows]:
     """The quiet stretches before and after, each a record of its own."""
     flight = problem.flights.flights[i]
-    whole = rows_of(problem, i, left)
+    whole = rows_of(problem, fitted, i)
     quiet = flight.is_quiet(whole.t)
     before = whole.t < flight.first_step_s
     return [

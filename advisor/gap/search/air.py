@@ -180,7 +180,7 @@ def _squares(problem: Problem, fitted: Fitted, beside: Fitted, maneuver: int) ->
 
 def _moving_in(problem: Problem, fitted: Fitted, maneuvers: Iterable[int]) -> Turbulence:
     """Moving air against noise of the instruments, in what is left of some manoeuvres."""
-    rows = [rows_of(problem, i, fitted.left[i]) for i in maneuvers]
+    rows = [rows_of(problem, fitted, i) for i in maneuvers]
     derived = problem.flights.alpha_is_derived
     return find_turbulence(rows, system_of(problem, fitted), instrument_noise(problem), not derived)
 

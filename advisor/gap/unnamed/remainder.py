@@ -106,16 +106,24 @@ def only_resemble(stages: Sequence[Stage]) -> bool:
     return removed is not None and removed < _BESIDE_THE_AIR
 
 
-def widen(stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray) -> bool:
+def widen(
+    stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray, gust: int | None = None
+) -> bool:
     """Whether names make the gap on manoeuvres kept out wider, the air's motion in it.
 
-    ``floor`` is the instruments' noise. What the air's filter takes for a better model is none then. Of some
-    240 right answers in moving air none makes it wider.
+    ``floor`` is the instruments' noise; ``gust`` the manoeuvre that one passed in, which none of the others
+    foretells. What the air's filter takes for a better model is none then. Of some 240 right answers in
+    moving air none makes it wider.
     """
-    without = [stages[0].held_out, *([] if file_model is None else [file_model])]
-    before = min(whole_gap(held.mean_square, floor) for held in without)
-    after = whole_gap(stages[-1].held_out.mean_square, floor)
-    return len(stages) > 1 and after > max(_WIDER * before, VISIBLE)
+    others = np.arange(len(stages[0].held_out.by_maneuver)) != (-1 if gust is None else gust)
+
+    def gap(held: HeldOut) -> float:
+        return whole_gap(
+            held.mean_square if gust is None else np.mean(held.by_maneuver[others], axis=0), floor
+        )
+
+    before = min(map(gap, [stages[0].held_out, *([] if file_model is None else [file_model])]))
+    return len(stages) > 1 and gap(stages[-1].held_out) > max(_WIDER * before, VISIBLE)
 
 
 def is_all_named(stages: Sequence[Stage], floor: FloatArray) -> bool:

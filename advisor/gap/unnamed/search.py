@@ -71,6 +71,14 @@ class Scene:
         """The model with all names."""
         return self.stages[-1].fitted
 
+    @property
+    def gust_in(self) -> int | None:
+        """The manoeuvre that a gust passed in."""
+        if self.air is None or not self.air.gust:
+            return None
+        flights = self.problem.flights.flights
+        return next(i for i, flight in enumerate(flights) if flight.number == self.air.gust_number)
+
     def without_names(self) -> "Scene":
         """The plain model, and the air that it was flown in."""
         stages = reduced_to(self.problem, self.stages, [])
@@ -94,7 +102,9 @@ def without_a_name(scene: Scene) -> tuple[Leftover | None, Scene]:
         return found, scene
     if scene.air is not None and (
         only_resemble(scene.stages)
-        or widen(scene.stages, scene.file_model, np.minimum(scene.floor, scene.air.instruments))
+        or widen(
+            scene.stages, scene.file_model, np.minimum(scene.floor, scene.air.instruments), scene.gust_in
+        )
         or scene.bends_as_any
     ):
         scene = scene.without_names()
