@@ -8,7 +8,7 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
-from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN
+from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN, MOST_EFFECTS
 from advisor.gap.search.screen import Screen
 from advisor.gap.search.stage import Stage, added_in, price_of_all, replaced_by
 
@@ -31,7 +31,8 @@ def by_the_file(problem: Problem, stages: list[Stage], variants: Sequence[Varian
     believed = belief_in(problem, last, independent)
     if belief_in(problem, as_filed, independent) - believed < LEAST_BELIEF:
         return stages
-    found = _held_at_the_file(replace(problem, holds_the_file=True), stages[0].fitted, variants, names + 1)
+    most = max(names, min(names + 1, MOST_EFFECTS))
+    found = _held_at_the_file(replace(problem, holds_the_file=True), stages[0].fitted, variants, most)
     others = fit(problem, found.point, found.noise, tolerance=0.5, beaten_by=last.cost + 2.0 * LEAST_GAIN)
     gained = belief_in(problem, others, independent) - believed + 0.5 * (last.cost - others.cost)
     priced = price_of_all(others, independent) - price_of_all(last, independent)

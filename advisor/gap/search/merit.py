@@ -9,6 +9,8 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut
 
+MOST_EFFECTS = 3
+"""More names in one flight are hardly ever right."""
 LEAST_GAIN = 6.0
 """Log likelihood, on held-out manoeuvres and after the price of its numbers, that an effect must bring."""
 _UNCONFIRMED = 20.0

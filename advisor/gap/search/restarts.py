@@ -16,7 +16,8 @@ from advisor.gap.search.score import addition, is_plain
 from advisor.gap.search.screen import Screened
 
 _LEFT = 2.0
-"""How many times an instrument's white noise the best must leave, if its other starts are to be tried ..."""
+"""How many times the noise of some channel the best must leave, if its other starts are to be tried: what an
+instrument's white noise is, or else an innovation's standard deviation ..."""
 _SEVERAL = 2
 """... and how many of them, and of numbers, it must have to have more than one optimum."""
 _WILD = 4.0
@@ -49,7 +50,10 @@ def from_every_start(
     first = judged[0]
     explained = 0.5 * (before.cost - first.fitted.cost)
     left = np.sqrt(first.held_out.mean_square)
-    if explained <= GROSS or np.all(left <= _LEFT * problem.flights.white):
+    loud = (
+        np.sqrt(first.held_out.innovation_square) if problem.knows_the_noise else left / problem.flights.white
+    )
+    if explained <= GROSS or np.all(loud <= _LEFT):
         return judged
     missing = is_plain(before) and np.all(left > _MISSING * problem.flights.peaks)
     hidden = _HIDES if missing else frozenset()

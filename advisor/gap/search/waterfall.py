@@ -16,14 +16,12 @@ from advisor.gap.search.companions import (
     other_description,
     two_in_place_of_one,
 )
-from advisor.gap.search.merit import LEAST_BELIEF, Judged
+from advisor.gap.search.merit import LEAST_BELIEF, MOST_EFFECTS, Judged
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.restarts import from_every_start
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage, added_in, only, rebuilt
 
-MOST_EFFECTS = 3
-"""More names in one flight are hardly ever right."""
 _CERTAIN = 100.0
 """Log likelihood from which on an effect too small for a name is worth a look at what shows beside it."""
 _OPEN = 0.1
