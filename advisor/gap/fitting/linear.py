@@ -276,12 +276,12 @@ def _turned(
     ``rows`` has shape (k, entries): with what the simulation is driven, and with a time moved by its step.
     Delay and latency are one to the answers, and a skew is to their reading only.
     """
-    late = np.round(rows[:, INDEX["delay_s"]] + rows[:, INDEX["latency_s"]], 9)
-    _, first, course = np.unique(late, return_index=True, return_inverse=True)
+    late = np.round(rows[:, INDEX["delay_s"]] + rows[:, INDEX["latency_s"]], 9).tolist()
+    places = {seconds: k for k, seconds in enumerate(dict.fromkeys(late))}
     courses = []
-    for p in rows[first]:
-        delays, areas = _pulses(problem, flight, p)
+    for seconds in places:
+        delays, areas = _pulses(problem, flight, rows[late.index(seconds)])
         parts = [superposed(pulse, flight.h, begin, areas * edges) for begin in delays]
         courses.append(np.asarray(sum(parts)))
-    read = problem.read_all(flight, packed(courses), rows, course)
+    read = problem.read_all(flight, packed(courses), rows, np.array([places[seconds] for seconds in late]))
     return read[:, 1:] - read[:, :1]

@@ -203,10 +203,10 @@ class Problem:
 
         Rows that differ in what instruments do to the motion's stamps or course alone are flown once.
         """
-        places: dict[bytes, int] = {}
-        flown = [places.setdefault(row.tobytes(), len(places)) for row in p[:, _FLOWN_ENTRIES]]
-        _, first = np.unique(flown, return_index=True)
-        return self._read(flight, self.fly_all(flight, p[first]), np.array(flown), p)
+        alike = [row.tobytes() for row in p[:, _FLOWN_ENTRIES]]
+        places = {row: k for k, row in enumerate(dict.fromkeys(alike))}
+        first = [alike.index(row) for row in places]
+        return self._read(flight, self.fly_all(flight, p[first]), np.array([places[row] for row in alike]), p)
 
     def _read(self, flight: Flight, packs: FloatArray, flown: np.ndarray, p: FloatArray) -> FloatArray:
         skews, filters = p[:, _SKEW_ENTRIES], p[:, _FILTER_ENTRIES]
