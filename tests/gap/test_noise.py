@@ -9,10 +9,12 @@ from scipy.signal import lfilter
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
+from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.whitening import Filters
 from advisor.gap.noise.quiet import only
 from advisor.gap.noise.stamps import rates_of, stamp_jitter
 from advisor.gap.records.prepare import prepare
+from advisor.gap.search.air import moving_air
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.innovations import DIFFUSE, AirModel, cost_of, gains_of
@@ -180,3 +182,18 @@ def test_an_attitude_that_accelerations_pull_and_that_forgets_is_unknown(seed):
 @pytest.mark.parametrize(("share", "memory_s", "others"), [(0.06, 0.1, 0.0), (0.03, 1.0, 0.02)])
 def test_noise_that_is_quick_or_everywhere_is_noise(share, memory_s, others):
     assert diagnose(wandering("q", share, memory_s, others), Aircraft()).verdict == "none"
+
+
+def gain_of_moving_air(late_s):
+    """Log likelihood that moving air brings, the vane's lateness in the model."""
+    flown = fly(Setup(maneuvers=5, gust_std=0.2, skew={"alpha": late_s}, seed=3))
+    problem, plain = fit_baseline(prepare(flown, Aircraft()), Aircraft())
+    skew = next(v for v in variants_for(problem.flights) if v.effect == "alpha_skew")
+    air = moving_air(problem, fit(problem, plain.point.with_effect(skew, (late_s,)), plain.noise, 20))
+    return 0.0 if air is None else air.gain
+
+
+def test_gusts_are_as_plain_to_a_vane_whose_stamps_are_late_or_early_as_to_any():
+    on_time = gain_of_moving_air(0.0)
+    assert on_time > 1000.0
+    assert [gain_of_moving_air(late_s) for late_s in (-0.09, 0.09)] == pytest.approx([on_time] * 2, rel=0.2)

@@ -79,6 +79,21 @@ def test_names_that_make_the_gap_wider_than_the_model_without_or_the_file_are_no
     assert not widen([plain], file_model, floor)
 
 
+def test_the_manoeuvre_that_a_gust_passed_in_does_not_tell_whether_names_make_the_gap_wider(gyro):
+    (plain, named), floor = named_beside(gyro, "pitch_rate_scale")
+
+    def leaves(stage, gaps):
+        by_maneuver = floor**2 * (1.0 + np.array(gaps))[:, None]
+        held = replace(stage.held_out, by_maneuver=by_maneuver, mean_square=np.mean(by_maneuver, axis=0))
+        return replace(stage, held_out=held)
+
+    others = len(plain.held_out.by_maneuver) - 1
+    stages = [leaves(plain, [100.0, *[10.0] * others]), leaves(named, [400.0, *[1.0] * others])]
+    assert widen(stages, None, floor)
+    assert not widen(stages, None, floor, gust=0)
+    assert widen(stages, None, floor, gust=1)
+
+
 def test_names_have_explained_all_there_is_where_they_leave_nothing_above_the_noise(gyro):
     stages, floor = named_beside(gyro, "pitch_rate_scale")
     assert is_all_named(stages, floor)
