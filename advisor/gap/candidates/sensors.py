@@ -22,7 +22,7 @@ _MODE = Variant(
     ("gain", "rate_gain", "omega_rad_s", "damping"),
     tuple((0.0, 0.0, 2.0 * np.pi * hz, 0.05) for hz in _MODES_HZ),
     (0.02, 0.02, 0.1, 0.005),
-    ((-50.0, 50.0), (-50.0, 50.0), (8.0, 80.0), (0.003, 0.15)),
+    ((-50.0, 50.0), (-50.0, 50.0), (12.0, 80.0), (0.003, 0.15)),
     0.0,
     entries=("mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping"),
     places=("omega_rad_s", "damping"),
