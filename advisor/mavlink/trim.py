@@ -39,7 +39,12 @@ def main() -> None:
     parser.add_argument("target", type=Path, metavar="OUT")
     parser.add_argument("--drop", default="", metavar="NAME,NAME", help="messages to leave out as well")
     arguments = parser.parse_args()
-    trimmed = trim(arguments.source.read_bytes(), filter(None, arguments.drop.split(",")))
+    drop = set(filter(None, arguments.drop.split(",")))
+    if unknown := drop - DEFINITIONS.keys():
+        parser.error(
+            f"--drop: {', '.join(sorted(unknown))} is left out anyway, or no message; take it off the list"
+        )
+    trimmed = trim(arguments.source.read_bytes(), drop)
     arguments.target.write_bytes(trimmed)
 
 

@@ -11,7 +11,8 @@ from advisor.aircraft import Aircraft, Elevator
 from advisor.diagnosis import maneuvers_of
 from advisor.gap.diagnose import diagnose
 
-LOG = Path(__file__).parents[2] / "logs" / "arduplane-calm.tlog"
+LOGS = Path(__file__).parents[2] / "logs"
+LOG = LOGS / "arduplane-calm.tlog"
 SERVO = Elevator(calibration=((1000.0, 25.0), (1500.0, 0.0), (2000.0, -25.0)), lag_s=0.14)
 
 
@@ -70,3 +71,16 @@ def test_the_servos_lag_is_found_when_the_file_does_not_have_it():
     lag = found.causes[0].parameters["lag_s"]
     assert abs(lag.value - SERVO.lag_s) < 3.0 * lag.std
     assert lag.std < 0.02
+
+
+@pytest.mark.parametrize("name", ["arduplane-calm.tlog", "arduplane-turbulent.tlog"])
+def test_the_lag_that_a_servo_has_comes_first_where_the_file_lacks_it_whatever_the_air(name):
+    """In turbulence of half a metre a second, to which the autopilot's angle of attack is blind, too."""
+    servo = replace(SERVO, lag_s=None)
+    found = diagnose(
+        maneuvers_of([LOGS / name], Aircraft(elevator=servo)).maneuvers, Aircraft(elevator=servo)
+    )
+    assert found.verdict == "effect"
+    assert found.causes[0].effect == "actuator_lag"
+    assert found.causes[0].parameters["lag_s"].value == pytest.approx(SERVO.lag_s, abs=0.025)
+    assert any(c.effect == "turbulence" for c in found.causes if c.present) == ("turbulent" in name)
