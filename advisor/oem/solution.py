@@ -20,6 +20,7 @@ from advisor.oem.covariance import (
 )
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend
+from advisor.oem.prior import precision
 from advisor.oem.problem import Assembly, Problem, assemble
 from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
@@ -66,8 +67,10 @@ class Solution:
 
     @property
     def cost(self) -> float:
-        """J = σ_α²·σ_q², Eq. (7)."""
-        return float(np.prod(self.optimum.noise[:2] ** 2))
+        """J = σ_α²·σ_q², Eq. (7); σ_q²·σ_az² where no angle of attack counts."""
+        noise = dict(zip(OUTPUTS, self.optimum.noise, strict=True))
+        other = "alpha" if noise["alpha"] > 0.0 else "a_z"
+        return float((noise["q"] * noise[other]) ** 2)
 
 
 def solve(
@@ -118,7 +121,7 @@ def search(
     def from_(shared: FloatArray, local: FloatArray) -> Optimum:
         if method == "nelder-mead":
             return descend_by_simplex(*data, shared, local)
-        return descend(*data, shared, local, flat)
+        return descend(*data, precision(problem, shared), shared, local, flat)
 
     optimum = from_(*(start(problem) if begin is None else begin))
     if begin is None and (optimum.status != CONVERGED or optimum.iterations > HEALTHY_ITERATIONS):
@@ -144,7 +147,7 @@ def evaluate(
     kept : how many of the extra parameters shall have errors of their own, the first ones; default all.
     """
     g = optimum.sensitivities
-    effect = influence(assembly, g, optimum.noise, extra)
+    effect = influence(assembly, g, optimum.noise, extra, precision(problem, optimum.shared))
     if effect is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
     if kept is not None:
