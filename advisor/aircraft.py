@@ -27,6 +27,8 @@ class Elevator:
     """First-order lag of the servo; None: unknown, and every output says so."""
     delay_s: float | None = None
     """Delay between command and servo; None: unknown."""
+    lag_found_s: float | None = None
+    """The lag as all manoeuvres together tell it, used where ``lag_s`` is unknown; no key of the file."""
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from advisor.flight.events import (
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
+from advisor.learning import learnt as learnt_from
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.solution import Method
@@ -67,6 +68,7 @@ class Campaign:
         method: Method = "gauss-newton",
     ) -> None:
         self._aircraft = aircraft
+        self._learnt = aircraft
         self._method: Method = method
         self._tell = tell
         self._stream = FlightStream(aircraft, target_system)
@@ -85,7 +87,9 @@ class Campaign:
 
     def finish(self) -> list[CampaignEvent]:
         """The stream has ended: a manoeuvre that is complete but for its quiet end still counts."""
-        return self._take(self._stream.finish())
+        events = self._take(self._stream.finish())
+        self._learn(exactly=True)
+        return events
 
     @property
     def state(self) -> CampaignState:
@@ -141,8 +145,9 @@ class Campaign:
             match event:
                 case ManeuverFlown(maneuver):
                     self._maneuvers.append(maneuver)
-                    self._history.append(assess(maneuver, self._aircraft, self._method))
+                    self._history.append(assess(maneuver, self._learnt, self._method))
                     self._decide()
+                    self._learn()
                     told.append(ManeuverJudged(self._judged[-1], self._flight_test))
                     ended_s = maneuver.span.end_s
                     self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
@@ -170,7 +175,6 @@ class Campaign:
                 verdict,
                 flown.excluded_because,
                 self._notes.get(maneuver.number, ()),
-                flown.second_opinion,
             )
             for maneuver, flown, verdict in zip(self._maneuvers, self._history, verdicts, strict=True)
         )
@@ -178,12 +182,28 @@ class Campaign:
         model = estimate_jointly([j.maneuver for j in self._judged if j.verdict.accepted], self._aircraft)
         self._model = model if isinstance(model, Estimate) else None
 
+    def _learn(self, exactly: bool = False) -> None:
+        """Examine all manoeuvres again when they have told more of the instruments."""
+        learnt = learnt_from(self._learnt, self._model, exactly=exactly)
+        if learnt is self._learnt:
+            return
+        self._learnt = learnt
+        again = [assess(maneuver, learnt, self._method) for maneuver in self._maneuvers]
+        self._history = [
+            replace(flown, excluded_because=before.excluded_because)
+            for flown, before in zip(again, self._history, strict=True)
+        ]
+        lag = learnt.elevator.lag_found_s
+        self._log(f"the servo's lag is {lag:.3f} s by all manoeuvres together; every estimate uses it now")
+        self._decide()
+
     def _decide_by_hand(self, number: int, because: str | None) -> None:
         i = self._index(number)
         self._history[i] = replace(self._history[i], excluded_because=because)
         what = "included again" if because is None else f"excluded: {because}"
         self._log(f"manoeuvre {number} {what}", self._stream.now_s)
         self._decide()
+        self._learn()
 
     def _log(self, text: str, at_s: float = math.nan) -> None:
         self._notices.append(f"{at_s:.1f} s: {text}" if math.isfinite(at_s) else text)

@@ -21,8 +21,6 @@ class JudgedManeuver:
     """Set when an engineer took it out by hand."""
     notes: tuple[str, ...] = ()
     """What the engineer wrote beside it."""
-    second_opinion: Estimate | None = None
-    """Filter error's estimate, where the air moved and output error is out of its validity."""
 
 
 @dataclass(frozen=True, slots=True)

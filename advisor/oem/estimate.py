@@ -1,7 +1,7 @@
 """What an estimate is: values, errors one can believe, and how well the model explains the data."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -99,6 +99,9 @@ class Estimate:
     """Whether ``theta`` is filter error's, which allows for moving air and coloured instruments."""
     servo_lag_s: float = 0.0
     """First-order lag of the servo used, given or estimated."""
+    prediction: Mapping[str, float] = field(default_factory=dict)
+    """Output name to the largest half-width of the predicted response's 95 % band, over the peak of that
+    response; empty while a manoeuvre is still being flown."""
 
     @property
     def outputs(self) -> tuple[str, ...]:

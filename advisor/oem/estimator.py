@@ -24,6 +24,7 @@ from advisor.oem.instruments import (
 )
 from advisor.oem.notes import notes
 from advisor.oem.offset import with_offset
+from advisor.oem.prediction import prediction_band
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.problem import Problem
 from advisor.oem.solution import Method, Solution, evaluate, reported, search, solve
@@ -99,12 +100,17 @@ def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) 
     return found if found.present else None
 
 
+def lag_is_unknown(aircraft: Aircraft) -> bool:
+    """Whether neither the crew nor the flight so far tells the servo's lag."""
+    return aircraft.elevator.lag_s is None and aircraft.elevator.lag_found_s is None
+
+
 def unknown_instruments(prepared: Prepared, aircraft: Aircraft) -> tuple[Instrument, ...]:
     """Instruments whose parameters the aircraft file leaves open and the record may tell.
 
     A vane and an accelerometer at one place describe the motion of that place as well as those at the
     centre of gravity describe the aircraft's: one of the two places must be known to tell the other."""
-    unknown = [SERVO_LAG] if aircraft.elevator.lag_s is None else []
+    unknown = [SERVO_LAG] if lag_is_unknown(aircraft) else []
     measured = {name for record in prepared.problem.records for name in record.outputs}
     if {"alpha", "a_z"} <= measured:
         if aircraft.alpha.vane_arm_m is None:
@@ -193,12 +199,13 @@ def report(
         gust_rad=air.gust_angle if air is not None and air.present else None,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,
+        prediction={} if quick else prediction_band(best),
     )
 
 
 def _supposing_a_lag(solution: Solution, aircraft: Aircraft) -> FloatArray | None:
     """(8,) the estimate had an unknown servo a lag of ``SUPPOSED_LAG_S``; None where the servo is known."""
-    if aircraft.elevator.lag_s is not None:
+    if not lag_is_unknown(aircraft):
         return None
     servo = Servo(SUPPOSED_LAG_S, solution.problem.servo.delay_s)
     begin = (solution.optimum.shared, solution.optimum.local)

@@ -38,6 +38,7 @@ def notes(
         _outputs(solution, prepared),
         *(_instrument(x, solution) for x in told),
         _servo(solution, lagged),
+        _found_lag(aircraft),
         _airspeed(prepared),
         _scale(solution),
         _held(prepared),
@@ -97,6 +98,13 @@ def _servo(solution: Solution, lagged: FloatArray | None) -> str:
         f"Servo dynamics unknown (elevator.lag_s is not set): a lag of {SUPPOSED_LAG_S:g} s, if there is one,"
         f" changes {' and '.join(changes)}."
     )
+
+
+def _found_lag(aircraft: Aircraft) -> str:
+    elevator = aircraft.elevator
+    if elevator.lag_s is not None or elevator.lag_found_s is None:
+        return ""
+    return f"The servo's lag of {elevator.lag_found_s:.3f} s, as all manoeuvres together tell it, is used."
 
 
 def _airspeed(prepared: Prepared) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft import Aircraft, Elevator
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.motion import bank_at, gravity_in_plane, integrated
 from advisor.flight.record import Channel
@@ -126,7 +126,7 @@ def _prepared(
         reference_airspeed_m_s=_reference(known, aircraft, all(v.smooth for v in measured))
         if together
         else None,
-        servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
+        servo=_servo(aircraft.elevator),
         vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
     )
@@ -139,6 +139,11 @@ def _prepared(
         airspeed_lag_s=float(np.mean([speed.lag_s for speed in measured])) if measured else 0.0,
         airspeed_m_s=float(np.mean([signal.y.mean() for signal in known])) if known else None,
     )
+
+
+def _servo(elevator: Elevator) -> Servo:
+    lag_s = elevator.lag_found_s if elevator.lag_s is None else elevator.lag_s
+    return Servo(lag_s or 0.0, elevator.delay_s or 0.0)
 
 
 def _renewed(signal: Signal) -> tuple[Signal, bool]:
