@@ -158,8 +158,7 @@ def _alpha(maneuver: Maneuver, limit: float | None) -> list[Reason]:
 
 
 def _saturation(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    pairs = aircraft.elevator.calibration
-    ends = [deg for _, deg in pairs] if pairs else [-_ASSUMED_STROKE_DEG, _ASSUMED_STROKE_DEG]
+    ends = aircraft.elevator.ends_deg or (-_ASSUMED_STROKE_DEG, _ASSUMED_STROKE_DEG)
     elevator = np.degrees(flown(maneuver, "elevator"))
     stuck = (elevator <= min(ends) + 1e-6) | (elevator >= max(ends) - 1e-6)
     share = 100.0 * float(np.mean(stuck)) if len(stuck) else 0.0

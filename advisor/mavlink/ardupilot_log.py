@@ -147,8 +147,9 @@ class _Translation:
                 table = self._tables[name]
                 for field, values in table.fields.items():
                     if field[0] == "C" and field[1:].isdigit():
-                        held = values if table is rcou else latest(rcou.order, table.order, values)
-                        pulses[int(field[1:])] = held
+                        # The autopilot writes the records of one loop's outputs one after the other.
+                        at = _nearest(rcou.time_us, table.time_us)
+                        pulses[int(field[1:])] = values if table is rcou else values[at]
         banks = []
         for port in range(2):
             outputs = {
@@ -249,3 +250,11 @@ class _Translation:
 
 def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:
     return (time_us + 500) // 1000
+
+
+def _nearest(at_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Index of the record nearest to each time asked for, the earlier of two."""
+    after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
+    before = after - 1
+    after = np.minimum(after, len(time_us) - 1)
+    return np.where(at_us - time_us[before] <= time_us[after] - at_us, before, after)

@@ -216,6 +216,21 @@ class TestArduPilot:
         assert banks[1].fields["servo2_raw"][-1] == 1518
         assert not set(banks[0].order.tolist()) & set(banks[1].order.tolist())
 
+    def test_outputs_beyond_14_are_those_of_the_same_loop(self, tmp_path: Path) -> None:
+        log = dataflash_flight() + b"".join(
+            record
+            for i in range(10)
+            for record in (
+                dataflash_record("RCOU", 50_000_000 + 20_000 * i, 1500 + i, 1502),
+                dataflash_record("RCO2", 50_000_030 + 20_000 * i, 1600 + i, 1516, 1517, 1518),
+            )
+        )
+        path = tmp_path / "flight.bin"
+        path.write_bytes(log)
+        (first, _) = [c for batch in open_log(path, ["SERVO_OUTPUT_RAW"]) for c in batch]
+        apart = first.fields["servo15_raw"] - first.fields["servo1_raw"]
+        assert apart[-10:].tolist() == [100] * 10
+
     def test_damage_costs_the_records_it_hits(self, tmp_path: Path) -> None:
         content = bytearray(dataflash_flight())
         whole = read(tmp_path, bytes(content))["AOA_SSA"]
