@@ -38,6 +38,10 @@ _CANCELS = {
     "V-tail": "what they do in yaw cancels",
     "differential spoiler": "what they do in roll and yaw cancels",
 }
+_ASSUMED = (
+    "No calibration: they are scaled by SERVOn_MIN/TRIM/MAX as full strokes of 25 deg, so Z_delta_e and "
+    "M_delta_e are per assumed degree."
+)
 
 
 def find_elevator(elevator: Elevator, parameters: Parameters) -> Surface | Problem:
@@ -76,7 +80,7 @@ def _as_listed(outputs: Sequence[ElevatorOutput], parameters: Parameters) -> Sur
         f"Only one side of the {kind} pair is among them: its other axis counts as elevator, too."
         for kind in _one_sided(sides)
     ]
-    return Surface(parts, calibrated, " ".join([*said, *_scaled(parts, calibrated)]))
+    return Surface(parts, calibrated, " ".join(said if calibrated else [*said, _ASSUMED]))
 
 
 def _as_given(output: int, calibration: Pairs | None, parameters: Parameters) -> Surface | Problem:
@@ -120,7 +124,7 @@ def _as_found(calibration: Pairs | None, parameters: Parameters) -> Surface | Pr
         return _carried_over(calibration, parts, kinds, parameters)
     if len(parts) == 1:
         return _uncalibrated(parts[0], "SERVOn_FUNCTION 19")
-    return Surface(parts, False, " ".join([_formed(parts, _why(kinds), kinds), *_scaled(parts, False)]))
+    return Surface(parts, False, f"{_formed(parts, _why(kinds), kinds)} {_ASSUMED}")
 
 
 def _carried_over(
@@ -179,23 +183,6 @@ def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
         made = listed([f"{100.0 * part.share:.0f} % of output {part.output}" for part in parts])
     cancels = "".join(f"; {_CANCELS[kind]}" for kind in kinds)
     return f"The elevator is {made} ({why}){cancels}."
-
-
-def _scaled(parts: Sequence[Part], calibrated: bool) -> list[str]:
-    """What is assumed of scale and sense, in sentences."""
-    said = []
-    if not calibrated:
-        said.append(
-            "No calibration: they are scaled by SERVOn_MIN/TRIM/MAX as full strokes of 25 deg, so Z_delta_e "
-            "and M_delta_e are per assumed degree."
-        )
-    unsure = [part.output for part in parts if not part.sure]
-    if unsure:
-        said.append(
-            f"Nothing says which way output{'s' if len(unsure) > 1 else ''} {joined_numbers(unsure)} "
-            f"count{'' if len(unsure) > 1 else 's'}: the aircraft's answer decides."
-        )
-    return said
 
 
 def _why(kinds: Sequence[str]) -> str:

@@ -40,8 +40,7 @@ class Mixing:
     def __init__(self, tracks: Tracks) -> None:
         self._tracks = tracks
         self._lifts: dict[int, bool] = {}
-        self.said = ""
-        """What the aircraft answered, where that decides or contradicts; empty otherwise."""
+        self._answered = ""
         self.contradiction: Problem | None = None
         """What is wrong where the signs of the aircraft file make the outputs cancel; else None."""
         self.begin()
@@ -52,6 +51,14 @@ class Mixing:
         self._waiting: list[Commanded] = []
         self._next_s = -np.inf
         self._open_since_s = -np.inf
+
+    def said(self, surface: Surface) -> str:
+        """What is known of the sense of several outputs, in a sentence; empty where nothing is in doubt."""
+        if self._answered or not surface.unsure:
+            return self._answered
+        listed = joined_numbers(surface.unsure)
+        moves = f"outputs {listed} move" if len(surface.unsure) > 1 else f"output {listed} moves"
+        return f"Nothing says which way {moves} the nose; the aircraft's answer in MANUAL decides."
 
     def take(self, new: Commanded, loop_is_closed: bool) -> Iterator[Decoded | Notice]:
         """The elevator's samples that are known by now, and what was found out on the way.
@@ -135,16 +142,16 @@ class Mixing:
         turned = [n for n in surface.outputs if self._lifts[n]]
         listed = joined_numbers(turned)
         if surface.unsure:
-            self.said = (
+            self._answered = (
                 f"The aircraft's answer in pitch decides: the sign of output {listed} is turned."
                 if turned
                 else "The aircraft's answer in pitch decides: no output's sign is turned."
             )
         elif turned and len(turned) < len(surface.outputs):
             others = joined_numbers([n for n in surface.outputs if n not in turned])
-            self.said = (
+            self._answered = (
                 f"The aircraft answers in pitch to output {listed} the other way than to output {others}, so "
                 "they cancel."
             )
-            self.contradiction = Problem("elevator_signs", self.said, _CHECK_SIGNS)
-        return [Notice("elevator_mixing", self.said)] if self.said else []
+            self.contradiction = Problem("elevator_signs", self._answered, _CHECK_SIGNS)
+        return [Notice("elevator_mixing", self._answered)] if self._answered else []

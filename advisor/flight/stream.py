@@ -121,9 +121,11 @@ class FlightStream:
     @property
     def elevator_notes(self) -> tuple[str, ...]:
         """What the elevator is made of, what is assumed of its scale and sense, in sentences."""
-        scale = self.elevator.said if isinstance(self.elevator, Surface) else ""
         backwards = SAID if self._cutting.is_backwards else ""
-        return tuple(said for said in (scale, self._mixing.said, backwards) if said)
+        if not isinstance(self.elevator, Surface):
+            return (backwards,) if backwards else ()
+        sentences = (self.elevator.said, self._mixing.said(self.elevator), backwards)
+        return tuple(said for said in sentences if said)
 
     @property
     def now_s(self) -> float:

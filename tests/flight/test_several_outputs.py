@@ -131,10 +131,17 @@ def test_what_the_elevator_is_made_of_is_said(kind: str) -> None:
     assert all(str(n) in said for n in KINDS[kind].outputs)
 
 
+def test_before_the_aircraft_has_answered_it_is_said_that_nothing_is_known() -> None:
+    stream = FlightStream(listed(ElevatorOutput(1), ElevatorOutput(2)))
+    stream.feed(between(next(wired(ELEVONS, {})), 0, 20_000))
+    assert "Nothing says which way outputs 1 and 2 move the nose" in stream.elevator_notes[1]
+
+
 def test_what_the_aircraft_answered_is_said_once() -> None:
     stream, _, notices = estimated("elevons by the aircraft's answer")
     assert notices.count("elevator_mixing") == 1
-    assert "the sign of output 1 is turned" in " ".join(stream.elevator_notes)
+    assert "the sign of output 1 is turned" in stream.elevator_notes[1]
+    assert len(stream.elevator_notes) == 2
     assert "elevator_backwards" not in notices
 
 
