@@ -1,7 +1,7 @@
 """What a campaign learns of the instruments on the way, and uses from then on.
 
 A servo's lag that the crew does not give is estimated from all accepted manoeuvres together. As soon as the
-lag is known to a tenth, single estimates, verdicts and criteria are those with the lag. """
+lag is known to a tenth, single estimates, verdicts and criteria are those with the lag."""
 
 from dataclasses import replace
 

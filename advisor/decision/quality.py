@@ -6,7 +6,7 @@ one the crew can act on, and what follows from it comes after it.
 Richness is information, not amplitude: how well the estimate from this manoeuvre alone predicts the pitch
 rate that its own input makes. Moving air, a slow channel, a missing vane or a gentle input all show in that
 one number. Where the input has a good shape, more stick is the cure, and the reason says how much more,
-since standard deviations fall with the amplitude. """
+since standard deviations fall with the amplitude."""
 
 import math
 from collections.abc import Mapping

@@ -7,6 +7,7 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.model.response import OUTPUTS
+from advisor.oem.between import widened_by_scatter
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
@@ -182,6 +183,8 @@ def report(
     quick : leave out what takes milliseconds: what missing channels cost, and the efficient estimate.
     """
     best = filtered or (solution if quick else efficient(solution))
+    pulls = (filtered or solution).contributions[:, : len(best.covariance)]
+    best = replace(best, covariance=widened_by_scatter(best.covariance, pulls))
     return Estimate(
         theta=best.theta,
         covariance_cr=best.covariance_cr[:N, :N],
@@ -194,7 +197,7 @@ def report(
         condition=solution.influence.condition,
         airspeed_m_s=solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s,
         notes=notes(solution, prepared, aircraft, told, lagged, best=best, priced=not quick),
-        theta_of_lowest_cost=None if best is solution else solution.theta,
+        theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
         instruments=tuple(InstrumentEstimate(x.instrument.name, x.value, x.std) for x in told),
         gust_rad=air.gust_angle if air is not None and air.present else None,
         filtered=filtered is not None,

@@ -20,7 +20,7 @@ from advisor.oem.innovations import AirModel, Gains, gains_of
 from advisor.oem.instruments import Instrument, by_instruments
 from advisor.oem.prior import precision
 from advisor.oem.problem import Assembly, Problem, assemble
-from advisor.oem.solution import Solution, reported
+from advisor.oem.solution import Solution, contributions_of, reported
 from advisor.oem.turbulence import Rows, Turbulence, find_turbulence
 
 ROUNDS = 6
@@ -264,5 +264,6 @@ def _solution(start: Solution, place: Place, air: AirModel) -> Solution | None:
         covariance_cr=effect.rows[:, :n].T @ effect.rows[:, :n],
         covariance=coloured(assembly, effect.rows, noise),
         noise=noise,
+        contributions=contributions_of(assembly, effect.rows, white[:, 0]),
         extra=place.extra,
     )

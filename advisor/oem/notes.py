@@ -161,7 +161,9 @@ def _vane(aircraft: Aircraft) -> str:
 
 
 def _weighed(solution: Solution, best: Solution) -> str:
-    if best is solution or all(colour.memory == 0.0 for colour in solution.noise.colours.values()):
+    if best.theta is solution.theta or all(
+        colour.memory == 0.0 for colour in solution.noise.colours.values()
+    ):
         return ""
     memories = ", ".join(
         f"{output} {colour.memory:.2f}" for output, colour in solution.noise.colours.items() if colour.memory

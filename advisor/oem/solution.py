@@ -47,6 +47,8 @@ class Solution:
     """(8 + k, 8 + k) corrected for coloured residuals."""
     noise: Coloured
     """Colour of each output's noise."""
+    contributions: FloatArray
+    """(m, 8 + k) how far each manoeuvre's residuals pull each parameter; over the manoeuvres they sum to zero."""
     extra: FloatArray | None = None
     """(N, e) derivatives by parameters estimated besides, such as the times of edges; e >= k."""
 
@@ -164,8 +166,15 @@ def evaluate(
         covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise),
         covariance=coloured(assembly, effect.rows, noise),
         noise=noise,
+        contributions=contributions_of(assembly, effect.rows, assembly.z - optimum.fitted),
         extra=extra,
     )
+
+
+def contributions_of(assembly: Assembly, rows: FloatArray, residual: FloatArray) -> FloatArray:
+    """(m, 8 + k) share of each manoeuvre in the influence ``rows`` (N, 8 + k) of a ``residual`` (N,)."""
+    pull = rows * residual[:, None]
+    return np.array([pull[assembly.owner == m].sum(axis=0) for m in range(assembly.maneuvers)])
 
 
 def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
