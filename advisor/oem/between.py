@@ -1,11 +1,10 @@
 """Errors that contain the scatter between manoeuvres: what no model of the noise within one manoeuvre knows.
 
 The influence of the measurements on a joint estimate splits into one contribution of each manoeuvre. At the
-optimum the contributions sum to zero; their scatter is the covariance that holds whatever the errors within a
-manoeuvre are, model error included (Liang & Zeger, *Biometrika* 73, 1986: clusters are manoeuvres). From few
-manoeuvres that scatter is known badly, so that it takes the place of the stated error only where chance hardly
-explains the difference.
-"""
+optimum the contributions sum to zero; their scatter is the covariance that holds whatever the errors within
+a manoeuvre are, model error included (Liang & Zeger, *Biometrika* 73, 1986: clusters are manoeuvres). From
+few manoeuvres that scatter is known badly, so that it takes the place of the stated error only where chance
+hardly explains the difference. """
 
 import numpy as np
 from scipy.special import chdtri

@@ -48,7 +48,8 @@ class Solution:
     noise: Coloured
     """Colour of each output's noise."""
     contributions: FloatArray
-    """(m, 8 + k) how far each manoeuvre's residuals pull each parameter; over the manoeuvres they sum to zero."""
+    """(m, 8 + k) how far each manoeuvre's residuals pull each parameter; over the manoeuvres they sum to
+    zero."""
     extra: FloatArray | None = None
     """(N, e) derivatives by parameters estimated besides, such as the times of edges; e >= k."""
 
