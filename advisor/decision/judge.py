@@ -102,7 +102,7 @@ def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
 
 def _explained(estimate: Estimate) -> str:
     """How much of the motion the model explains; nothing of a record without any."""
-    share = min(estimate.fits[0][name].r2 for name in ("alpha", "q"))
+    share = min(fit.r2 for name, fit in estimate.fits[0].items() if name in ("alpha", "q"))
     # Cut, not rounded: 100 % is said of an exact fit only.
     return f"the model explains {floor(1000.0 * share) / 10.0:.1f} % of it; " if share > 0.0 else ""
 
@@ -137,6 +137,6 @@ def _another_try(flown: Flown, estimate: Estimate, rule: Rule) -> str:
         return "fly it again in calmer air"
     if rule == "separate":
         return "fly it again"
-    if any(fits[name].lag1 > COLOURED for fits in estimate.fits for name in ("alpha", "q")):
+    if any(fit.lag1 > COLOURED for fits in estimate.fits for fit in fits.values()):
         return "fly it again from steady flight, with no larger steps than then"
     return "fly it again; if the noise stays as large, check the instruments"

@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.change import find_change
-from advisor.decision.history import Flown
+from advisor.decision.history import Flown, usable_ones
 from advisor.decision.information import knowledge
 from advisor.decision.judge import accepted_estimates, rule_results
 from advisor.decision.scatter import SCATTER_FACTOR, window
@@ -36,10 +36,10 @@ def warnings(
 
 
 def _left_out(history: Sequence[Flown], plan: CampaignPlan) -> list[str]:
-    usable = [(i, e) for i, flown in enumerate(history, start=1) if (e := flown.usable)]
-    if not usable:
+    numbers = [i for i, flown in enumerate(history, start=1) if flown.usable]
+    if not numbers:
         return []
-    odd = [str(usable[k][0]) for k in knowledge([e for _, e in usable], plan).left_out]
+    odd = [str(numbers[k]) for k in knowledge(usable_ones(history), plan).left_out]
     return [f"Manoeuvre {', '.join(odd)} contradicts all the others and is left out."] if odd else []
 
 
