@@ -30,9 +30,9 @@ def sentence(known: Knowledge | None, stop: bool) -> str:
 
 def _stop(known: Knowledge) -> str:
     bands = known.prediction_percent
-    within = [f"the response is predicted to {max(bands.values()):.1f} % of its peak"] if bands else []
+    within = [f"the response is known to {max(bands.values()):.1f} % of its peak"] if bands else []
     if known.named:
-        within.append(f"{', '.join(known.named)} are within their tolerances")
+        within.append("each named derivative to its tolerance")
     return f"STOP TESTING: {', '.join(within)}, and the newest manoeuvre was predicted."
 
 
@@ -41,9 +41,9 @@ def _held_back(known: Knowledge) -> str:
     times, _ = beside(share, 1.0, 1)
     if name in SPOKEN:
         if np.isinf(share):
-            return f"the {SPOKEN[name]} cannot be predicted from these manoeuvres"
+            return f"the response in {SPOKEN[name]} cannot be predicted from these manoeuvres"
         size, limit = beside(share * known.tolerance_percent, known.tolerance_percent, 1)
-        return f"the {SPOKEN[name]} is predicted only to {size} % of its peak (limit {limit} %)"
+        return f"the response in {SPOKEN[name]} is known only to {size} % of its peak (limit {limit} %)"
     if np.isinf(share):
         reason = known.not_identifiable.get(name, "cannot be estimated from these manoeuvres")
         return f"{name} {reason.removesuffix('.')}"

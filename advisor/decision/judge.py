@@ -8,6 +8,7 @@ from advisor.beside import beside
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.consistency import Odd, odd_ones
 from advisor.decision.history import Flown
+from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.pooling import beliefs_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
@@ -23,10 +24,14 @@ def judge_campaign(history: Sequence[Flown], plan: CampaignPlan) -> tuple[Maneuv
     rule ``information`` later ones may show that it contradicts all the others.
     """
     by_rule, odd = rule_results(history), contradicting(history)
-    return tuple(
-        _verdict(flown, plan.rule, {name: results[i] for name, results in by_rule.items()}, odd.get(i))
-        for i, flown in enumerate(history)
-    )
+    accepted = [result.accepted for result in by_rule[plan.rule]]
+    verdicts = []
+    for i, flown in enumerate(history):
+        costly = flown.usable is not None and plan.rule != "information" and not accepted[i]
+        larger = larger_and_agreeing(history[: i + 1], accepted, plan) if costly else None
+        rules = {name: results[i] for name, results in by_rule.items()}
+        verdicts.append(_verdict(flown, plan.rule, rules, odd.get(i), larger))
+    return tuple(verdicts)
 
 
 def judge(flown: Flown, history: Sequence[Flown], plan: CampaignPlan) -> ManeuverVerdict:
@@ -60,8 +65,10 @@ def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
     ]
 
 
-def _verdict(flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], odd: Odd | None) -> ManeuverVerdict:
-    reasons = _reasons(flown, rule, rules[rule], odd)
+def _verdict(
+    flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], odd: Odd | None, larger: Larger | None
+) -> ManeuverVerdict:
+    reasons = _reasons(flown, rule, rules[rule], odd, larger)
     notes = flown.estimate.notes if isinstance(flown.estimate, Estimate) else ()
     cautions = tuple(dict.fromkeys((*flown.cautions, *notes)))
     if flown.excluded_because is not None:
@@ -75,7 +82,9 @@ def _verdict(flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], odd: Od
     )
 
 
-def _reasons(flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None) -> tuple[Reason, ...]:
+def _reasons(
+    flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None, larger: Larger | None
+) -> tuple[Reason, ...]:
     if flown.excluded_because is not None:
         text = f"excluded by hand: {flown.excluded_because}"
         return (Reason("excluded", text, 1.0, 0.0), *flown.reasons)
@@ -85,6 +94,8 @@ def _reasons(flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None) -> t
         return flown.reasons
     if rule == "information":
         return (_contradicts(odd),) if odd else ()
+    if larger is not None:
+        return (_only_larger(flown.estimate, larger, result.limit or 0.0),)
     return (_too_costly(flown, flown.estimate, rule, result.limit or 0.0),)
 
 
@@ -125,6 +136,16 @@ def _too_costly(flown: Flown, estimate: Estimate, rule: Rule, limit: float) -> R
     than = "no better than half of the earlier ones" if rule == "separate" else _LESS_WELL
     cost = _of_limit(estimate.cost, limit)
     text = f"the model explains it {than}, {cost}; {_another_try(flown, estimate, rule)}"
+    return Reason("cost", text, estimate.cost, limit)
+
+
+def _only_larger(estimate: Estimate, larger: Larger, limit: float) -> Reason:
+    motion = f"the motion of manoeuvre {larger.setter}" if larger.setter else "the usual motion"
+    text = (
+        f"refused by the paper's rule only, {_of_limit(estimate.cost, limit)}: it was flown with "
+        f"{larger.ratio:.1f} times {motion}, and its estimate agrees with the others; fly it again with "
+        "smaller steps, or decide by the rule information"
+    )
     return Reason("cost", text, estimate.cost, limit)
 
 
