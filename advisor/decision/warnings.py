@@ -73,8 +73,9 @@ def _locked_out(history: Sequence[Flown], plan: CampaignPlan) -> list[str]:
             refused = 0 if good else refused + 1
     if refused and (larger := larger_and_agreeing(history, accepted, plan)) and larger.setter:
         return [
-            f"Manoeuvre {larger.setter} was flown gentler than the newest, {larger.ratio:.1f} times, and sets a "
-            f"limit that larger ones cannot meet. Exclude manoeuvre {larger.setter}, or use the rule information."
+            f"Manoeuvre {larger.setter} sets a cost limit that larger ones can hardly meet: the newest moved "
+            f"{larger.ratio:.1f} times as much and agrees with it. Exclude manoeuvre {larger.setter}, or use "
+            "the rule information."
         ]
     if refused < plan.window:
         return []
