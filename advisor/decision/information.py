@@ -43,6 +43,8 @@ class Knowledge:
     """Distance of the newest from its prediction, as a share of the 99 % limit; NaN without one."""
     missed_percent: float
     """Largest error of the newest's predicted response, in percent of its peak; NaN without one."""
+    foretold_percent: float
+    """The 95 % band of that prediction, in percent of its peak; NaN without one."""
     widening: float
     """Variance ratio by which contradictions between manoeuvres have widened ``belief``, at least 1."""
     left_out: tuple[int, ...]
@@ -54,10 +56,12 @@ class Knowledge:
     def predicted(self) -> bool:
         """Whether the manoeuvres before predicted the newest.
 
-        Either chance explains what separates the two, or what separates them does not matter: a small
-        error of the model, which no interval of a long campaign contains, does not withhold the stop.
+        The predicted response came true within the tolerance: a small error of the model, which no interval
+        of a long campaign contains, does not withhold the stop. Or chance explains the difference, and the
+        prediction was surer than the tolerance: an unsure one agrees with anything.
         """
-        return self.surprise < 1.0 or self.missed_percent < self.tolerance_percent
+        unsure = self.foretold_percent >= self.tolerance_percent
+        return self.missed_percent < self.tolerance_percent or (self.surprise < 1.0 and not unsure)
 
     @property
     def prediction_percent(self) -> Mapping[str, float]:
@@ -103,7 +107,7 @@ def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
     beliefs, airspeed = beliefs_at_one_speed(estimates), common_airspeed(estimates)
     belief, widening, left_out = consensus(beliefs)
     agreeing = [flown for i, flown in enumerate(usable) if i not in left_out]
-    surprise, missed = _compared(usable[-1], beliefs, airspeed)
+    surprise, missed, foretold = _compared(usable[-1], beliefs, airspeed)
     used = estimates_of(agreeing)
     return Knowledge(
         belief=belief,
@@ -113,6 +117,7 @@ def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
         tolerance=tolerances(belief.theta, used[0], plan),
         surprise=surprise,
         missed_percent=missed,
+        foretold_percent=foretold,
         widening=widening,
         left_out=left_out,
         not_identifiable={
@@ -123,12 +128,16 @@ def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
     )
 
 
-def _compared(newest: Flown, beliefs: Sequence[Belief], airspeed_m_s: float | None) -> tuple[float, float]:
-    """How far the newest manoeuvre lies from what those before it predicted: ``surprise``, ``missed_percent``."""
+def _compared(
+    newest: Flown, beliefs: Sequence[Belief], airspeed_m_s: float | None
+) -> tuple[float, float, float]:
+    """The newest manoeuvre against those before: ``surprise``, ``missed_percent``, ``foretold_percent``."""
     if len(beliefs) < 2:
-        return float("nan"), float("nan")
+        return float("nan"), float("nan"), float("nan")
     before, excess, _ = consensus(beliefs[:-1])
     own: Shared = widened(beliefs[-1], excess).shared
     distance, dof = disagreement(before.shared, own)
     surprise = distance / float(chdtri(dof, SURPRISING)) if dof else float("nan")
-    return surprise, missed_percent(newest, before.shared.theta, own.theta, airspeed_m_s)
+    bands = predict([newest], before.shared.theta, airspeed_m_s).percent(before.shared.covariance)
+    missed = missed_percent(newest, before.shared.theta, own.theta, airspeed_m_s)
+    return surprise, missed, max(bands.values(), default=float("nan"))

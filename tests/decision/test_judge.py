@@ -13,7 +13,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from tests.decision.campaigns import SAMPLES, drawn, estimate, flown, with_change, with_residual
 
 QUIET = Reason("amplitude", "too gentle, pitch rate 3 deg/s; use about 1.5 times the stick", 3.0, 5.0)
-PLAN = CampaignPlan()
+PLAN = CampaignPlan(rule="continuous")
 
 
 def test_a_quiet_record_with_a_tiny_cost_is_refused_and_poisons_no_limit() -> None:

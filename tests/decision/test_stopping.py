@@ -11,7 +11,7 @@ from advisor.decision.scatter import scatter_percent
 from advisor.decision.stopping import flight_test
 from tests.decision.campaigns import THETA, drawn, estimate, flown, with_change
 
-PLAN = CampaignPlan()
+PLAN = CampaignPlan(rule="continuous")
 
 
 def test_nothing_flown_means_continue() -> None:
@@ -79,8 +79,8 @@ def test_excluding_the_contradiction_gives_the_stop_again() -> None:
 
 def test_window_and_limit_are_the_users() -> None:
     history = [Flown(estimate(k * THETA)) for k in (0.99, 1.01)]
-    assert flight_test(history, CampaignPlan(window=2)).decision == "stop"
-    assert flight_test(history, CampaignPlan(window=2, limit_percent=1.0)).decision == "continue"
+    assert flight_test(history, replace(PLAN, window=2)).decision == "stop"
+    assert flight_test(history, replace(PLAN, window=2, limit_percent=1.0)).decision == "continue"
 
 
 def test_the_written_out_form_is_available_by_name() -> None:
