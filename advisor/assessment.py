@@ -13,6 +13,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
 from advisor.oem.filter_error import filter_error_estimate
 from advisor.oem.solution import Method
+from advisor.oem.surface import Servo
 from advisor.oem.turbulence import turbulence_in
 
 UNEXPLAINED = 0.004
@@ -30,6 +31,7 @@ def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newto
         maneuver=maneuver,
         second_opinion=opinion,
         air_moved=bool(air),  # it is spoken of only then
+        servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
     )
 
 

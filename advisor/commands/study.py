@@ -59,7 +59,9 @@ def command(
 
     if figure is not None:
         if advice or change or stops:
-            raise ConfigurationError("--figure draws the campaigns: leave out --advice, --change and --stops.")
+            raise ConfigurationError(
+                "--figure draws the campaigns: leave out --advice, --change and --stops."
+            )
         refuse_unwritable("--figure", figure)
         refuse_undrawable(figure)
     with Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as progress:

@@ -12,7 +12,6 @@ from advisor.oem.covariance import cramer_rao, influence
 from advisor.oem.problem import Problem, Record, Signal, assemble
 from advisor.oem.surface import Servo
 
-
 UNMEASURED = 1e3
 """Noise in rad of an angle of attack that nobody measures: no information beside any other output's."""
 

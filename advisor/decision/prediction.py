@@ -47,7 +47,7 @@ class Response(NamedTuple):
     @property
     def peak(self) -> FloatArray:
         """(3,) largest deviation from trim of each output."""
-        return np.max(np.abs(self.values), axis=1)
+        return np.asarray(np.max(np.abs(self.values), axis=1))
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def predict(flown: Sequence[Flown], derivatives: FloatArray, airspeed_m_s: float
 def _relative(response: Response | None, k: int) -> FloatArray:
     if response is None or not response.peak[k] > 0.0:
         return np.full((1, len(DERIVATIVES)), np.nan)
-    return 100.0 * response.slopes[k] / response.peak[k]
+    return np.asarray(100.0 * response.slopes[k] / response.peak[k])
 
 
 def missed_percent(
@@ -143,13 +143,14 @@ def response_to(flown: Flown, derivatives: FloatArray, airspeed_m_s: float | Non
     if flown.maneuver is None or not np.all(np.isfinite(derivatives)):
         return None
     elevator = flown.maneuver.channels["elevator"]
-    moved = elevator.y - trim_of(flown.maneuver)
+    heard = np.isfinite(elevator.y)
+    stamps, moved = elevator.t[heard], elevator.y[heard] - trim_of(flown.maneuver)
     scale = np.ones(len(DERIVATIVES))
     speed = _airspeed(flown.maneuver)
     if speed is not None and airspeed_m_s is not None:
         scale = (speed / airspeed_m_s) ** _SPEED_POWER
     found = _respond(
-        np.asarray(elevator.t - elevator.t[0], float).tobytes(),
+        np.asarray(stamps - stamps[0], float).tobytes(),
         np.asarray(moved, float).tobytes(),
         flown.servo,
         tuple((derivatives * scale).tolist()),
@@ -161,7 +162,7 @@ def trim_of(maneuver: Maneuver) -> float:
     """Elevator before the first step, rad."""
     elevator, span = maneuver.channels["elevator"], maneuver.span
     lead = elevator.cut(span.record_from_s, span.start_s)
-    return float(np.median(lead.y)) if len(lead) else float(elevator.y[0])
+    return float(np.nanmedian(lead.y if len(lead) else elevator.y[:1]))
 
 
 def _airspeed(maneuver: Maneuver) -> float | None:
@@ -172,7 +173,7 @@ def _airspeed(maneuver: Maneuver) -> float | None:
 
 @lru_cache(maxsize=_REMEMBERED)
 def _respond(t: bytes, elevator: bytes, servo: Servo, derivatives: tuple[float, ...]) -> Response | None:
-    """The response to an elevator given as the bytes of its stamps and deflections, which can be looked up."""
+    """The response to an elevator, given as bytes of its stamps and deflections so that it can be kept."""
     command = Signal(np.frombuffer(t), np.frombuffer(elevator))
     moments = np.linspace(command.t[0], command.t[-1], MOMENTS)
     still = Signal(moments, np.zeros(MOMENTS))

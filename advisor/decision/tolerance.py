@@ -28,7 +28,7 @@ def tolerances(theta: FloatArray, first: Estimate, plan: CampaignPlan) -> FloatA
     ``DERIVATIVE_SHARE`` times ``plan.tolerance_percent`` of the parameter. For one near zero, a share of
     which is smaller than anything that matters: with δ the change that moves the response by as much as the
     noise, δ itself at zero, falling to nothing extra at 3·δ. Z_0 and M_0, which hold the trim, may
-    also be wrong by what shifts the trim by as much as the noise of the angle of attack, if it is measured. What
+    also be wrong by what shifts the trim by as much as the noise of a measured angle of attack. What
     ``plan.tolerance`` says of a parameter stands above all this.
 
     Noise and response are those of the ``first`` usable manoeuvre: a bolder one shows more, and must

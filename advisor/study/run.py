@@ -111,7 +111,7 @@ def change(campaigns: int, seed: int, progress: Progress | None = None) -> Repor
 
 def early_stops(campaigns: int, seed: int, progress: Progress | None = None) -> Report:
     """How often the rule ``information`` stops too early, and what each rule needs."""
-    found = stops.measure(campaigns, seed, counter(len(stops.CASES), progress))
+    found = stops.measure(campaigns, seed, counter(len(stops.CASES), progress), stops.CASES)
     entries = [
         {
             **asdict(s.case),

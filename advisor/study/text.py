@@ -29,8 +29,8 @@ def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
         f"{scene.unit_s:g} s steps, {degrees:.0f} deg),",
         f"{scene.duration_s:g} s at {scene.rate_hz:g} Hz, white noise on angle of attack and pitch rate; "
         f'"noise 1 %" is 1 % {NOISE_READINGS[reading]}.',
-        "Rules: continuous (Eqs. 10 and 12) and separate (Eqs. 11 and 12) are the paper's; information is the",
-        "rule that decides on real flights.",
+        "The paper's rules are continuous (Eqs. 10 and 12) and separate (Eqs. 11 and 12); on real flights "
+        "information decides.",
         "",
     ]
 
@@ -159,8 +159,8 @@ def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
 def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
     """False stops of the rule ``information``, and manoeuvres needed beside those of the paper's rules."""
     lines = [
-        f"Stops of the rule information, {campaigns} campaigns of seven manoeuvres each. A stop is false when the",
-        "predicted response is wrong by more than the tolerance. Needed: median (campaigns that never stop).",
+        f"Stops of the rule information, {campaigns} campaigns of seven manoeuvres each. A stop is false where",
+        "the predicted response is wrong by more than the tolerance. Needed: median (share that never stops).",
         f"{'case':<26}{'noise':>6}{'tolerance':>10}{'false':>8}{'error, 95 %':>13}"
         f"{'information':>14}{'continuous':>14}{'separate':>14}",
     ]
@@ -171,9 +171,8 @@ def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
             for rule in ("information", "continuous", "separate")
         )
         false, size = ("-", "-") if error is None else (f"{one.false_percent:.1f} %", f"{error:.2f} %")
-        lines.append(
-            f"{case.name:<26}{case.noise_percent:>4g} %{case.tolerance_percent:>8g} %{false:>8}{size:>13}{needed}"
-        )
+        asked = f"{case.noise_percent:>4g} %{case.tolerance_percent:>8g} %"
+        lines.append(f"{case.name:<26}{asked}{false:>8}{size:>13}{needed}")
     return lines
 
 

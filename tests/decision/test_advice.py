@@ -54,7 +54,12 @@ def test_before_the_first_manoeuvre_the_textbook_input_is_advised_gently() -> No
     advice = next_input([], AIRCRAFT, stopped=False)
     assert advice.advice == "next: 3-2-1-1, 0.5 s steps, 10 % stick, to begin gently"
     assert advice.remaining.median == 2
-    assert next_input([], replace(AIRCRAFT, campaign=CampaignPlan(rule="continuous")), stopped=False).remaining.median == 3
+    assert (
+        next_input(
+            [], replace(AIRCRAFT, campaign=CampaignPlan(rule="continuous")), stopped=False
+        ).remaining.median
+        == 3
+    )
 
 
 def test_while_none_was_usable_the_remedy_of_the_newest_is_repeated() -> None:

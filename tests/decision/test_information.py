@@ -1,4 +1,4 @@
-"""The rule `information`: the prediction sure enough, the named derivatives too, the newest manoeuvre predicted."""
+"""The rule `information`: response and named derivatives known, the newest manoeuvre predicted."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -120,7 +120,9 @@ def test_the_document_tells_what_the_rule_weighs() -> None:
     assert set(information.parameter_percent) == set(PLAN.parameters)
     last = information.history_percent[-1]
     shares = [*information.parameter_percent.values()]
-    shares += [100.0 * band / PLAN.tolerance_percent for band in information.prediction_percent.values() if band]
+    shares += [
+        100.0 * band / PLAN.tolerance_percent for band in information.prediction_percent.values() if band
+    ]
     assert last == pytest.approx(max(share for share in shares if share is not None))
 
 
@@ -157,7 +159,10 @@ def test_the_interval_holds_the_truth_as_often_as_it_says() -> None:
 def test_a_parameter_that_cannot_be_estimated_keeps_the_test_going() -> None:
     covariance = np.diag((0.01 * THETA) ** 2)
     covariance[6, 6] = np.inf
-    for history in ([Flown(estimate(covariance=covariance))] * 3, campaign([estimate(covariance=covariance)] * 3)):
+    for history in (
+        [Flown(estimate(covariance=covariance))] * 3,
+        campaign([estimate(covariance=covariance)] * 3),
+    ):
         verdict = flight_test(history, PLAN)
         assert verdict.decision == "continue"
         assert verdict.criterion_percent is None
