@@ -5,6 +5,7 @@ import numpy as np
 from advisor.aircraft import PARAMETERS
 from advisor.beside import beside
 from advisor.decision.information import Knowledge
+from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import Z95
 
 SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal acceleration"}
@@ -56,16 +57,16 @@ def evidence(known: Knowledge) -> tuple[str, ...]:
     bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
     named = ", ".join(f"{name} {100.0 * share[name]:.0f} %" for name in known.named)
     weak = ", ".join(
-        f"{name} {known.belief.theta[k]:.3g} ± {Z95 * known.belief.std[k]:.2g}"
-        for k, name in enumerate(PARAMETERS)
-        if name not in known.named
+        f"{PARAMETERS[k]} {known.belief.theta[k]:.3g} ± {Z95 * known.belief.std[k]:.2g}"
+        for k in DERIVATIVES
+        if PARAMETERS[k] not in known.named
     )
     return tuple(
         f"{what}: {numbers}"
         for what, numbers in (
             (f"95 % band of the response, of its peak (limit {known.tolerance_percent:g} %)", bands),
             ("95 % interval, of its own tolerance (limit 100 %)", named),
-            ("holds nobody up unless it moves the response", weak),
+            ("judged by the response alone", weak),
         )
         if numbers
     )
