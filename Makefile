@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change accuracy robustness study-quality study-second pictures clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality study-second pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -70,6 +70,9 @@ study: .venv/.developed ## the paper's campaign, 2,000 times a noise level, with
 
 study-advice: .venv/.developed ## what following the advice saves
 	$(BIN)/advisor study --advice --campaigns 100
+
+study-stops: .venv/.developed ## how often the default rule stops too early, and what each rule needs
+	$(BIN)/advisor study --stops --campaigns 200
 
 study-change: .venv/.developed ## how soon a change of the aircraft is told
 	$(BIN)/advisor study --change --campaigns 400

@@ -99,16 +99,18 @@ class Reference:
 class CampaignPlan:
     """The stop criterion the crew chose."""
 
-    rule: Rule = "continuous"
+    rule: Rule = "information"
     window: int = 3
     """n of Eq. (12)."""
     limit_percent: float = 25.0
     criterion: Criterion = "eq12"
     """Which form of the scatter criterion: Eq. (12), or Eq. (13) as the paper writes it out."""
     tolerance_percent: float = 5.0
-    """How narrow the rule ``information`` wants each 95 % interval, in percent of the parameter."""
+    """How narrow ``information`` wants the 95 % band of the predicted response, in percent of its peak."""
+    parameters: tuple[str, ...] = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
+    """Whose own tolerance the rule ``information`` demands besides; any of ``PARAMETERS``."""
     tolerance: Mapping[str, float] = field(default_factory=dict)
-    """The same for single parameters by name, in the parameter's own unit."""
+    """That tolerance by name, in the parameter's own unit; default: twice ``tolerance_percent`` of it."""
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from advisor.flight.vehicle import closes_pitch_loop
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
 from advisor.oem.solution import Method
+from advisor.oem.surface import Servo
 
 
 def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newton") -> Flown:
@@ -22,7 +23,16 @@ def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newto
         tuple(_cautions(maneuver, estimated, aircraft)),
         maneuver=maneuver,
         air_moved=isinstance(estimated, Estimate) and estimated.gust_rad is not None,
+        servo=_servo(estimated, aircraft),
     )
+
+
+def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
+    """The servo as the estimate has it: given, or told by the record."""
+    lag_s = aircraft.elevator.lag_s or 0.0
+    if isinstance(estimated, Estimate):
+        lag_s = estimated.servo_lag_s
+    return Servo(lag_s, aircraft.elevator.delay_s or 0.0)
 
 
 def _cautions(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft) -> list[str]:

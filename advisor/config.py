@@ -167,6 +167,9 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
             "campaign.window: must be at least 2, for a scatter needs two values, and at most "
             f"{_LONGEST_WINDOW}, is {plan.window}"
         )
+    for i, name in enumerate(plan.parameters):
+        if name not in PARAMETERS:
+            yield f"campaign.parameters[{i}]: {name!r} is none of {' '.join(PARAMETERS)}"
     for name, value in plan.tolerance.items():
         if name not in PARAMETERS:
             yield f"campaign.tolerance.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"

@@ -75,7 +75,7 @@ def test_every_mistake_is_listed_at_once_with_its_path() -> None:
                 "elevator": {"calibration": [[1500, 0.0], [1100, 25.0]], "lagg_s": 0.1},
                 "limits": {"bank_deg": "steep"},
                 "model": {"Z_alfa": -1.0},
-                "campaign": {"rule": "best", "window": 0},
+                "campaign": {"rule": "best", "window": 0, "parameters": ["M_alpha", "M_beta"]},
                 "wingspan": 2.0,
             }
         )
@@ -87,6 +87,7 @@ def test_every_mistake_is_listed_at_once_with_its_path() -> None:
         "model.Z_alfa: unknown key",
         "campaign.rule",
         "campaign.window",
+        "campaign.parameters[1]: 'M_beta' is none of Z_0",
         "wingspan: unknown key",
     ):
         assert part in message

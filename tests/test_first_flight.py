@@ -41,7 +41,7 @@ def test_the_seven_manoeuvres_of_the_paper_are_found_told_apart_and_judged() -> 
 
 
 def test_at_one_percent_noise_continuous_improvement_decides_each_manoeuvre_by_its_cost() -> None:
-    document = analyzed(recorded("linear", 1.0))
+    document = analyzed(recorded("linear", 1.0), "--rule", "continuous")
     assert document["flight_test"]["rule"] == "continuous"
     for maneuver in document["maneuvers"]:
         limit = maneuver["rules"]["continuous"]["limit"]
@@ -49,7 +49,7 @@ def test_at_one_percent_noise_continuous_improvement_decides_each_manoeuvre_by_i
 
 
 def test_at_one_percent_noise_the_stop_comes_with_its_criterion_below_the_limit() -> None:
-    flight_test = analyzed(recorded("linear", 1.0))["flight_test"]
+    flight_test = analyzed(recorded("linear", 1.0), "--rule", "continuous")["flight_test"]
     assert flight_test["decision"] == "stop"
     assert flight_test["criterion_percent"] < flight_test["limit_percent"] == 25.0
     history = flight_test["by_rule"]["continuous"]["history_percent"]
@@ -70,6 +70,23 @@ def test_a_flight_that_nobody_here_simulated_gives_seven_judged_manoeuvres_and_a
     assert document["log"]["channels"]["alpha"]["provenance"] == "derived"
     assert set(PARAMETERS) <= set(document["model"])
     assert document["model"]["M_delta_e"]["value"] < 0.0 > document["model"]["M_alpha"]["value"]
+
+
+def test_on_a_real_autopilot_the_default_rule_says_stop_within_seven_manoeuvres(tmp_path: Path) -> None:
+    aircraft = tmp_path / "uav.yaml"
+    aircraft.write_text(
+        "elevator: {output: 2, calibration: [[1000, 25.0], [1500, 0.0], [2000, -25.0]], lag_s: 0.14}\n"
+    )
+    flight_test = analyzed(SHIPPED / "arduplane-calm.tlog", "--aircraft", str(aircraft))["flight_test"]
+    assert flight_test["rule"] == "information"
+    assert flight_test["decision"] == "stop"
+    assert flight_test["stopped_at"] <= 7
+    information = flight_test["by_rule"]["information"]
+    assert set(information["prediction_percent"]) == {"alpha", "q", "a_z"}
+    assert max(information["prediction_percent"].values()) < 5.0
+    assert max(information["parameter_percent"].values()) < 100.0
+    # The paper's rules do not fall: Z_0, Z_q and Z_delta_e are near zero on this aircraft.
+    assert flight_test["by_rule"]["continuous"]["stopped_at"] is None
 
 
 def test_the_document_has_every_key_of_the_contract() -> None:

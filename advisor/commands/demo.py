@@ -6,10 +6,16 @@ from pathlib import Path
 import click
 
 from advisor.aircraft import Rule
-from advisor.commands.options import aircraft_option, read_aircraft, rule_option
+from advisor.commands.options import RULES, aircraft_option, read_aircraft
 from advisor.commands.screen import advise, headless
 
 HEADLESS_SPEED = 10.0
+MEANING = {
+    "continuous": "the paper's rule of continuous improvement, Eqs. (10) and (12)",
+    "separate": "the paper's rule of separate computation, Eqs. (11) and (12)",
+    "information": "the rule of real flights, by what the model predicts",
+}
+"""What each rule is, for the first line and the title."""
 
 
 @click.command
@@ -31,17 +37,24 @@ HEADLESS_SPEED = 10.0
 )
 @click.option("--record", "record_to", type=click.Path(path_type=Path), help="Keep the link's tlog here.")
 @aircraft_option
-@rule_option
+@click.option(
+    "--rule",
+    type=click.Choice(RULES),
+    default="continuous",
+    show_default=True,
+    help="Rule that decides (all are shown); continuous and separate are the paper's.",
+)
 def command(
     flown: str,
     speed: float | None,
     seed: int,
     record_to: Path | None,
     aircraft_file: Path | None,
-    rule: Rule | None,
+    rule: Rule,
 ) -> None:
     """The bundled aircraft flies the paper's seven manoeuvres over a real MAVLink link on loopback.
 
+    The paper's own rule decides, unless --rule names another; on real flights that is information.
     Without a terminal, or with HEADLESS=1, the same verdicts come as text.
 
     \b
@@ -56,4 +69,7 @@ def command(
     if speed is None:
         speed = HEADLESS_SPEED if headless() else 1.0
     flight = Demonstration(flown, speed, seed, record_to)
-    advise(partial(LinkSource, flight, flight.over), f"demonstration: {flown} aircraft", aircraft)
+    if headless():
+        click.echo(f"rule {rule} decides: {MEANING[rule]}; --rule chooses another")
+    title = f"demonstration: {flown} aircraft, {MEANING[rule]}"
+    advise(partial(LinkSource, flight, flight.over), title, aircraft)

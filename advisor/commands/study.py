@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 @click.option("--readings", is_flag=True, help="Compare other readings of the paper's rules, too.")
 @click.option("--advice", is_flag=True, help="Instead: what following the advice saves, on two aircraft.")
 @click.option("--change", is_flag=True, help="Instead: how soon a changed aircraft is noticed.")
+@click.option("--stops", is_flag=True, help="Instead: how often the rule information stops too early.")
 @json_option
 def command(
     campaigns: int,
@@ -39,6 +40,7 @@ def command(
     readings: bool,
     advice: bool,
     change: bool,
+    stops: bool,
     as_json: bool,
 ) -> int:
     """Table 1 and Figure 5 of the paper, as medians and spread over many simulated campaigns.
@@ -56,8 +58,10 @@ def command(
     from advisor.study.figure import refuse_undrawable
 
     if figure is not None:
-        if advice or change:
-            raise ConfigurationError("--figure draws the campaigns: leave out --advice and --change.")
+        if advice or change or stops:
+            raise ConfigurationError(
+                "--figure draws the campaigns: leave out --advice, --change and --stops."
+            )
         refuse_unwritable("--figure", figure)
         refuse_undrawable(figure)
     with Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as progress:
@@ -70,6 +74,8 @@ def command(
             report = run.advice(campaigns, seed, advance)
         elif change:
             report = run.change(campaigns, seed, advance)
+        elif stops:
+            report = run.early_stops(campaigns, seed, advance)
         else:
             report = run.table_1(campaigns, seed, noise_reading, figure, readings, advance)
     if as_json:

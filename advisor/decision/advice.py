@@ -7,7 +7,7 @@ import numpy as np
 from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.decision.choice import Choice, best_input
 from advisor.decision.conditions import Conditions, find_conditions
-from advisor.decision.history import Flown, usable_estimates
+from advisor.decision.history import Flown, usable_ones
 from advisor.decision.information import Knowledge, knowledge
 from advisor.decision.inputs import StepInput
 from advisor.decision.judge import accepted_estimates
@@ -30,13 +30,14 @@ def next_input(history: Sequence[Flown], aircraft: Aircraft, stopped: bool) -> N
     if conditions is None:
         spoken = _same_but_better(history[-1]) if history else _first_input(aircraft)
         return NextInput(f"next: {spoken}", _without_a_model(history, plan))
-    known = knowledge(usable_estimates(history), plan)
+    known = knowledge(usable_ones(history), plan)
     choice = _choose(conditions, known, plan)
     if choice is None:
-        spoken, std = "the same again", conditions.last_std
+        spoken, errors = "the same again", conditions.last_covariance
     else:
-        spoken, std = choice[0].spoken(conditions.travel_rad), choice[1]
-    return NextInput(f"next: {spoken}", _remaining(history, plan, known, std), _held_by(history, plan, known))
+        spoken, errors = choice[0].spoken(conditions.travel_rad), choice[1]
+    remaining = _remaining(history, plan, known, errors)
+    return NextInput(f"next: {spoken}", remaining, _held_by(history, plan, known))
 
 
 def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | None:
@@ -44,31 +45,33 @@ def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | Non
     conditions = find_conditions(history, aircraft)
     if conditions is None:
         return None
-    known = knowledge(usable_estimates(history), aircraft.campaign)
+    known = knowledge(usable_ones(history), aircraft.campaign)
     choice = _choose(conditions, known, aircraft.campaign)
     return choice[0] if choice else None
 
 
 def _choose(conditions: Conditions, known: Knowledge, plan: CampaignPlan) -> Choice | None:
-    std = conditions.last_std * np.sqrt(known.widening)
+    std = np.sqrt(known.widening * np.diag(conditions.last_covariance))
     return best_input(conditions, std, lambda expected: _unrest(expected, plan, known))
 
 
-def _unrest(std: FloatArray, plan: CampaignPlan, known: Knowledge) -> float:
+def _unrest(covariance: FloatArray, plan: CampaignPlan, known: Knowledge) -> float:
     """What remains in the way of the stop after one more manoeuvre with these errors; smaller is better."""
     if plan.rule == "information":
-        return float(np.max(share_after(known, std, 1)))
+        return share_after(known, covariance, 1)
+    std = np.sqrt(np.diag(covariance))
     size = np.maximum(np.abs(known.belief.theta), known.belief.std)
     return float(np.linalg.norm(std / size))
 
 
 def _remaining(
-    history: Sequence[Flown], plan: CampaignPlan, known: Knowledge, next_std: FloatArray
+    history: Sequence[Flown], plan: CampaignPlan, known: Knowledge, next_covariance: FloatArray
 ) -> Remaining:
     share = usable_share(history)
     if plan.rule == "information":
-        return by_information(known, next_std, share)
+        return by_information(known, next_covariance, share)
     members = np.array([e.theta for e in accepted_estimates(history, plan.rule)]).reshape(-1, len(PARAMETERS))
+    next_std = np.sqrt(np.diag(next_covariance))
     return by_scatter(members, known.belief, next_std, plan, share * PASSING.get(plan.rule, 1.0))
 
 

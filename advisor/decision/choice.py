@@ -11,7 +11,7 @@ from advisor.flight.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
 Choice = tuple[StepInput, FloatArray]
-"""An input and the (8,) errors to expect from it."""
+"""An input and the (8, 8) covariance of the errors to expect from it."""
 
 
 def best_input(
@@ -25,12 +25,14 @@ def best_input(
         (8,) errors of the last manoeuvre as estimated. Whatever made them (colour of the residuals,
         further outputs) holds for the next one too; the prediction supplies the ratio between inputs.
     unrest
-        What errors of the next manoeuvre leave in the way of the stop.
+        What errors of the next manoeuvre, given as their covariance, leave in the way of the stop.
     """
     repeated = expect(conditions.theta, conditions.flown, conditions.instruments)
     if repeated is None:
         return None
-    expected = [(option, measured_std * std / repeated.std) for option, std in _options(conditions)]
+    ratio = measured_std / repeated.std
+    scale = np.outer(ratio, ratio)
+    expected = [(option, covariance * scale) for option, covariance in _options(conditions)]
     return min(expected, key=lambda choice: unrest(choice[1])) if expected else None
 
 
@@ -58,4 +60,4 @@ def _as_large_as_allowed(option: StepInput, conditions: Conditions) -> Choice | 
     allowed = StepInput(option.order, option.unit_s, amplitude, option.nose_up_first).rounded(
         conditions.travel_rad
     )
-    return allowed, full.std * option.amplitude_rad / allowed.amplitude_rad
+    return allowed, full.covariance * (option.amplitude_rad / allowed.amplitude_rad) ** 2

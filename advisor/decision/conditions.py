@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft import Aircraft
-from advisor.decision.foresight import Instruments
-from advisor.decision.history import Flown
+from advisor.decision.foresight import UNMEASURED, Instruments
+from advisor.decision.history import Flown, usable_ones
 from advisor.decision.information import knowledge
+from advisor.decision.pooling import DERIVATIVES
+from advisor.decision.prediction import response_to, trim_of
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import Estimate
@@ -44,55 +46,47 @@ class Conditions:
     """Elevator travel from trim to the nearer stop: what 100 % stick means."""
     nose_up_first: bool
     """Direction of the last manoeuvre's first step."""
-    last_std: FloatArray
-    """(8,) errors of the last manoeuvre's estimate."""
+    last_covariance: FloatArray
+    """(8, 8) of the errors of the last manoeuvre's estimate."""
 
 
 def find_conditions(history: Sequence[Flown], aircraft: Aircraft) -> Conditions | None:
     """What the usable manoeuvres say of trim, instruments and limits; None before the first."""
-    flown = [(e, m.maneuver) for m in history if (e := m.usable) and m.maneuver is not None]
+    flown = [(m, e, m.maneuver) for m in history if (e := m.usable) and m.maneuver is not None]
     if not flown:
         return None
-    estimate, last = flown[-1]
+    _, estimate, last = flown[-1]
     fits = estimate.fits[0]
     span, elevator = last.span, last.channels["elevator"]
-    theta = knowledge([e for e, _ in flown], aircraft.campaign).belief.theta
-    trim = _trim(last)
+    theta = knowledge(usable_ones(history), aircraft.campaign).belief.theta
+    trim = trim_of(last)
     travel = _travel(aircraft, trim)
-    largest_seen = max(_excursion(e) for e, _ in flown)
+    largest_seen = max(_excursion(m, e) for m, e, _ in flown)
     alpha = max(largest_seen, min(BOLDER * largest_seen, LINEAR_RAD))
     if aircraft.limits.alpha_deg is not None:
-        start = float(np.median(fits["alpha"].fitted[:5]))
+        # Where no angle of attack is measured the limit can be held about trim only.
+        start = float(np.median(fits["alpha"].fitted[:5])) if "alpha" in fits else 0.0
         alpha = max(ALPHA_MARGIN * (np.radians(aircraft.limits.alpha_deg) - start), 0.25 * largest_seen)
-    largest = max(float(np.max(np.abs(_about_trim(m)))) for _, m in flown)
+    largest = max(float(np.max(np.abs(_about_trim(m)))) for *_, m in flown)
     return Conditions(
         theta=theta,
         trim_rad=trim,
         lead_s=max(span.start_s - span.record_from_s, 0.5),
         free_s=max(span.end_s - span.last_step_s, 1.0),
-        instruments=Instruments(
-            step_s=(_step(fits["alpha"].t), _step(fits["q"].t)),
-            noise=(fits["alpha"].noise, fits["q"].noise),
-            servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
+        instruments=_instruments(
+            estimate, Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0)
         ),
         flown=Signal(elevator.t - elevator.t[0], elevator.y),
         largest_rad=min(BOLDER * largest, ALPHA_MARGIN * travel),
         alpha_rad=float(alpha),
         travel_rad=travel,
         nose_up_first=_nose_up_first(last),
-        last_std=estimate.std,
+        last_covariance=estimate.covariance,
     )
 
 
-def _trim(maneuver: Maneuver) -> float:
-    """Elevator before the first step, rad."""
-    elevator, span = maneuver.channels["elevator"], maneuver.span
-    lead = elevator.cut(span.record_from_s, span.start_s)
-    return float(np.median(lead.y)) if len(lead) else float(elevator.y[0])
-
-
 def _about_trim(maneuver: Maneuver) -> FloatArray:
-    return maneuver.channels["elevator"].y - _trim(maneuver)
+    return maneuver.channels["elevator"].y - trim_of(maneuver)
 
 
 def _nose_up_first(maneuver: Maneuver) -> bool:
@@ -101,11 +95,24 @@ def _nose_up_first(maneuver: Maneuver) -> bool:
     return bool(moved[np.argmax(np.abs(moved) >= 0.5 * np.max(np.abs(moved)))] < 0.0)
 
 
-def _excursion(estimate: Estimate) -> float:
-    """Largest deviation of the fitted α from where it began, rad."""
-    return max(
-        float(np.max(np.abs(fits["alpha"].fitted - fits["alpha"].fitted[0]))) for fits in estimate.fits
-    )
+def _instruments(estimate: Estimate, servo: Servo) -> Instruments:
+    fits = estimate.fits[0]
+    q = fits["q"]
+    if "alpha" in fits or "a_z" not in fits:
+        alpha = fits.get("alpha", q)
+        return Instruments((_step(alpha.t), _step(q.t)), (alpha.noise, q.noise), servo)
+    force = fits["a_z"]
+    noise = force.noise / (estimate.airspeed_m_s or 1.0)
+    return Instruments((_step(q.t), _step(q.t)), (UNMEASURED, q.noise), servo, (_step(force.t), noise))
+
+
+def _excursion(flown: Flown, estimate: Estimate) -> float:
+    """Largest deviation of α from where it began, rad: as fitted, or as predicted where none is measured."""
+    if "alpha" not in estimate.fits[0]:
+        response = response_to(flown, estimate.theta[list(DERIVATIVES)], None)
+        return LINEAR_RAD if response is None else float(response.peak[0])
+    fitted = estimate.fits[0]["alpha"].fitted
+    return float(np.max(np.abs(fitted - fitted[0])))
 
 
 def _step(t: FloatArray) -> float:

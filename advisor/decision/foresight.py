@@ -12,16 +12,21 @@ from advisor.oem.covariance import cramer_rao, influence
 from advisor.oem.problem import Problem, Record, Signal, assemble
 from advisor.oem.surface import Servo
 
+UNMEASURED = 1e3
+"""Noise in rad of an angle of attack that nobody measures: no information beside any other output's."""
+
 
 @dataclass(frozen=True, slots=True)
 class Instruments:
-    """How angle of attack and pitch rate are measured, and what lies between stick and surface."""
+    """How the outputs are measured, and what lies between stick and surface."""
 
     step_s: tuple[float, float]
     """Between samples of α and of q."""
     noise: tuple[float, float]
     """Standard deviation of α in rad and of q in rad/s."""
     servo: Servo
+    specific_force: tuple[float, float] | None = None
+    """Between samples of a_z in s, and its noise over the air speed in 1/s; None: a_z is not used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +64,12 @@ def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Exp
         name: Signal(t := np.arange(0.0, end, step), np.zeros_like(t))
         for name, step in zip(("alpha", "q"), instruments.step_s, strict=True)
     }
-    assembly = assemble(Problem((Record(elevator, outputs),), servo=instruments.servo))
+    if instruments.specific_force is not None:
+        t = np.arange(0.0, end, instruments.specific_force[0])
+        outputs["a_z"] = Signal(t, np.zeros_like(t))
+    assembly = assemble(
+        Problem((Record(elevator, outputs),), servo=instruments.servo, airspeed_may_be_off=False)
+    )
     shared = np.array([theta[PARAMETERS.index(s)] if s in PARAMETERS else 0.0 for s in SHARED])
     model = ShortPeriod(theta)
     try:
@@ -72,7 +82,8 @@ def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Exp
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     if not respond(assembly.grid, shared, local, y, g):
         return None
-    noise = np.array([*instruments.noise, 0.0, 0.0])
+    force = instruments.specific_force[1] if instruments.specific_force else 0.0
+    noise = np.array([*instruments.noise, force, 0.0])
     effect = influence(assembly, g, noise)
     if effect is None:
         return None

@@ -5,11 +5,12 @@ so that excluding a manoeuvre by hand recomputes every decision that followed it
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.surface import Servo
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +28,8 @@ class Flown:
     """What was flown, for advice on what to fly next."""
     air_moved: bool = False
     """Whether its residuals bear the mark of moving air."""
+    servo: Servo = field(default_factory=Servo)
+    """What lies between command and surface, as the estimate takes it."""
 
     @property
     def usable(self) -> Estimate | None:
@@ -36,6 +39,11 @@ class Flown:
         return None
 
 
-def usable_estimates(history: Sequence[Flown]) -> list[Estimate]:
-    """Estimates of all usable manoeuvres, in the order flown."""
-    return [estimate for flown in history if (estimate := flown.usable)]
+def usable_ones(history: Sequence[Flown]) -> list[Flown]:
+    """All usable manoeuvres, in the order flown."""
+    return [flown for flown in history if flown.usable]
+
+
+def estimates_of(usable: Sequence[Flown]) -> list[Estimate]:
+    """The estimates of manoeuvres, in the order flown; those that are not usable have none."""
+    return [estimate for flown in usable if (estimate := flown.usable)]

@@ -8,6 +8,7 @@ from advisor.beside import beside
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.consistency import Odd, odd_ones
 from advisor.decision.history import Flown
+from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.pooling import beliefs_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
@@ -23,10 +24,14 @@ def judge_campaign(history: Sequence[Flown], plan: CampaignPlan) -> tuple[Maneuv
     rule ``information`` later ones may show that it contradicts all the others.
     """
     by_rule, odd = rule_results(history), contradicting(history)
-    return tuple(
-        _verdict(flown, plan.rule, {name: results[i] for name, results in by_rule.items()}, odd.get(i))
-        for i, flown in enumerate(history)
-    )
+    accepted = [result.accepted for result in by_rule[plan.rule]]
+    verdicts = []
+    for i, flown in enumerate(history):
+        costly = flown.usable is not None and plan.rule != "information" and not accepted[i]
+        larger = larger_and_agreeing(history[: i + 1], accepted, plan) if costly else None
+        rules = {name: results[i] for name, results in by_rule.items()}
+        verdicts.append(_verdict(flown, plan.rule, rules, odd.get(i), larger))
+    return tuple(verdicts)
 
 
 def judge(flown: Flown, history: Sequence[Flown], plan: CampaignPlan) -> ManeuverVerdict:
@@ -60,8 +65,10 @@ def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
     ]
 
 
-def _verdict(flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], odd: Odd | None) -> ManeuverVerdict:
-    reasons = _reasons(flown, rule, rules[rule], odd)
+def _verdict(
+    flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], odd: Odd | None, larger: Larger | None
+) -> ManeuverVerdict:
+    reasons = _reasons(flown, rule, rules[rule], odd, larger)
     notes = flown.estimate.notes if isinstance(flown.estimate, Estimate) else ()
     cautions = tuple(dict.fromkeys((*flown.cautions, *notes)))
     if flown.excluded_because is not None:
@@ -75,7 +82,9 @@ def _verdict(flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], odd: Od
     )
 
 
-def _reasons(flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None) -> tuple[Reason, ...]:
+def _reasons(
+    flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None, larger: Larger | None
+) -> tuple[Reason, ...]:
     if flown.excluded_because is not None:
         text = f"excluded by hand: {flown.excluded_because}"
         return (Reason("excluded", text, 1.0, 0.0), *flown.reasons)
@@ -85,6 +94,8 @@ def _reasons(flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None) -> t
         return flown.reasons
     if rule == "information":
         return (_contradicts(odd),) if odd else ()
+    if larger is not None:
+        return (_only_larger(flown.estimate, larger, result.limit or 0.0),)
     return (_too_costly(flown, flown.estimate, rule, result.limit or 0.0),)
 
 
@@ -102,7 +113,7 @@ def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
 
 def _explained(estimate: Estimate) -> str:
     """How much of the motion the model explains; nothing of a record without any."""
-    share = min(estimate.fits[0][name].r2 for name in ("alpha", "q"))
+    share = min(fit.r2 for name, fit in estimate.fits[0].items() if name in ("alpha", "q"))
     # Cut, not rounded: 100 % is said of an exact fit only.
     return f"the model explains {floor(1000.0 * share) / 10.0:.1f} % of it; " if share > 0.0 else ""
 
@@ -128,6 +139,16 @@ def _too_costly(flown: Flown, estimate: Estimate, rule: Rule, limit: float) -> R
     return Reason("cost", text, estimate.cost, limit)
 
 
+def _only_larger(estimate: Estimate, larger: Larger, limit: float) -> Reason:
+    motion = f"the motion of manoeuvre {larger.setter}" if larger.setter else "the usual motion"
+    text = (
+        f"refused by the paper's rule only, {_of_limit(estimate.cost, limit)}: it was flown with "
+        f"{larger.ratio:.1f} times {motion}, and its estimate agrees with the others; fly it again with "
+        "smaller steps, or decide by the rule information"
+    )
+    return Reason("cost", text, estimate.cost, limit)
+
+
 _LESS_WELL = "less well than the last accepted one"
 
 
@@ -137,6 +158,6 @@ def _another_try(flown: Flown, estimate: Estimate, rule: Rule) -> str:
         return "fly it again in calmer air"
     if rule == "separate":
         return "fly it again"
-    if any(fits[name].lag1 > COLOURED for fits in estimate.fits for name in ("alpha", "q")):
+    if any(fit.lag1 > COLOURED for fits in estimate.fits for fit in fits.values()):
         return "fly it again from steady flight, with no larger steps than then"
     return "fly it again; if the noise stays as large, check the instruments"

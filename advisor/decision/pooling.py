@@ -70,11 +70,19 @@ def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
     the Cramér-Rao bounds is the median over them, steadier than each manoeuvre's own.
     """
     widening = _widening_by_colour(estimates)
+    reference = common_airspeed(estimates)
+    return [
+        Belief(e.theta, e.covariance_cr * widening)
+        if reference is None or e.airspeed_m_s is None
+        else _at_speed(e, e.airspeed_m_s, reference, widening)
+        for e in estimates
+    ]
+
+
+def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
+    """The mean of the speeds at which estimates are given; None where one of them does not know its own."""
     known = [e.airspeed_m_s for e in estimates if e.airspeed_m_s is not None and e.airspeed_m_s > 0.0]
-    if not known or len(known) < len(estimates):
-        return [Belief(e.theta, e.covariance_cr * widening) for e in estimates]
-    reference = float(np.mean(known))
-    return [_at_speed(e, v, reference, widening) for e, v in zip(estimates, known, strict=True)]
+    return float(np.mean(known)) if known and len(known) == len(estimates) else None
 
 
 def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:

@@ -7,8 +7,9 @@ from scipy.special import nbdtr
 
 from advisor.aircraft import CampaignPlan
 from advisor.decision.history import Flown
-from advisor.decision.information import Z95, Knowledge
-from advisor.decision.pooling import Belief
+from advisor.decision.information import Knowledge
+from advisor.decision.pooling import DERIVATIVES, Belief, covariance_of, information_of
+from advisor.decision.prediction import Z95
 from advisor.decision.scatter import SCATTER_FACTOR
 from advisor.decision.verdict import Remaining
 from advisor.flight.messages import FloatArray
@@ -18,31 +19,39 @@ MOST = 50
 _DRAWS = 400
 
 
-def by_information(known: Knowledge, next_std: FloatArray, usable_share: float) -> Remaining:
-    """More manoeuvres until every interval is within its tolerance and the newest is predicted.
+def by_information(known: Knowledge, next_covariance: FloatArray, usable_share: float) -> Remaining:
+    """More manoeuvres until all that must be known is within its tolerance and the newest is predicted.
 
     Parameters
     ----------
     known
         What is known now.
-    next_std
-        (8,) expected errors from each further manoeuvre.
+    next_covariance
+        (8, 8) of the errors to expect from each further manoeuvre.
     usable_share
         Share of manoeuvres that turn out usable.
     """
     good = 1 if np.isnan(known.surprise) or not known.predicted else 0
-    while good <= MOST and np.max(share_after(known, next_std, good)) >= 1.0:
+    while good <= MOST and share_after(known, next_covariance, good) >= 1.0:
         good += 1
     if good > MOST:
         return Remaining(None, None)
     return Remaining(good, _flights_for(good, usable_share, 0.9))
 
 
-def share_after(known: Knowledge, next_std: FloatArray, more: int) -> FloatArray:
-    """(8,) half-width over tolerance of each interval after ``more`` manoeuvres with errors ``next_std``."""
+def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> float:
+    """Largest uncertainty over its tolerance after ``more`` manoeuvres with errors as in ``next_covariance``.
+
+    Trims and the constants that hold them are each manoeuvre's own: only their variances add up.
+    """
+    inside = np.ix_(DERIVATIVES, DERIVATIVES)
+    information = known.belief.information + more * information_of(next_covariance[inside])
+    covariance = covariance_of(information)
     with np.errstate(divide="ignore", invalid="ignore"):
-        information = 1.0 / known.belief.std**2 + more / next_std**2
-        return np.nan_to_num(Z95 / np.sqrt(information) / known.tolerance, nan=np.inf)
+        variance = 1.0 / (1.0 / known.belief.std**2 + more / np.diag(next_covariance))
+        variance[list(DERIVATIVES)] = np.diag(covariance)
+        half = np.nan_to_num(Z95 * np.sqrt(variance) / known.tolerance, nan=np.inf)
+    return max(known.shares_with(known.prediction.percent(covariance), half).values(), default=np.inf)
 
 
 def by_scatter(

@@ -9,7 +9,8 @@ from advisor.aircraft import Aircraft, CampaignPlan, Rule
 from advisor.beside import beside
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
-from advisor.decision.history import Flown, usable_estimates
+from advisor.decision.evidence import evidence, sentence
+from advisor.decision.history import Flown, estimates_of, usable_ones
 from advisor.decision.information import Knowledge, knowledge
 from advisor.decision.judge import accepted_estimates, rule_results
 from advisor.decision.scatter import scatter_percent, scattered_most, window
@@ -34,17 +35,22 @@ def flight_test(
     by_rule: dict[str, RuleProgress] = {rule: progress(history, rule, plan) for rule in MANEUVER_RULES}
     chosen = by_rule[plan.rule]
     criterion = chosen.history_percent[-1] if chosen.history_percent else None
-    stop = _holds_now(history, plan, criterion)
+    usable = usable_ones(history)
+    known = knowledge(usable, plan) if usable else None
+    stop = _holds_now(known, plan, criterion)
     return FlightTestVerdict(
         rule=plan.rule,
         decision="stop" if stop else "continue",
-        sentence=_sentence(history, plan, criterion, stop),
+        sentence=sentence(known, stop)
+        if plan.rule == "information"
+        else _scatter_sentence(history, plan, criterion, stop),
         criterion_percent=criterion,
         limit_percent=chosen.limit_percent,
         stopped_at=chosen.stopped_at,
         by_rule=by_rule,
         next=next_input(history, replace(aircraft or Aircraft(), campaign=plan), stop),
         warnings=warnings(history, plan, chosen, stop),
+        evidence=evidence(known) if known else (),
     )
 
 
@@ -54,22 +60,31 @@ def progress(history: Sequence[Flown], rule: Rule, plan: CampaignPlan) -> RulePr
     limit = limit_percent(rule, plan)
     values: list[float | None] = []
     stopped_at = None
-    taken: list[Estimate] = []
-    value, sufficient = None, False
+    taken: list[Flown] = []
+    value, sufficient, known = None, False, None
     for number, (flown, ok) in enumerate(zip(history, accepted, strict=True), start=1):
         # The rule information weighs all and finds for itself which contradict the others, at every moment.
-        if (ok or rule == "information") and (estimate := flown.usable):
-            taken.append(estimate)
+        if (ok or rule == "information") and flown.usable:
+            taken.append(flown)
             if rule == "information":
                 known = knowledge(taken, plan)
                 value, sufficient = _finite(known.percent), known.sufficient
             else:
-                value = _scatter(taken, plan)
+                value = _scatter(estimates_of(taken), plan)
                 sufficient = value is not None and value < limit
         values.append(value)
         if sufficient and stopped_at is None:
             stopped_at = number
-    return RuleProgress(stopped_at, tuple(values), limit)
+    if known is None:
+        return RuleProgress(stopped_at, tuple(values), limit)
+    shares = {name: _finite(100.0 * share) for name, share in known.share.items()}
+    return RuleProgress(
+        stopped_at,
+        tuple(values),
+        limit,
+        {name: _finite(band) for name, band in known.prediction_percent.items()},
+        {name: shares[name] for name in known.named},
+    )
 
 
 def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
@@ -86,18 +101,15 @@ def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _holds_now(history: Sequence[Flown], plan: CampaignPlan, criterion: float | None) -> bool:
-    if criterion is None:
-        return False
+def _holds_now(known: Knowledge | None, plan: CampaignPlan, criterion: float | None) -> bool:
     if plan.rule == "information":
-        return knowledge(usable_estimates(history), plan).sufficient
-    return criterion < plan.limit_percent
+        return known is not None and known.sufficient
+    return criterion is not None and criterion < plan.limit_percent
 
 
-def _sentence(history: Sequence[Flown], plan: CampaignPlan, criterion: float | None, stop: bool) -> str:
-    if plan.rule == "information":
-        usable = usable_estimates(history)
-        return _information_sentence(knowledge(usable, plan) if usable else None, stop)
+def _scatter_sentence(
+    history: Sequence[Flown], plan: CampaignPlan, criterion: float | None, stop: bool
+) -> str:
     accepted = accepted_estimates(history, plan.rule)
     if criterion is None:
         return f"CONTINUE: {len(accepted)} of {plan.window} accepted manoeuvres."
@@ -107,27 +119,6 @@ def _sentence(history: Sequence[Flown], plan: CampaignPlan, criterion: float | N
     scatter, limit = beside(criterion, plan.limit_percent)
     agreement = f"agree within {scatter} %" if criterion < _NO_SCALE_PERCENT else "do not agree"
     return f"{verb}: the last {plan.window} accepted manoeuvres {agreement} (limit {limit} %){held}."
-
-
-def _information_sentence(known: Knowledge | None, stop: bool) -> str:
-    if known is None:
-        return "CONTINUE: no usable manoeuvre yet."
-    if stop:
-        return (
-            f"STOP TESTING: every interval is within {known.percent:.0f} % of its tolerance and the newest "
-            "manoeuvre was predicted."
-        )
-    if np.isinf(known.percent):
-        reason = known.not_identifiable.get(known.holding_back, "cannot be estimated from these manoeuvres")
-        return f"CONTINUE: {known.holding_back} {reason.removesuffix('.')}."
-    if known.percent >= INFORMATION_LIMIT_PERCENT:
-        times, _ = beside(known.percent / INFORMATION_LIMIT_PERCENT, 1.0, 1)
-        return f"CONTINUE: the error of {known.holding_back} is {times} times its tolerance."
-    if np.isnan(known.surprise):
-        return "CONTINUE: narrow enough; one more manoeuvre to check the prediction."
-    return (
-        "CONTINUE: narrow enough, but the newest manoeuvre was not predicted; one more shows which is right."
-    )
 
 
 def _scattered_most(accepted: Sequence[Estimate], plan: CampaignPlan) -> str:

@@ -10,6 +10,14 @@ from advisor.oem.estimate import Estimate
 NEAR_ZERO = 3.0
 """A parameter is near zero when its whole effect on the response is less than this many times the noise."""
 
+DERIVATIVE_SHARE = 2.0
+"""A derivative's own tolerance as a multiple of the prediction's.
+
+The short period's frequency goes with the root of the stiffness, and M_q shares the damping with Z_alpha: a
+derivative that is wrong by 10 % moves frequency or damping by about 5 %. M_delta_e scales the whole response,
+so that the band of the prediction holds it closer.
+"""
+
 LEAST = 1e-12
 """No tolerance is smaller, in any unit: data without noise leave nothing to be tolerant of."""
 
@@ -17,10 +25,10 @@ LEAST = 1e-12
 def tolerances(theta: FloatArray, first: Estimate, plan: CampaignPlan) -> FloatArray:
     """The half-width each parameter's 95 % interval must stay below.
 
-    The share ``plan.tolerance_percent`` of the parameter. For one near zero, a share of which is
-    smaller than anything that matters: with δ the change that moves the response by as much as the
+    ``DERIVATIVE_SHARE`` times ``plan.tolerance_percent`` of the parameter. For one near zero, a share of
+    which is smaller than anything that matters: with δ the change that moves the response by as much as the
     noise, δ itself at zero, falling to nothing extra at 3·δ. Z_0 and M_0, which hold the trim, may
-    also be wrong by what shifts the trim by as much as the noise of the angle of attack. What
+    also be wrong by what shifts the trim by as much as the noise of a measured angle of attack. What
     ``plan.tolerance`` says of a parameter stands above all this.
 
     Noise and response are those of the ``first`` usable manoeuvre: a bolder one shows more, and must
@@ -32,8 +40,11 @@ def tolerances(theta: FloatArray, first: Estimate, plan: CampaignPlan) -> FloatA
         Shape (8,), each in its parameter's unit.
     """
     size = np.abs(theta)
-    tolerance = np.fmax(0.01 * plan.tolerance_percent * size, unnoticeable_change(first) - size / NEAR_ZERO)
-    noise = first.fits[0]["alpha"].noise
+    tolerance = np.fmax(
+        0.01 * DERIVATIVE_SHARE * plan.tolerance_percent * size,
+        unnoticeable_change(first) - size / NEAR_ZERO,
+    )
+    noise = first.fits[0]["alpha"].noise if "alpha" in first.fits[0] else 0.0
     for constant, stiffness in (("Z_0", "Z_alpha"), ("M_0", "M_alpha")):
         k = PARAMETERS.index(constant)
         tolerance[k] = np.fmax(tolerance[k], size[PARAMETERS.index(stiffness)] * noise)

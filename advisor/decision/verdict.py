@@ -53,6 +53,11 @@ class RuleProgress:
     """The criterion after each manoeuvre; None while there are too few."""
     limit_percent: float = 25.0
     """What the criterion must fall below: 25 % of Eq. (12), 100 % of the tolerance for ``information``."""
+    prediction_percent: Mapping[str, float | None] = field(default_factory=dict)
+    """``information``: output to the 95 % band of its predicted response now, in percent of its peak; None:
+    unknown."""
+    parameter_percent: Mapping[str, float | None] = field(default_factory=dict)
+    """``information``: named parameter to its 95 % half-width now, in percent of its own tolerance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +84,7 @@ class NextInput:
     """As a pilot hears it: ``next: reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
     remaining: Remaining
     holding_back: str | None = None
-    """The parameter that keeps the stop away."""
+    """The parameter, or the output whose prediction, keeps the stop away."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,3 +101,5 @@ class FlightTestVerdict:
     next: NextInput | None = None
     warnings: tuple[str, ...] = ()
     """Something changed between manoeuvres, the criterion cannot fall, ..."""
+    evidence: tuple[str, ...] = ()
+    """The numbers behind the rule ``information``, whichever rule decides, a line each."""

@@ -6,9 +6,10 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.change import find_change
-from advisor.decision.history import Flown
+from advisor.decision.history import Flown, usable_ones
 from advisor.decision.information import knowledge
 from advisor.decision.judge import accepted_estimates, rule_results
+from advisor.decision.larger import larger_and_agreeing
 from advisor.decision.scatter import SCATTER_FACTOR, window
 from advisor.decision.verdict import RuleProgress
 from advisor.oem.estimate import Estimate
@@ -36,10 +37,10 @@ def warnings(
 
 
 def _left_out(history: Sequence[Flown], plan: CampaignPlan) -> list[str]:
-    usable = [(i, e) for i, flown in enumerate(history, start=1) if (e := flown.usable)]
-    if not usable:
+    numbers = [i for i, flown in enumerate(history, start=1) if flown.usable]
+    if not numbers:
         return []
-    odd = [str(usable[k][0]) for k in knowledge([e for _, e in usable], plan).left_out]
+    odd = [str(numbers[k]) for k in knowledge(usable_ones(history), plan).left_out]
     return [f"Manoeuvre {', '.join(odd)} contradicts all the others and is left out."] if odd else []
 
 
@@ -65,10 +66,17 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
 
 def _locked_out(history: Sequence[Flown], plan: CampaignPlan) -> list[str]:
     """Manoeuvres that are good in themselves, refused one after another for their cost alone."""
+    accepted = [result.accepted for result in rule_results(history)[plan.rule]]
     refused = 0
-    for flown, result in zip(history, rule_results(history)[plan.rule], strict=True):
+    for flown, good in zip(history, accepted, strict=True):
         if flown.usable is not None:
-            refused = 0 if result.accepted else refused + 1
+            refused = 0 if good else refused + 1
+    if refused and (larger := larger_and_agreeing(history, accepted, plan)) and larger.setter:
+        return [
+            f"Manoeuvre {larger.setter} sets a cost limit that larger ones can hardly meet: the newest moved "
+            f"{larger.ratio:.1f} times as much and agrees with it. Exclude manoeuvre {larger.setter}, or use "
+            "the rule information."
+        ]
     if refused < plan.window:
         return []
     moved = any(flown.air_moved for flown in history[-refused:])

@@ -6,7 +6,7 @@ from typing import Any
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
-from advisor.decision.verdict import FlightTestVerdict, RuleResult
+from advisor.decision.verdict import FlightTestVerdict, RuleProgress, RuleResult
 from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.problems import Problem
@@ -161,6 +161,7 @@ def _flight_test(verdict: FlightTestVerdict) -> dict[str, Any]:
             name: {
                 "stopped_at": progress.stopped_at,
                 "history_percent": [number(value) for value in progress.history_percent],
+                **_held_to(progress),
             }
             for name, progress in verdict.by_rule.items()
         },
@@ -174,6 +175,16 @@ def _flight_test(verdict: FlightTestVerdict) -> dict[str, Any]:
             },
         },
         "warnings": list(verdict.warnings),
+    }
+
+
+def _held_to(progress: RuleProgress) -> dict[str, Any]:
+    """What the rule information weighs, each beside its tolerance; nothing for the other rules."""
+    if not progress.prediction_percent and not progress.parameter_percent:
+        return {}
+    return {
+        "prediction_percent": dict(progress.prediction_percent),
+        "parameter_percent": dict(progress.parameter_percent),
     }
 
 

@@ -7,8 +7,10 @@ import numpy as np
 
 from advisor.aircraft import CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
+from advisor.decision.history import Flown
 from advisor.decision.information import knowledge
 from advisor.decision.scatter import scatter_percent, window
+from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import Estimate
 from advisor.study.estimating import Advance, estimate_copies
@@ -57,17 +59,29 @@ def fly_campaigns(
     return [list(campaign) for campaign in zip(*columns, strict=True)]
 
 
-def outcome(campaign: Sequence[Estimate], rule: Rule, plan: CampaignPlan) -> Outcome:
-    """When ``rule`` stops one campaign, by the same functions that judge in flight."""
+def outcome(
+    campaign: Sequence[Estimate], rule: Rule, plan: CampaignPlan, maneuvers: Sequence[Maneuver] = ()
+) -> Outcome:
+    """When ``rule`` stops one campaign, by the same functions that judge in flight.
+
+    Parameters
+    ----------
+    maneuvers
+        What was flown, for the response that the rule ``information`` predicts; without it that rule asks
+        for the named derivatives alone.
+    """
     accepted = [r.accepted for r in MANEUVER_RULES[rule]([e.cost for e in campaign])]
     taken: list[Estimate] = []
+    flown = [
+        Flown(estimate, maneuver=maneuvers[i] if maneuvers else None) for i, estimate in enumerate(campaign)
+    ]
     history: list[float | None] = []
     needed = None
     for number, (estimate, good) in enumerate(zip(campaign, accepted, strict=True), start=1):
         if good:
             taken.append(estimate)
         if rule == "information":
-            known = knowledge(taken, plan)
+            known = knowledge(flown[:number], plan)
             history.append(known.percent)
             if known.sufficient or number == len(campaign):
                 needed = number if known.sufficient else None

@@ -10,7 +10,8 @@ from advisor.decision.acceptance import separate_computation
 from advisor.oem.estimate import Estimate
 from advisor.study.campaigns import fly_campaigns, outcome
 from advisor.study.estimating import Advance
-from advisor.study.flying import Scene
+from advisor.study.flying import Scene, as_maneuver, fly_named
+from advisor.study.paper import ORDER
 
 MOST_CAMPAIGNS = 100
 """Enough for a share of practically one."""
@@ -40,8 +41,9 @@ def measure(campaigns: Sequence[Sequence[Estimate]], seed: int, advance: Advance
     count = min(len(campaigns), MOST_CAMPAIGNS)
     near_zero = fly_campaigns(scene, NOISE_PERCENT, count, seed, advance=advance)
     plan = CampaignPlan()
+    maneuvers = [as_maneuver(fly_named(scene, name)) for name in ORDER]
     never = [outcome(c, "continuous", plan).needed is None for c in near_zero]
-    needed = sorted(outcome(c, "information", plan).needed or np.inf for c in near_zero)
+    needed = sorted(outcome(c, "information", plan, maneuvers).needed or np.inf for c in near_zero)
     middle = needed[len(needed) // 2]
     ended = None if np.isinf(middle) else int(middle)
     return Flaws(thrown_away, count, 100.0 * float(np.mean(never)), ended)

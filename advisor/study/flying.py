@@ -7,7 +7,9 @@ from typing import Literal
 import numpy as np
 from scipy.linalg import expm
 
+from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
+from advisor.flight.record import Channel
 from sim.linear import RESEARCH_JET, ShortPeriod
 from sim.maneuvers import STEPS
 
@@ -77,6 +79,22 @@ def follow(scene: Scene, t: FloatArray, elevator: FloatArray) -> Flight:
 def fly_named(scene: Scene, name: str) -> Flight:
     """Fly one of the bundled aircraft's inputs: ``3211``, ``rev``, ..."""
     return fly(scene, STEPS[name])
+
+
+def as_maneuver(flight: Flight) -> Maneuver:
+    """What the advisor would cut from the stream: the command and where it begins and ends."""
+    moving = np.flatnonzero(np.abs(flight.elevator - flight.elevator[0]) > 1e-9)
+    start, end = flight.t[moving[0]], flight.t[min(moving[-1] + 1, len(flight.t) - 1)]
+    span = Span(
+        record_from_s=0.0,
+        start_s=float(start),
+        last_step_s=float(end),
+        end_s=float(flight.t[-1]),
+        kind="other",
+        steps=(),
+        closed_by="quiet",
+    )
+    return Maneuver(1, 0, span, {"elevator": Channel("elevator", flight.t, flight.elevator)})
 
 
 def respond(aircraft: ShortPeriod, elevator: FloatArray, state: FloatArray, step_s: float) -> FloatArray:

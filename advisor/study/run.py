@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft import CampaignPlan
-from advisor.study import advised, changed, flaws, readings, text
+from advisor.study import advised, changed, flaws, readings, stops, text
 from advisor.study.campaigns import RULES, fly_campaigns, outcome
 from advisor.study.figure import curve, draw, in_terminal
-from advisor.study.flying import NoiseReading, Scene
+from advisor.study.flying import NoiseReading, Scene, as_maneuver, fly_named
 from advisor.study.paper import NOISE_PERCENT, ORDER
 from advisor.study.table import as_document, row
 
@@ -36,6 +36,7 @@ def table_1(
 ) -> Report:
     """Table 1 and Figure 5, the paper's place in them, and the flaws of its rules."""
     scene, plan = Scene(), CampaignPlan()
+    maneuvers = [as_maneuver(fly_named(scene, name)) for name in ORDER]
     flown_in_all = campaigns * len(NOISE_PERCENT) + min(campaigns, flaws.MOST_CAMPAIGNS)
     advance = counter(len(ORDER) * flown_in_all, progress)
     rows, curves, compared = [], [], []
@@ -44,7 +45,7 @@ def table_1(
         flown = fly_campaigns(scene, noise, campaigns, seed, reading, advance=advance)
         first = first or flown
         for rule in RULES:
-            outcomes = [outcome(campaign, rule, plan) for campaign in flown]
+            outcomes = [outcome(campaign, rule, plan, maneuvers) for campaign in flown]
             rows.append(row(rule, noise, outcomes, scene.theta))
             if rule != "information":
                 curves.append(curve(rule, noise, outcomes))
@@ -106,6 +107,26 @@ def change(campaigns: int, seed: int, progress: Progress | None = None) -> Repor
     ]
     document = {"schema": "advisor.study.change/1", "campaigns": campaigns, "rows": entries}
     return Report(text.detections(found, campaigns), document)
+
+
+def early_stops(campaigns: int, seed: int, progress: Progress | None = None) -> Report:
+    """How often the rule ``information`` stops too early, and what each rule needs."""
+    found = stops.measure(campaigns, seed, counter(len(stops.CASES), progress), stops.CASES)
+    entries = [
+        {
+            **asdict(s.case),
+            "needed": {
+                rule: {"median": s.median_needed(rule), "never_percent": s.never_percent(rule)}
+                for rule in RULES
+            },
+            "stops": len(s.error_percent),
+            "false_percent": s.false_percent if s.error_percent else None,
+            "error_percent": {"median": s.error_quantile(0.5), "p95": s.error_quantile(0.95)},
+        }
+        for s in found
+    ]
+    document = {"schema": "advisor.study.stops/1", "campaigns": campaigns, "rows": entries}
+    return Report(text.early_stops(found, campaigns), document)
 
 
 def counter(total: int, progress: Progress | None) -> Callable[[int], None]:

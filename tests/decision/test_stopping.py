@@ -10,8 +10,9 @@ from advisor.decision.history import Flown
 from advisor.decision.scatter import scatter_percent
 from advisor.decision.stopping import flight_test
 from tests.decision.campaigns import THETA, drawn, estimate, flown, with_change
+from tests.decision.test_judge import moving
 
-PLAN = CampaignPlan()
+PLAN = CampaignPlan(rule="continuous")
 
 
 def test_nothing_flown_means_continue() -> None:
@@ -79,8 +80,8 @@ def test_excluding_the_contradiction_gives_the_stop_again() -> None:
 
 def test_window_and_limit_are_the_users() -> None:
     history = [Flown(estimate(k * THETA)) for k in (0.99, 1.01)]
-    assert flight_test(history, CampaignPlan(window=2)).decision == "stop"
-    assert flight_test(history, CampaignPlan(window=2, limit_percent=1.0)).decision == "continue"
+    assert flight_test(history, replace(PLAN, window=2)).decision == "stop"
+    assert flight_test(history, replace(PLAN, window=2, limit_percent=1.0)).decision == "continue"
 
 
 def test_the_written_out_form_is_available_by_name() -> None:
@@ -103,6 +104,15 @@ def test_a_parameter_near_zero_is_named_as_what_keeps_the_criterion_up() -> None
 def test_good_manoeuvres_refused_in_a_row_for_cost_alone_raise_a_warning() -> None:
     verdict = flight_test(flown([1e-12, 1e-9, 1e-9, 1e-9]), PLAN)
     assert any("3 usable manoeuvres in a row" in w for w in verdict.warnings)
+
+
+def test_a_gentle_manoeuvre_that_locks_larger_ones_out_is_named_at_once() -> None:
+    gentle, larger = (moving(one, size) for one, size in zip(flown([1e-12, 1e-9]), (0.02, 0.1), strict=True))
+    (warning,) = [w for w in flight_test([gentle, larger], PLAN).warnings if "limit" in w]
+    assert "Manoeuvre 1 sets a cost limit that larger ones can hardly meet" in warning
+    assert "moved 5.0 times as much" in warning
+    assert "Exclude manoeuvre 1, or use the rule information" in warning
+    assert flight_test([gentle, larger], replace(PLAN, rule="information")).warnings == ()
 
 
 def test_every_rule_runs_whichever_is_chosen() -> None:

@@ -26,6 +26,9 @@ class Criterion(Pane):
 The stop criterion after each manoeuvre for the three rules side by side, each as a share of its own
 limit: the test may stop below the dashed line. The rule that decides is marked **►**; what the others
 would have said is never hidden.
+
+The rule information stops when the 95 % band of the predicted response, each named derivative and the
+prediction of the newest manoeuvre are within their tolerances; the lines above the curves tell how far.
 """
 
     def compose(self) -> ComposeResult:
@@ -58,7 +61,7 @@ def _rule_lines(verdict: FlightTestVerdict) -> list[str]:
         says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
         mark = "►" if rule == verdict.rule else " "
         lines.append(f"{mark} {rule:<12} {so_far:>8}  (limit {most:>3} %)  {says}")
-    return lines + [f"! {warning}" for warning in verdict.warnings]
+    return [*lines, *verdict.evidence, *(f"! {warning}" for warning in verdict.warnings)]
 
 
 def _chart(verdict: FlightTestVerdict | None) -> Chart:

@@ -1,0 +1,63 @@
+"""A manoeuvre refused for its cost alone, flown larger than those before and in agreement with them.
+
+The cost J = det R has no scale of the motion. What the model leaves unexplained grows with the motion: in
+two channels the cost doubles when each variance of the residual grows by 1.41, that is when the motion
+grows by 1.19. Eqs. (10) and (11) then refuse a manoeuvre that teaches more than those before.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import median
+
+import numpy as np
+
+from advisor.aircraft import CampaignPlan
+from advisor.decision.history import Flown, usable_ones
+from advisor.decision.information import knowledge
+from advisor.oem.estimate import Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class Larger:
+    """How much larger a refused manoeuvre was flown than what set its limit."""
+
+    ratio: float
+    """Of the ranges of the pitch rate."""
+    setter: int | None
+    """Number of the manoeuvre that set the limit; None where it was a median."""
+
+
+def larger_and_agreeing(
+    history: Sequence[Flown], accepted: Sequence[bool], plan: CampaignPlan
+) -> Larger | None:
+    """Whether the newest manoeuvre of ``history`` was larger than what set its limit, and predicted.
+
+    Parameters
+    ----------
+    history
+        Up to and including the manoeuvre that the paper's rule ``plan.rule`` refused.
+    accepted
+        What that rule says of each.
+
+    Returns
+    -------
+    Larger or None
+        None where it was no larger, to the digits that are said, or contradicts those before.
+    """
+    before, newest = history[:-1], history[-1]
+    setters = [i for i, flown in enumerate(before) if flown.usable]
+    if plan.rule == "continuous":
+        setters = [i for i in setters if accepted[i]][-1:]
+    if not setters or not newest.usable:
+        return None
+    reference = median(_range(history[i]) for i in setters)
+    ratio = _range(newest) / reference if reference > 0.0 else 1.0
+    if round(ratio, 1) <= 1.0 or not knowledge(usable_ones(history), plan).predicted:
+        return None
+    return Larger(ratio, setters[0] + 1 if len(setters) == 1 else None)
+
+
+def _range(flown: Flown) -> float:
+    """Range of the fitted pitch rate, rad/s."""
+    assert isinstance(flown.estimate, Estimate)
+    return float(np.ptp(flown.estimate.fits[0]["q"].fitted))

@@ -1,0 +1,188 @@
+"""What the model is for: the response to the campaign's own inputs, and how surely it predicts it.
+
+The response from trim, Eqs. (1)-(2), depends on the six derivatives, which manoeuvres share; trims and
+initial states are each manoeuvre's own and do not enter. The covariance of the derivatives goes through
+the exact sensitivities of the response (delta method) and gives its 95 % band.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.decision.history import Flown
+from advisor.decision.pooling import DERIVATIVES
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+from advisor.model.response import N_LOCAL, N_PARAMETERS, SHARED, respond
+from advisor.model.short_period import SPEED_EXPONENTS
+from advisor.oem.estimate import Estimate
+from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.surface import Servo
+
+PREDICTED = ("alpha", "q", "a_z")
+"""Outputs of which the prediction is judged, as far as they are measured; the pitch angle follows from q."""
+Z95 = 1.959963984540054
+"""Half-width of a 95 % interval in standard deviations."""
+MOMENTS = 200
+"""Points of time at which a response is looked at: 50 ms apart in a record of 10 s."""
+MOST_INPUTS = 12
+"""The newest so many manoeuvres stand for all: crews repeat a few inputs, and a long campaign stays fast."""
+_REMEMBERED = 512
+"""Responses kept for the next decision, 30 kB each."""
+_SPEED_POWER = np.array([SPEED_EXPONENTS[PARAMETERS[k]] for k in DERIVATIVES], dtype=float)
+
+
+class Response(NamedTuple):
+    """The response from trim to one input."""
+
+    values: FloatArray
+    """(3, n) α in rad, q in rad/s, a_z over the air speed in 1/s, order of ``PREDICTED``."""
+    slopes: FloatArray
+    """(3, n, 6) their change with each derivative, order of ``DERIVATIVES``."""
+
+    @property
+    def peak(self) -> FloatArray:
+        """(3,) largest deviation from trim of each output."""
+        return np.asarray(np.max(np.abs(self.values), axis=1))
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """The response to several inputs as one model predicts it."""
+
+    slopes: Mapping[str, FloatArray]
+    """Output to (n, 6): its change with each derivative in percent of its peak, at all moments of all inputs;
+    NaN where the model runs away."""
+
+    def percent(self, covariance: FloatArray) -> Mapping[str, float]:
+        """Half-width of the 95 % band at its widest, in percent of the peak, for each output.
+
+        Parameters
+        ----------
+        covariance
+            (6, 6) of the derivatives, order of ``DERIVATIVES``; infinite on the diagonal where one is
+            unknown: the band of an output that depends on it is infinite, too.
+        """
+        known = np.isfinite(np.diag(covariance))
+        inside = np.where(np.outer(known, known), covariance, 0.0)
+        return {name: _widest(slope, inside, known) for name, slope in self.slopes.items()}
+
+
+def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> float:
+    if not np.all(np.isfinite(slope)) or np.any(slope[:, ~known]):
+        return float("inf")
+    variance = np.einsum("ni,ni->n", slope @ covariance, slope)
+    return Z95 * float(np.sqrt(max(np.max(variance, initial=0.0), 0.0)))
+
+
+def predict(flown: Sequence[Flown], derivatives: FloatArray, airspeed_m_s: float | None) -> Prediction:
+    """The response to what was flown; of no output where it is not known what was flown.
+
+    Parameters
+    ----------
+    derivatives
+        (6,), order of ``DERIVATIVES``.
+    airspeed_m_s
+        The speed at which they are given; None: each manoeuvre's own.
+    """
+    slopes: dict[str, list[FloatArray]] = {}
+    for one in flown[-MOST_INPUTS:]:
+        response = response_to(one, derivatives, airspeed_m_s)
+        for name in measured(one) if one.maneuver is not None else ():
+            slopes.setdefault(name, []).append(_relative(response, PREDICTED.index(name)))
+    return Prediction({name: np.concatenate(parts) for name, parts in slopes.items()})
+
+
+def _relative(response: Response | None, k: int) -> FloatArray:
+    if response is None or not response.peak[k] > 0.0:
+        return np.full((1, len(DERIVATIVES)), np.nan)
+    return np.asarray(100.0 * response.slopes[k] / response.peak[k])
+
+
+def missed_percent(
+    flown: Flown, predicted: FloatArray, found: FloatArray, airspeed_m_s: float | None
+) -> float:
+    """Largest distance of the predicted response to a manoeuvre from the one found, in percent of its peak.
+
+    Parameters
+    ----------
+    predicted, found
+        (6,) derivatives from the manoeuvres before, and from the manoeuvre itself, at ``airspeed_m_s``.
+
+    Returns
+    -------
+    float
+        The worst of the outputs; NaN where it is not known what was flown, or a model runs away.
+    """
+    expected = response_to(flown, predicted, airspeed_m_s)
+    actual = response_to(flown, found, airspeed_m_s)
+    if expected is None or actual is None:
+        return float("nan")
+    apart = np.max(np.abs(expected.values - actual.values), axis=1)
+    used = [PREDICTED.index(name) for name in measured(flown)]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.max(100.0 * apart[used] / actual.peak[used], initial=-np.inf))
+
+
+def measured(flown: Flown) -> tuple[str, ...]:
+    """Outputs of ``PREDICTED`` that a manoeuvre's estimate is made from."""
+    fits = flown.estimate.fits[0] if isinstance(flown.estimate, Estimate) else {}
+    return tuple(name for name in PREDICTED if name in fits)
+
+
+def response_to(flown: Flown, derivatives: FloatArray, airspeed_m_s: float | None) -> Response | None:
+    """The response from trim to a manoeuvre's input at the manoeuvre's speed.
+
+    The slopes are with respect to the derivatives as given, at ``airspeed_m_s``. None where it is not known
+    what was flown, a derivative is unknown, or the model runs away.
+    """
+    if flown.maneuver is None or not np.all(np.isfinite(derivatives)):
+        return None
+    elevator = flown.maneuver.channels["elevator"]
+    heard = np.isfinite(elevator.y)
+    stamps, moved = elevator.t[heard], elevator.y[heard] - trim_of(flown.maneuver)
+    scale = np.ones(len(DERIVATIVES))
+    speed = _airspeed(flown.maneuver)
+    if speed is not None and airspeed_m_s is not None:
+        scale = (speed / airspeed_m_s) ** _SPEED_POWER
+    found = _respond(
+        np.asarray(stamps - stamps[0], float).tobytes(),
+        np.asarray(moved, float).tobytes(),
+        flown.servo,
+        tuple((derivatives * scale).tolist()),
+    )
+    return None if found is None else Response(found.values, found.slopes * scale)
+
+
+def trim_of(maneuver: Maneuver) -> float:
+    """Elevator before the first step, rad."""
+    elevator, span = maneuver.channels["elevator"], maneuver.span
+    lead = elevator.cut(span.record_from_s, span.start_s)
+    return float(np.nanmedian(lead.y if len(lead) else elevator.y[:1]))
+
+
+def _airspeed(maneuver: Maneuver) -> float | None:
+    channel = maneuver.channels.get("airspeed")
+    speed = float(np.nanmean(channel.y)) if channel is not None and np.any(np.isfinite(channel.y)) else 0.0
+    return speed if speed > 0.0 else None
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _respond(t: bytes, elevator: bytes, servo: Servo, derivatives: tuple[float, ...]) -> Response | None:
+    """The response to an elevator, given as bytes of its stamps and deflections so that it can be kept."""
+    command = Signal(np.frombuffer(t), np.frombuffer(elevator))
+    moments = np.linspace(command.t[0], command.t[-1], MOMENTS)
+    still = Signal(moments, np.zeros(MOMENTS))
+    record = Record(command, dict.fromkeys(PREDICTED, still), gravity_z=still)
+    assembly = assemble(Problem((record,), servo=servo))
+    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
+    shared = np.array([*derivatives, *np.zeros(len(SHARED) - len(derivatives))])
+    if not respond(assembly.grid, shared, np.zeros((1, N_LOCAL)), y, g):
+        return None
+    rows = [assembly.rows[0][name] for name in PREDICTED]
+    # The columns of the shared parameters stand first, in the order of DERIVATIVES.
+    return Response(np.array([y[r] for r in rows]), np.array([g[r, : len(DERIVATIVES)] for r in rows]))

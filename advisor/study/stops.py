@@ -1,0 +1,202 @@
+"""How often the rule ``information`` stops too early, and how many manoeuvres each rule needs.
+
+A stop is false when the model that it leaves predicts the true response to the campaign's inputs worse than
+the tolerance: the largest error over time, in percent of the peak, of the worst output.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.aircraft import Aircraft, CampaignPlan, Elevator, Rule
+from advisor.decision.history import Flown
+from advisor.decision.information import knowledge
+from advisor.decision.prediction import MOMENTS, PREDICTED, response_to
+from advisor.decision.stopping import progress
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+from advisor.flight.record import Channel
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.estimator import estimate
+from advisor.oem.prepare import prepare
+from advisor.oem.servo_lag import find_lag
+from advisor.oem.solution import solve
+from advisor.oem.surface import Servo
+from advisor.study.campaigns import RULES
+from advisor.study.estimating import Advance, estimate_copies
+from advisor.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale
+from advisor.study.paper import ORDER
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """What is flown and what disturbs it."""
+
+    name: str
+    noise_percent: float
+    tolerance_percent: float = 5.0
+    correlation_s: float = 0.0
+    """Correlation time of the noise, first order; 0: white."""
+    lag_s: float = 0.0
+    """First-order lag of the servo, which the crew does not know: it is estimated jointly, as in flight."""
+
+
+CASES = (
+    Case("white noise", 1.0),
+    Case("white noise", 2.5),
+    Case("white noise", 5.0),
+    Case("white noise", 5.0, tolerance_percent=1.0),
+    Case("coloured noise, 0.2 s", 2.5, correlation_s=0.2),
+    Case("coloured noise, 0.2 s", 2.5, tolerance_percent=2.0, correlation_s=0.2),
+    Case("coloured noise, 1 s", 5.0, tolerance_percent=3.0, correlation_s=1.0),
+    Case("servo lag 0.05 s unknown", 2.5, lag_s=0.05),
+    Case("servo lag 0.14 s unknown", 2.5, lag_s=0.14),
+)
+"""The default tolerance, and tighter ones with which the rule has something to decide."""
+KNOWN_FROM = 2
+"""Manoeuvres from which an unknown lag is estimated jointly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stops:
+    """All campaigns of one case."""
+
+    case: Case
+    needed: dict[Rule, tuple[int | None, ...]]
+    """Manoeuvres flown when each rule first said stop, a campaign each; None: not in seven."""
+    error_percent: tuple[float, ...]
+    """Error of the predicted response where ``information`` stopped, in percent of its peak."""
+
+    @property
+    def false_percent(self) -> float:
+        """Share of the stops with an error above the tolerance; NaN without a stop."""
+        wrong = [error > self.case.tolerance_percent for error in self.error_percent]
+        return 100.0 * float(np.mean(wrong)) if wrong else float("nan")
+
+    def error_quantile(self, share: float) -> float | None:
+        """Error that ``share`` of the stops do not exceed; None without a stop."""
+        return float(np.quantile(self.error_percent, share)) if self.error_percent else None
+
+    def median_needed(self, rule: Rule) -> int | None:
+        """Median number of manoeuvres; None where most campaigns do not stop."""
+        middle = sorted(np.inf if n is None else n for n in self.needed[rule])[len(self.needed[rule]) // 2]
+        return None if np.isinf(middle) else int(middle)
+
+    def never_percent(self, rule: Rule) -> float:
+        """Share of the campaigns that ``rule`` does not end."""
+        return 100.0 * float(np.mean([n is None for n in self.needed[rule]]))
+
+
+def measure(
+    campaigns: int, seed: int, advance: Advance | None = None, cases: Sequence[Case] = CASES
+) -> list[Stops]:
+    """Fly every case ``campaigns`` times."""
+    found = []
+    for number, case in enumerate(cases):
+        rng = np.random.default_rng([seed, number])
+        scene = Scene()
+        flights = {name: _through(scene, fly_named(scene, name), case.lag_s) for name in set(ORDER)}
+        noise = 0.01 * case.noise_percent * noise_scale(flights[ORDER[0]], "std")
+        order = [flights[name] for name in ORDER]
+        if case.correlation_s == 0.0 and case.lag_s == 0.0:
+            columns = [_copies(flight, noise, campaigns, rng) for flight in order]
+            flown = list(zip(*columns, strict=True))
+        else:
+            flown = [_campaign(order, noise, case, rng) for _ in range(campaigns)]
+        found.append(_measured(case, flown, order))
+        if advance is not None:
+            advance(1)
+    return found
+
+
+def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:
+    """The same command, flown through a servo with a lag."""
+    if lag_s <= 0.0:
+        return flight
+    surface, _, _ = Servo(lag_s).move(flight.t, flight.elevator, flight.t)
+    return replace(follow(scene, flight.t, surface), elevator=flight.elevator)
+
+
+def _copies(flight: Flight, noise: FloatArray, campaigns: int, rng: np.random.Generator) -> list[Flown]:
+    """The same manoeuvre of all campaigns, with white noise."""
+    maneuver = as_maneuver(flight)
+    return [Flown(e, maneuver=maneuver) for e in estimate_copies(flight, noise, campaigns, rng)]
+
+
+def _campaign(
+    order: Sequence[Flight], noise: FloatArray, case: Case, rng: np.random.Generator
+) -> tuple[Flown, ...]:
+    """One campaign through the estimator of the flight test, with its corrected covariance.
+
+    Raises
+    ------
+    ArithmeticError
+        A manoeuvre could not be estimated.
+    """
+    maneuvers = [_measure(flight, noise * _coloured(flight, case, rng)) for flight in order]
+    lag_s = _lag_found(maneuvers[:KNOWN_FROM]) if case.lag_s > 0.0 else 0.0
+    aircraft = Aircraft(elevator=Elevator(lag_s=lag_s, delay_s=0.0))
+    flown = []
+    for maneuver in maneuvers:
+        found = estimate(maneuver, aircraft)
+        if isinstance(found, NoEstimate):
+            raise ArithmeticError(found.text)
+        flown.append(Flown(found, maneuver=maneuver, servo=Servo(lag_s)))
+    return tuple(flown)
+
+
+def _measure(flight: Flight, noise: FloatArray) -> Maneuver:
+    maneuver, z = as_maneuver(flight), flight.response + noise
+    channels = {name: Channel(name, flight.t, z[:, k]) for k, name in enumerate(("alpha", "q"))}
+    return replace(maneuver, channels={**maneuver.channels, **channels})
+
+
+def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
+    """The lag of the joint estimate; 0 where the data do not tell it from none."""
+    prepared = prepare(maneuvers, Aircraft())
+    solution = prepared if isinstance(prepared, NoEstimate) else solve(prepared.problem)
+    if isinstance(solution, NoEstimate):
+        raise ArithmeticError(solution.text)
+    return find_lag(solution.problem, solution).lag_s
+
+
+def _coloured(flight: Flight, case: Case, rng: np.random.Generator) -> FloatArray:
+    """(n, 2) noise of unit variance."""
+    white = rng.standard_normal(flight.response.shape)
+    if case.correlation_s == 0.0:
+        return white
+    kept = float(np.exp(-(flight.t[1] - flight.t[0]) / case.correlation_s))
+    noise: FloatArray = white.copy()
+    for k in range(1, len(white)):
+        noise[k] = kept * noise[k - 1] + np.sqrt(1.0 - kept**2) * white[k]
+    return noise
+
+
+def _measured(case: Case, campaigns: Sequence[Sequence[Flown]], flights: Sequence[Flight]) -> Stops:
+    plan = CampaignPlan(tolerance_percent=case.tolerance_percent)
+    needed: dict[Rule, tuple[int | None, ...]] = {
+        rule: tuple(progress(campaign, rule, plan).stopped_at for campaign in campaigns) for rule in RULES
+    }
+    errors = [
+        _error_percent(campaign[:number], flights[:number], plan)
+        for campaign, number in zip(campaigns, needed["information"], strict=True)
+        if number is not None
+    ]
+    return Stops(case, needed, tuple(errors))
+
+
+def _error_percent(flown: Sequence[Flown], flights: Sequence[Flight], plan: CampaignPlan) -> float:
+    """Largest error of the response that the model left by the stop predicts, in percent of its peak."""
+    derivatives = knowledge(flown, plan).belief.shared.theta
+    worst = 0.0
+    for one, flight in zip(flown, flights, strict=True):
+        predicted = response_to(one, derivatives, None)
+        if predicted is None:
+            return float("inf")
+        moments = np.linspace(flight.t[0], flight.t[-1], MOMENTS)
+        for k, name in enumerate(("alpha", "q")):
+            true = np.interp(moments, flight.t, flight.response[:, k] - flight.trim[k])
+            off = np.max(np.abs(predicted.values[PREDICTED.index(name)] - true))
+            worst = max(worst, 100.0 * float(off / np.max(np.abs(true))))
+    return worst
