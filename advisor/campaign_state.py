@@ -43,6 +43,8 @@ class CampaignState:
     """Joint estimate over the accepted manoeuvres."""
     flying: Maneuver | None = None
     """The manoeuvre being flown now, cut so far."""
+    marking_since_s: float | None = None
+    """When the mark began that a hand has still to end, s since boot."""
     settling: Estimate | None = None
     """Estimate from the manoeuvre being flown, refreshed as it goes."""
     enough: str | None = None

@@ -11,7 +11,8 @@ from advisor.flight.segmentation import LEAD_IN_S, Segmenter
 from advisor.flight.shape import BAND, Shape
 from advisor.flight.stretch import RESTING_S
 
-_SAID = {"hand": "marked by hand", "switch": "marked by a switch", "text": "marked by a text of the vehicle"}
+MARKED = {"hand": "marked by hand", "switch": "marked by a switch", "text": "marked by a text of the vehicle"}
+"""Why the span of a marked stretch ended, by who or what marked it."""
 
 
 class _Input(NamedTuple):
@@ -37,11 +38,11 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
         Its record begins up to one lead-in before the mark, where the elevator was heard by then.
     """
     if elevator is None:
-        return Span(mark.start_s, mark.start_s, mark.end_s, mark.end_s, "other", (), _SAID[mark.by])
+        return Span(mark.start_s, mark.start_s, mark.end_s, mark.end_s, "other", (), MARKED[mark.by])
     found = _recognised(mark, elevator) or _unnamed(mark, elevator)
     record_from_s = min(max(mark.start_s - LEAD_IN_S, float(elevator.t[0])), mark.start_s)
     return Span(
-        record_from_s, found.start_s, found.last_step_s, mark.end_s, found.kind, found.steps, _SAID[mark.by]
+        record_from_s, found.start_s, found.last_step_s, mark.end_s, found.kind, found.steps, MARKED[mark.by]
     )
 
 

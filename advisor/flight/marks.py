@@ -64,7 +64,7 @@ class Due:
     marks: tuple[Mark, ...] = ()
     """Complete marks in seconds since boot, the one that ended first before the others."""
     spans: tuple[tuple[Span, int | None], ...] = ()
-    """Spans of the finder that an open mark held back and no mark has taken, each with its order of arrival."""
+    """Spans of the finder that an open mark held back and none has taken, each with its order of arrival."""
     notices: tuple[Notice, ...] = ()
     """Sentences on marks that cannot be used."""
 

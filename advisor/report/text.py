@@ -90,6 +90,7 @@ class AnalysisText:
         yield Text()
         for judged in self.state.maneuvers:
             yield Text(maneuver_line(judged), style="green" if judged.verdict.accepted else "red")
+            yield from (Text(f"    note: {note}") for note in judged.notes)
         yield Text()
         yield from (Text(line, style="dim") for line in caution_lines(self.state.maneuvers))
         yield Text()
