@@ -140,11 +140,15 @@ class Campaign:
 
     def mark(self, text: str) -> None:
         """Set a mark in the event log at the newest vehicle time."""
-        self.by_hand = self.by_hand.remarking(Remark(self._now_s, text, self._stream.boot))
+        if math.isfinite(self._now_s):
+            self.by_hand = self.by_hand.remarking(Remark(self._now_s, text, self._stream.boot))
         self._log(f"mark: {text}", self._stream.now_s)
 
     def begin_maneuver(self) -> None:
         """Mark a manoeuvre from the newest vehicle time on; a mark that is open already is dropped."""
+        if not math.isfinite(self._now_s):
+            self._log("nothing can be marked before the vehicle's clock is heard")
+            return
         self._stream.marks.begin_by_hand(self._now_s)
         self._log("a manoeuvre is marked from here", self._stream.now_s)
 

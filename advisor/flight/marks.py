@@ -161,8 +161,15 @@ class Marks:
         return self._due(ready) if ready or self._held or self._notices else Due()
 
     def finish(self, last_s: float) -> Due:
-        """The power-on ends at ``last_s``, s since boot: an open mark ends there, too."""
+        """The power-on ends at ``last_s``, s since boot: a switch that is on ends its mark there.
+
+        What a hand has begun and not ended is dropped.
+        """
         self.advance(self._switched[-1].order if self._switched else 0)
+        begun_s = self._open.pop("hand", None)
+        if begun_s is not None:
+            said = "is dropped: the vehicle's clock began anew before its end."
+            self._notices.append(Notice("mark_dropped", f"The mark begun at {begun_s:.1f} s {said}"))
         for by in tuple(self._open):
             self._close(by, last_s)
         self._heard.append((self._first_s, last_s))

@@ -247,8 +247,19 @@ def test_a_mark_that_is_begun_anew_gives_back_what_the_first_one_held():
             if stream.now_s >= at_s and at_s not in begun:
                 begun.append(at_s)
                 stream.marks.begin_by_hand(stream.now_s)
-    events += stream.finish()
-    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet", "marked by hand"]
+    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
+
+
+def test_a_mark_that_is_not_ended_before_a_reboot_is_dropped_and_told():
+    wire = Wire()
+    fly(wire, 1000.0, 50.0, ONE, 12.0)
+    fly(wire, 1015.0, 3.0, [], 5.0)
+    stream = FlightStream(Aircraft())
+    events = stream.feed(wire.columns(range(1600)))
+    stream.marks.begin_by_hand(stream.now_s)
+    events += stream.feed(wire.columns(range(1600, len(wire)))) + stream.finish()
+    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
+    assert "is dropped" in next(e.text for e in events if isinstance(e, Notice) and e.code == "mark_dropped")
 
 
 def test_ending_a_mark_that_was_not_begun_says_so():

@@ -116,6 +116,16 @@ async def test_a_mark_begun_and_ended_at_the_same_moment_is_refused_in_the_log(t
         assert not path_beside(log).exists()
 
 
+def test_nothing_is_marked_before_the_vehicles_clock_is_heard():
+    campaign = Campaign(Aircraft())
+    campaign.begin_maneuver()
+    campaign.mark("engine start")
+    campaign.end_maneuver()
+    assert campaign.by_hand == ByHand()
+    assert campaign.state.marking_since_s is None
+    assert campaign.state.notices[0] == "nothing can be marked before the vehicle's clock is heard"
+
+
 def test_without_a_recording_a_link_says_that_decisions_are_not_kept():
     said = LinkSource(None).keep(ByHand())  # type: ignore[arg-type]
     assert "not kept, for nothing is recorded" in said
