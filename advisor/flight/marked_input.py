@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from advisor.flight.input_shape import SMALLEST_RAD
 from advisor.flight.maneuver import InputKind, Span
 from advisor.flight.marks import Mark
 from advisor.flight.record import Channel
@@ -62,12 +63,16 @@ def _recognised(mark: Mark, elevator: Channel) -> _Input | None:
 
 
 def _unnamed(mark: Mark, elevator: Channel) -> _Input:
-    """From the beginning of the mark to where the elevator leaves for the level of its end."""
+    """From the beginning of the mark to where the elevator leaves for the level of its end.
+
+    An elevator that keeps still leaves at once: what such a mark lacks is an input, not a free response.
+    """
     within = elevator.cut(mark.start_s, mark.end_s)
     if len(within) < 2:
         return _Input("other", mark.start_s, mark.end_s, ())
     level = float(np.median(within.cut(within.t[-1] - RESTING_S, within.t[-1]).y))
     away = np.abs(within.y - level)
-    moving = np.flatnonzero(away > BAND * np.max(away))
-    last_step_s = float(within.t[moving[-1]]) if len(moving) else mark.end_s
-    return _Input("other", mark.start_s, last_step_s, ())
+    if np.max(away) < SMALLEST_RAD:
+        return _Input("other", mark.start_s, mark.start_s, ())
+    last = np.flatnonzero(away > BAND * np.max(away))[-1]
+    return _Input("other", mark.start_s, float(within.t[last]), ())

@@ -99,9 +99,10 @@ class Marks:
         self._first_s = first_s
         for mark in tuple(self._given):
             by_s = first_s - self._earlier_s if mark.from_log_start else 0.0
-            here = replace(mark, start_s=mark.start_s + by_s, end_s=mark.end_s + by_s, from_log_start=False)
-            if mark.boot not in (None, self._boot) or here.start_s < first_s - EDGE_S:
+            start_s, end_s = mark.start_s + by_s, mark.end_s + by_s
+            if mark.boot not in (None, self._boot) or start_s < first_s - EDGE_S or end_s <= first_s:
                 continue
+            here = replace(mark, start_s=max(start_s, first_s), end_s=end_s, from_log_start=False)
             refused = self._refused(here)
             if refused is not None:
                 self._given.remove(mark)
@@ -173,9 +174,10 @@ class Marks:
         for by in tuple(self._open):
             self._close(by, last_s)
         self._heard.append((self._first_s, last_s))
-        return self._due([m for m in self._waiting if m.start_s <= last_s and m.end_s <= last_s + EDGE_S])
+        within = [m for m in self._waiting if m.start_s < last_s and m.end_s <= last_s + EDGE_S]
+        return self._due(within, last_s)
 
-    def _due(self, complete: Sequence[Mark]) -> Due:
+    def _due(self, complete: Sequence[Mark], last_s: float = np.inf) -> Due:
         ready = sorted(complete, key=lambda m: (m.end_s, m.start_s))
         for mark in ready:
             given = self._waiting.pop(mark)
@@ -185,7 +187,7 @@ class Marks:
         held, self._held = self._held, []
         released = tuple((span, order) for span, order in held if not self.hides(span, order))
         notices, self._notices = tuple(self._notices), []
-        return Due(tuple(ready), released, notices)
+        return Due(tuple(replace(m, end_s=min(m.end_s, last_s)) for m in ready), released, notices)
 
     def _close(self, by: Marker, at_s: float) -> None:
         mark = Mark(self._open.pop(by), at_s, self._boot, by=by)

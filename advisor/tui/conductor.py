@@ -43,6 +43,7 @@ class Conductor:
         self._tell: Tell = lambda report: None
         self._requests: SimpleQueue[Callable[[CampaignLike], None]] = SimpleQueue()
         self._by_hand = by_hand
+        self._where_kept = ""
         self._pending: list[HandDecision] = []
         self._goal: Goal | None = None
         self._chronicle = Chronicle()
@@ -130,6 +131,7 @@ class Conductor:
     def _report(self, campaign: CampaignLike) -> None:
         state = campaign.state
         self._chronicle.follow(state.notices)
+        self._chronicle.note(self._where_kept)
         self._chronicle.hear(self._source.take_notices())
         playback = self._source.playback() if isinstance(self._source, Playable) else None
         problems = () if state.maneuvers else tuple(campaign.problems)
@@ -152,7 +154,7 @@ class Conductor:
         """Remember for a rewind what was decided by hand, and keep it with the data."""
         if campaign.by_hand != self._by_hand:
             self._by_hand = campaign.by_hand
-            self._chronicle.note(self._source.keep(self._by_hand))
+            self._where_kept = self._source.keep(self._by_hand)
 
     def _jump(self, campaign: CampaignLike, number: int) -> None:
         if not isinstance(self._source, Playable):

@@ -1,6 +1,7 @@
 """What keys decide by hand about the present moment."""
 
 from abc import abstractmethod
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from advisor.tui.conducting import Conducting
@@ -30,6 +31,9 @@ class HandActions(Base):
 
     def action_begin_maneuver(self) -> None:
         """Call what is flown from now on a manoeuvre."""
+        if not isfinite(self.view.state.now_s):
+            self.say("nothing can be marked before the vehicle's clock is heard")
+            return
         self.conductor.decide(HandDecision("begin"))
         self.say("a manoeuvre is marked from here: finish it where it ends, or begin it anew")
 

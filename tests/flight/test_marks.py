@@ -79,6 +79,7 @@ def test_what_no_mark_touches_is_found_as_before():
 def test_a_stretch_in_which_nothing_was_found_is_a_manoeuvre_when_it_is_marked():
     first, second = marked(Mark(50.5, 53.0))
     assert (first.span.kind, first.span.steps) == ("other", ())
+    assert first.span.last_step_s == first.span.start_s
     assert second.span.kind == "3-2-1-1"
 
 
@@ -130,9 +131,11 @@ def test_a_mark_outside_of_the_log_is_a_problem_once_the_log_is_over():
     assert problem.text.startswith("--maneuver 400:420 lies outside of the log, which holds 50.0 to 64.0 s")
 
 
-def test_a_mark_may_reach_a_moment_beyond_a_recording_that_was_cut_off():
-    (maneuver,) = marked(Mark(53.0, 65.0))
+def test_a_mark_may_reach_a_moment_beyond_a_recording_and_ends_with_the_data():
+    (maneuver,) = marked(Mark(49.0, 65.0))
     assert maneuver.span.closed_by == "marked by hand"
+    assert maneuver.span.record_from_s == pytest.approx(50.0, abs=0.03)
+    assert maneuver.span.end_s == pytest.approx(64.0, abs=0.03)
 
 
 def test_of_two_marks_that_overlap_the_first_given_counts_and_the_other_is_told():
