@@ -21,7 +21,7 @@ from advisor.flight.events import (
     VehicleFound,
 )
 from advisor.flight.maneuver import Maneuver
-from advisor.flight.marks import Mark
+from advisor.flight.marks import MARK_NOTICES, Mark
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
 from advisor.oem.estimate import Estimate
@@ -84,6 +84,7 @@ class Campaign:
         self._maneuvers: list[Maneuver] = []
         self._history: list[Flown] = []
         self._notices: list[str] = []
+        self._mark_notes: list[str] = []
         self._judged: tuple[JudgedManeuver, ...] = ()
         self._flight_test = flight_test((), aircraft.campaign, aircraft)
         self._model: Estimate | None = None
@@ -122,6 +123,7 @@ class Campaign:
             enough=settled.enough if settled else None,
             estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
             elevator_notes=stream.elevator_notes,
+            mark_notes=tuple(self._mark_notes),
             notices=tuple(self._notices),
         )
 
@@ -184,8 +186,10 @@ class Campaign:
                     self._log(self._flight_test.sentence, ended_s)
                 case ModeChanged(mode, at_s):
                     self._log(f"mode {mode}", at_s)
-                case Notice(_, text):
+                case Notice(code, text):
                     self._log(text)
+                    if code in MARK_NOTICES:
+                        self._mark_notes.append(text)
                 case VehicleFound(vehicle):
                     self._log(f"following {vehicle}")
                 case Rebooted(boot):

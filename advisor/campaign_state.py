@@ -53,5 +53,7 @@ class CampaignState:
     """Numbers of the manoeuvres that ``model`` is made from."""
     elevator_notes: tuple[str, ...] = ()
     """What is assumed of the elevator's scale and sense, in sentences."""
+    mark_notes: tuple[str, ...] = ()
+    """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()
     """Sentences for the event log, oldest first."""

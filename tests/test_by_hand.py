@@ -88,6 +88,20 @@ def test_a_wrong_form_is_told_in_a_sentence_with_exit_code_2(
     assert WRONG[text] in result.stderr
 
 
+def test_two_marks_that_overlap_are_told_with_exit_code_2(advisor: Advisor, log: Path) -> None:
+    result = advisor("analyze", log, "--maneuver", "+1:+8", "--maneuver", "+7:+9")
+    assert result.returncode == 2
+    assert "--maneuver +7:+9 overlaps --maneuver +1:+8" in result.stderr
+
+
+def test_a_mark_in_the_file_gives_way_to_one_on_the_command_line_and_that_is_told(
+    advisor: Advisor, log: Path
+) -> None:
+    write_by_hand(log, ByHand(marks=(Mark(25.0, 32.0, 0),)))
+    told = advisor("analyze", log, "--maneuver", "+4:+10").stdout
+    assert "note: The mark from 25.0 to 32.0 s is left out" in told.replace("\n", " ")
+
+
 @pytest.mark.parametrize("command", ["analyze", "gap", "replay"])
 def test_a_time_that_the_log_does_not_hold_is_told_with_exit_code_3(
     advisor: Advisor, log: Path, command: str

@@ -1,8 +1,9 @@
 """Options that commands share, so that they read and behave the same everywhere."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import combinations
 from math import isfinite, nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -65,7 +66,7 @@ def maneuver_option(command: F) -> F:
         "marks",
         multiple=True,
         metavar="START:END",
-        callback=lambda ctx, parameter, texts: tuple(map(parse_mark, texts)),
+        callback=lambda ctx, parameter, texts: parse_marks(texts),
         help="Call this stretch a manoeuvre: seconds since boot, or with + from the start of the log "
         "(+12:+24). Repeatable.",
     )(command)
@@ -76,6 +77,21 @@ def no_marks_option(command: F) -> F:
     return click.option(
         "--no-marks", is_flag=True, help="Leave out what was decided by hand before (LOG.maneuvers.yaml)."
     )(command)
+
+
+def parse_marks(texts: Sequence[str]) -> "tuple[Mark, ...]":
+    """Read several ``START:END`` that do not overlap.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`parse_mark`, and where two stretches share time.
+    """
+    marks = tuple(map(parse_mark, texts))
+    for a, b in combinations(marks, 2):
+        if a.from_log_start == b.from_log_start and a.overlaps(b.start_s, b.end_s):
+            raise ConfigurationError(f"{b.name} overlaps {a.name}: make one mark of both, or part them.")
+    return marks
 
 
 def parse_mark(text: str) -> "Mark":

@@ -18,6 +18,8 @@ Marker = Literal["hand", "switch", "text"]
 
 LONGEST_S = 100.0
 """Longest mark, s: with its lead-in a mark must fit into the two minutes of channels that a stream keeps."""
+MARK_NOTICES = frozenset({"mark_length", "marked_already", "mark_dropped"})
+"""Codes of the notices that tell of a mark that cannot be used."""
 EDGE_S = 2.0
 """A mark may reach so far beyond the log, s: a power cut robs a recording of its last second."""
 
