@@ -23,7 +23,7 @@ class Remark:
     def concerns(self, maneuver: Maneuver) -> bool:
         """Whether the moment lies in a manoeuvre, its lead-in included."""
         span = maneuver.span
-        return self.boot == maneuver.boot and span.start_s - LEAD_IN_S <= self.at_s <= span.end_s
+        return self.boot == maneuver.boot and span.start_s - LEAD_IN_S <= self.at_s < span.end_s
 
 
 @dataclass(frozen=True, slots=True)

@@ -100,7 +100,10 @@ class Campaign:
         """The stream has ended: a manoeuvre that is complete but for its quiet end still counts."""
         if self._stream.marks.by_hand_since_s is not None:
             self.end_maneuver()
-        return self._take(self._stream.finish())
+        told = self._take(self._stream.finish())
+        for problem in self._stream.marks.problems():
+            self._log(str(problem))
+        return told
 
     @property
     def state(self) -> CampaignState:

@@ -43,7 +43,7 @@ class Mark:
 
     def overlaps(self, start_s: float, end_s: float) -> bool:
         """Whether the mark shares time with a stretch of the same power-on."""
-        return self.start_s <= end_s and start_s <= self.end_s
+        return self.start_s < end_s and start_s < self.end_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +153,7 @@ class Marks:
         """Whether a span of the finder gives way to a mark, or waits for the end of an open one."""
         if any(m.overlaps(span.start_s, span.end_s) for m in (*self._waiting, *self._closed)):
             return True
-        waits = any(since_s <= span.end_s for since_s in self._open.values())
+        waits = any(since_s < span.end_s for since_s in self._open.values())
         if waits:
             self._held.append((span, order))
         return waits
@@ -197,7 +197,7 @@ class Marks:
         refused = self._refused(mark)
         if refused is not None:
             self._notices.append(refused)
-        elif hand_s > at_s:
+        elif hand_s >= at_s:
             self._waiting[mark] = None
 
     def _refused(self, mark: Mark) -> Notice | None:
@@ -220,7 +220,7 @@ class Marks:
             Problem(
                 "mark_outside",
                 f"{mark.name} lies outside of the log, which holds {heard or 'no'} vehicle time.",
-                "Give seconds since boot within the log, or + seconds from its start, as in +12:+24.",
+                "Give a stretch within the log, in seconds since boot or with + from its start (+12:+24).",
             )
             for mark in self._given
         ]

@@ -138,6 +138,11 @@ def test_a_mark_may_reach_a_moment_beyond_a_recording_and_ends_with_the_data():
     assert maneuver.span.end_s == pytest.approx(64.0, abs=0.03)
 
 
+def test_marks_may_follow_upon_each_other():
+    first, second = marked(Mark(53.0, 58.5), Mark(58.5, 62.0))
+    assert (first.span.end_s, second.span.start_s) == (58.5, 58.5)
+
+
 def test_of_two_marks_that_overlap_the_first_given_counts_and_the_other_is_told():
     _, events = flown(one_input(), marks=[Mark(53.0, 58.5), Mark(3.0, 8.0, from_log_start=True)])
     assert len(maneuvers(events)) == 1
