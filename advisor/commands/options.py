@@ -67,7 +67,7 @@ def maneuver_option(command: F) -> F:
         multiple=True,
         metavar="START:END",
         callback=lambda ctx, parameter, texts: parse_marks(texts),
-        help="Call this stretch a manoeuvre: seconds since boot, or with + from the start of the log "
+        help="Call this stretch a manoeuvre: seconds since boot, or with + since the log's first ATTITUDE "
         "(+12:+24). Repeatable.",
     )(command)
 

@@ -193,12 +193,11 @@ class Marks:
 
     def _close(self, by: Marker, at_s: float) -> None:
         mark = Mark(self._open.pop(by), at_s, self._boot, by=by)
-        hand_s = self._open.get("hand", np.inf)
         refused = self._refused(mark)
-        if refused is not None:
-            self._notices.append(refused)
-        elif hand_s >= at_s:
+        if refused is None:
             self._waiting[mark] = None
+        else:
+            self._notices.append(refused)
 
     def _refused(self, mark: Mark) -> Notice | None:
         """Why a mark that has just ended cannot be used; None when it can."""
@@ -207,10 +206,13 @@ class Marks:
         if not 0.0 < length_s <= LONGEST_S:
             most = f"is {length_s:.1f} s long: a mark lasts more than 0 and at most {LONGEST_S:.0f} s."
             return Notice("mark_length", f"{where} {most}")
-        for other in (*self._closed, *self._waiting):
-            if other.overlaps(mark.start_s, mark.end_s):
-                said = f"the stretch from {other.start_s:.1f} to {other.end_s:.1f} s is marked already."
-                return Notice("marked_already", f"{where} is left out: {said}")
+        others = [m.start_s for m in (*self._closed, *self._waiting) if m.overlaps(mark.start_s, mark.end_s)]
+        hand_s = self._open.get("hand", np.inf)
+        if hand_s < mark.end_s:
+            others.append(hand_s)
+        if others:
+            said = f"another mark begins at {min(others):.1f} s and shares time with it."
+            return Notice("marked_already", f"{where} is left out: {said}")
         return None
 
     def problems(self) -> list[Problem]:

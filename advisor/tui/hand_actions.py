@@ -4,6 +4,7 @@ from abc import abstractmethod
 from math import isfinite
 from typing import TYPE_CHECKING
 
+from advisor.flight.marks import LONGEST_S
 from advisor.tui.conducting import Conducting
 from advisor.tui.hand import HandDecision
 from advisor.tui.screens.face import Face
@@ -44,7 +45,10 @@ class HandActions(Base):
             self.say("no manoeuvre is being marked: begin one first")
             return
         self.conductor.decide(HandDecision("end"))
-        self.say(f"a manoeuvre is marked from {clock(since_s)} to here; its verdict follows")
+        if self.view.state.now_s - since_s > LONGEST_S:
+            self.say(f"the mark is dropped: it is longer than {LONGEST_S:.0f} s")
+        else:
+            self.say(f"a manoeuvre is marked from {clock(since_s)} to here; its verdict follows")
 
     @abstractmethod
     def say(self, text: str, seconds: float = 3.0) -> None:

@@ -246,6 +246,16 @@ def test_a_mark_made_in_flight_gives_what_the_same_mark_gives_when_it_is_known_b
     assert any(m.span.closed_by == "marked by hand" for m in maneuvers(live))
 
 
+@pytest.mark.parametrize(("on_s", "off_s"), [(54.5, 61.0), (53.0, 57.0)])
+def test_a_hand_wins_over_a_switch_in_flight_as_in_a_replay_and_that_is_told(on_s: float, off_s: float):
+    wire = switched(on_s, off_s)
+    at, live = by_hand(wire, 54.0, 58.0)
+    _, replayed = flown(wire, BY_SWITCH, marks=[Mark(at[0], at[1], 0)])
+    assert as_plain(live) == as_plain(replayed)
+    assert [m.span.closed_by for m in maneuvers(live)] == ["marked by hand"]
+    assert any(isinstance(event, Notice) and event.code == "marked_already" for event in live)
+
+
 def test_a_mark_that_is_begun_anew_gives_back_what_the_first_one_held():
     wire = one_input(20.0)
     stream, events, begun = FlightStream(Aircraft()), [], []
