@@ -86,6 +86,18 @@ class Accelerometer:
 
 
 @dataclass(frozen=True)
+class Markers:
+    """How the crew marks manoeuvres in flight."""
+
+    rc: int | None = None
+    """Channel 1..18 of RC_CHANNELS that is a pilot's switch; None: there is none."""
+    above_us: float = 1700.0
+    """Above this pulse the switch is on, us: switched on and off again, it marks what lies between."""
+    text: tuple[str, str] | None = None
+    """Beginnings of the two STATUSTEXTs that begin and end a mark, besides those of ArduPlane's SystemID."""
+
+
+@dataclass(frozen=True)
 class Reference:
     """Geometry and mass for non-dimensional coefficients."""
 
@@ -139,6 +151,7 @@ class Aircraft:
     """Effects added to the simulator's model: effect name of the gap analysis to its parameters."""
     campaign: CampaignPlan = field(default_factory=CampaignPlan)
     limits: Limits = field(default_factory=Limits)
+    markers: Markers = field(default_factory=Markers)
 
     @property
     def stated_airspeed_m_s(self) -> float | None:

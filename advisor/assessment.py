@@ -7,6 +7,7 @@ from advisor.decision.history import Flown
 from advisor.decision.quality import judge_quality
 from advisor.flight.kinematics import check_alpha
 from advisor.flight.maneuver import Maneuver
+from advisor.flight.marked_input import MARKED
 from advisor.flight.vehicle import closes_pitch_loop
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
@@ -37,6 +38,8 @@ def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
 
 def _cautions(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft) -> list[str]:
     cautions = []
+    if maneuver.span.closed_by in MARKED.values():
+        cautions.append(maneuver.span.closed_by)
     if closes_pitch_loop(maneuver.mode):
         cautions.append(
             f"flown in {maneuver.mode} with the pitch loop closed: elevator, angle of attack and pitch rate "

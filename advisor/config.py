@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
-from advisor.aircraft import PARAMETERS, Aircraft, Elevator, Pairs
+from advisor.aircraft import PARAMETERS, Aircraft, Elevator, Markers, Pairs
 from advisor.effects import mistakes_in
 from advisor.problems import ConfigurationError
 
@@ -102,6 +102,7 @@ def _reader() -> TypeAdapter[Aircraft]:
         aircraft.Reference,
         aircraft.CampaignPlan,
         aircraft.Limits,
+        aircraft.Markers,
         aircraft.Aircraft,
     ):
         strict(part)
@@ -175,6 +176,7 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
             yield f"campaign.tolerance.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
         elif value <= 0.0:
             yield f"campaign.tolerance.{name}: must be above 0, is {value}"
+    yield from _mistakes_in_markers(aircraft.markers)
 
 
 def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
@@ -213,3 +215,14 @@ def _calibration_mistakes(path: str, points: Pairs) -> Iterator[str]:
     rises = {(b[1] > a[1]) - (b[1] < a[1]) for a, b in pairwise(points)}
     if len(rises) > 1 or rises == {0}:
         yield f"{path}: deflection must rise all the way or fall all the way"
+
+
+def _mistakes_in_markers(markers: Markers) -> Iterator[str]:
+    if markers.rc is not None and not 1 <= markers.rc <= 18:
+        yield f"markers.rc: {markers.rc} is not a channel 1..18 of RC_CHANNELS"
+    if not 800.0 <= markers.above_us <= 2200.0:
+        yield f"markers.above_us: {markers.above_us} us is outside 800..2200"
+    if markers.text is not None:
+        begins, ends = markers.text
+        if not begins.strip() or not ends.strip() or begins == ends:
+            yield "markers.text: needs two different texts, [begins, ends]"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator, ElevatorOutput
+from advisor.aircraft import Aircraft, Elevator, ElevatorOutput, Markers
 from advisor.config import load_aircraft, parse_aircraft
 from advisor.effects import LEAST
 from advisor.gap.candidates.traits import TRAITS
@@ -59,6 +59,13 @@ def test_the_ends_of_several_outputs_are_those_of_their_weighted_mean() -> None:
     assert elevator.ends_deg == pytest.approx((-26.0, 18.0))
     assert Elevator(calibration=wide).ends_deg == (-30.0, 20.0)
     assert Elevator(outputs=(ElevatorOutput(1),)).ends_deg is None
+
+
+def test_markers_are_read() -> None:
+    markers = parse_aircraft(
+        {"markers": {"rc": 9, "above_us": 1600, "text": ["MARK ON", "MARK OFF"]}}
+    ).markers
+    assert markers == Markers(rc=9, above_us=1600.0, text=("MARK ON", "MARK OFF"))
 
 
 def test_an_empty_file_and_empty_sections_mean_the_defaults(tmp_path: Path) -> None:
@@ -163,6 +170,11 @@ def test_effects_of_a_file_are_those_of_the_gap_analysis_and_the_simulator_flies
         ({"elevator": {"lag_s": -0.1}}, "elevator.lag_s"),
         ({"alpha": {"source": "vane"}}, "alpha.source"),
         ({"airspeed_m_s": 0}, "airspeed_m_s"),
+        ({"markers": {"rc": 19}}, "markers.rc: 19 is not a channel 1..18"),
+        ({"markers": {"rc": 9, "above_us": 3000}}, "markers.above_us"),
+        ({"markers": {"text": ["ON"]}}, "markers.text"),
+        ({"markers": {"text": ["ON", "ON"]}}, "markers.text: needs two different texts"),
+        ({"markers": {"switch": 9}}, "markers.switch: unknown key"),
         ({"airspeed_m_s": float("nan")}, "airspeed_m_s"),
     ],
 )

@@ -134,13 +134,13 @@ def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:
 def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     """Air speed away from where it was before the first step; often it follows from something else."""
     limit = aircraft.limits.airspeed_change_percent
-    channel = maneuver.channels.get("airspeed")
-    if channel is None or len(channel) < 2 or not np.median(channel.y) > 0.0:
+    channel, speed = maneuver.channels.get("airspeed"), flown(maneuver, "airspeed")
+    if channel is None or len(speed) < 2 or not np.median(channel.y) > 0.0:
         return []
     before = channel.cut(maneuver.span.record_from_s, maneuver.span.start_s).y
     trim = float(np.median(before if len(before) else channel.y[:1]))
     # The second largest: one wild reading of the air speed is no change of speed.
-    change = 100.0 * float(np.sort(np.abs(flown(maneuver, "airspeed") / trim - 1.0))[-2:][0])
+    change = 100.0 * float(np.sort(np.abs(speed / trim - 1.0))[-2:][0])
     if change <= limit:
         return []
     shown, most = beside(change, limit)

@@ -80,6 +80,7 @@ _STAMPS = {
     "SERVO_OUTPUT_RAW": _USEC,
     "ACTUATOR_OUTPUT_STATUS": _USEC,
     "NAMED_VALUE_FLOAT": _BOOT_MS,
+    "RC_CHANNELS": _BOOT_MS,
 }
 """VFR_HUD has no stamp: it takes that of the last ATTITUDE."""
 

@@ -24,7 +24,7 @@ from advisor.flight.channels import (
 from advisor.flight.clocks import BootClock
 from advisor.flight.commanded import Commanded, commanded
 from advisor.flight.cutting import Cutting
-from advisor.flight.elevator_watch import ElevatorWatch
+from advisor.flight.elevator_watch import SETTLE_S, ElevatorWatch
 from advisor.flight.events import (
     FlightEvent,
     ManeuverFlown,
@@ -35,6 +35,8 @@ from advisor.flight.events import (
 )
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.markers import HEARD, MarkerWatch
+from advisor.flight.marks import Due, Mark, Marks
 from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.mixing import Mixing
 from advisor.flight.pieces import pieces
@@ -63,9 +65,13 @@ class FlightStream:
         The aircraft file: elevator output and calibration, source of the angle of attack.
     target_system
         System id to follow; None: the first vehicle heard.
+    marks
+        Stretches that somebody has called manoeuvres, known before the stream begins.
     """
 
-    def __init__(self, aircraft: Aircraft, target_system: int | None = None) -> None:
+    def __init__(
+        self, aircraft: Aircraft, target_system: int | None = None, marks: Sequence[Mark] = ()
+    ) -> None:
         self._aircraft = aircraft
         self._who = Identity(aircraft.elevator, target_system)
         self._attitudes = Attitudes()
@@ -73,6 +79,10 @@ class FlightStream:
         self._tracks = Tracks(aircraft.alpha.source)
         self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.is_calibrated)
         self._mixing = Mixing(self._tracks)
+        self.marks = Marks(marks)
+        """What is marked by hand, by a switch and by texts."""
+        self._markers = MarkerWatch(aircraft.markers)
+        self._over = False
         self._start_boot()
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
@@ -154,7 +164,11 @@ class FlightStream:
             self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.autopilots
         )
         wrong = self._mixing.contradiction
-        return [wrong, *found] if wrong and not flown.maneuvers else found
+        return [
+            *(self.marks.problems() if self._over else ()),
+            *([wrong] if wrong and not flown.maneuvers else ()),
+            *found,
+        ]
 
     def recent(self, name: str, seconds: float) -> Channel | None:
         """The newest stretch of a channel; None when nothing of it has arrived."""
@@ -162,7 +176,9 @@ class FlightStream:
 
     def so_far(self) -> Maneuver | None:
         """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
-        onset, now = self._watch.onset_s, self._watch.newest_s
+        now = self._watch.newest_s
+        marked_s = self.marks.since_s(now)
+        onset = self._watch.onset_s if marked_s is None else marked_s
         if onset is None or not now > onset:
             return None
         span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
@@ -177,9 +193,16 @@ class FlightStream:
 
     def finish(self) -> list[FlightEvent]:
         """No more messages will come: whatever is open is closed."""
+        events = self._finish_boot()
+        self._over = True
+        return events
+
+    def _finish_boot(self) -> list[FlightEvent]:
         events = self._watch_elevator(self._mixing.finish())
+        due = self.marks.finish(self._master_s)
         for span in self._watch.finish():
-            events += self._flown(span, None)
+            events += self._found(span, None)
+        events += self._marked(due, None)
         self._note_rates()
         return events
 
@@ -212,10 +235,12 @@ class FlightStream:
         self.seen.update(c.name for c in mine)
         for part, master in by_boot(mine, vehicle.component, self._clock, self.boot):
             if master.boot != self.boot:
-                events += self.finish()
+                events += self._finish_boot()
                 self._earlier_s = self.duration_s
                 self.boot = master.boot
                 self._start_boot()
+                self.marks.start_boot(self.boot, self._earlier_s)
+                self._markers.start_boot()
                 events.append(Rebooted(self.boot))
             events += self._feed_part(part, master, vehicle)
         return events
@@ -228,9 +253,11 @@ class FlightStream:
         attitude = _last_finite(np.concatenate((self._attitude, master.attitude)))
         elevator: list[Commanded] = []
         for columns in merged(part):
+            now = np.searchsorted(orders, columns.order, side="right") - 1
+            if columns.name in HEARD:
+                self.marks.hear(self._markers.heard(columns, stamps(columns, clock[now])))
             if columns.component != vehicle.component and columns.name != "NAMED_VALUE_FLOAT":
                 continue
-            now = np.searchsorted(orders, columns.order, side="right") - 1
             t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
@@ -245,6 +272,7 @@ class FlightStream:
                         self._tracks.append(moved.combined())
         if np.isnan(self._first_s) and len(master.t):
             self._first_s = float(master.t[0])
+            self.marks.start_clock(self._first_s)
         self._master_s, self._attitude = float(clock[-1]), attitude[-1:]
         return self._feed_elevator(elevator)
 
@@ -276,8 +304,23 @@ class FlightStream:
             self._tracks.append(new)
             arrived += zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
         for order, t, y in sorted(arrived):
+            self.marks.advance(order)
             for found in self._watch.push(t, order, y):
-                events += [found] if isinstance(found, ManeuverStarted) else self._flown(found, order)
+                events += [found] if isinstance(found, ManeuverStarted) else self._found(found, order)
+            events += self._marked(self.marks.due(self._watch.newest_s - SETTLE_S), order)
+        return events
+
+    def _found(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
+        """What the finder has found, unless it lies in a marked stretch."""
+        return [] if self.marks.hides(span, up_to_order) else self._flown(span, up_to_order)
+
+    def _marked(self, due: Due, up_to_order: int | None) -> list[FlightEvent]:
+        events: list[FlightEvent] = list(due.notices)
+        for span, order in due.spans:
+            events += self._flown(span, order)
+        for mark in due.marks:
+            events += self._cutting.marked(mark, self.boot, up_to_order)
+            self._note_rates()
         return events
 
     def _flown(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:

@@ -24,6 +24,7 @@ _RECORDS: dict[str, set[str]] = {
     "MSG": {"Message"},
     "PARM": {"Name", "Value"},
     "POS": {"Lat", "Lng", "Alt", "RelHomeAlt"},
+    "RCIN": {"C1"},
     "RCOU": {"C1"},
     "RCO2": set(),
     "RCO3": set(),
@@ -79,6 +80,7 @@ class _Translation:
             "IMU": self._highres_imu,
             "AOA": self._aoa_ssa,
             "POS": self._global_position_int,
+            "RCIN": self._rc_channels,
             "PARM": self._param_value,
             "MSG": self._statustext,
             "VER": self._autopilot_version,
@@ -161,6 +163,14 @@ class _Translation:
                 fields: dict[str, ArrayLike] = {"time_usec": rcou.time_us, "port": port, **outputs}
                 banks.append(self._message("SERVO_OUTPUT_RAW", rcou, fields, place=port))
         yield from banks
+
+    def _rc_channels(self, rcin: Table) -> Columns:
+        pulses: dict[str, ArrayLike] = {
+            f"chan{field[1:]}_raw": values
+            for field, values in rcin.fields.items()
+            if field[0] == "C" and field[1:].isdigit()
+        }
+        return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
     def _vfr_hud(self, air: Table) -> Columns:
         fields: dict[str, ArrayLike] = {

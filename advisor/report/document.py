@@ -94,6 +94,8 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
         ],
         "cautions": list(verdict.cautions),
         "excluded_because": judged.excluded_because,
+        "notes": list(judged.notes),
+        "closed_by": span.closed_by,
         "cost": number(estimate.cost) if estimate else None,
         "fit": {
             name: {"rms": number(fit.rms), "tic": number(fit.tic), "r2": number(fit.r2)}
