@@ -12,6 +12,7 @@ from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.events import (
+    Activity,
     FlightEvent,
     ManeuverFlown,
     ModeChanged,
@@ -74,6 +75,7 @@ class Campaign:
         self._history: list[Flown] = []
         self._notes: dict[int, tuple[str, ...]] = {}
         self._notices: list[str] = []
+        self._activity: list[Activity] = []
         self._judged: tuple[JudgedManeuver, ...] = ()
         self._flight_test = flight_test((), aircraft.campaign, aircraft)
         self._model: Estimate | None = None
@@ -108,6 +110,7 @@ class Campaign:
             estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
             elevator_notes=stream.elevator_notes,
             notices=tuple(self._notices),
+            activity=tuple(self._activity),
         )
 
     @property
@@ -147,6 +150,9 @@ class Campaign:
                     ended_s = maneuver.span.end_s
                     self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
                     self._log(self._flight_test.sentence, ended_s)
+                case Activity():
+                    joined = event.joined(self._activity[-1]) if self._activity else None
+                    self._activity[-1:] = [joined] if joined else [*self._activity[-1:], event]
                 case ModeChanged(mode, at_s):
                     self._log(f"mode {mode}", at_s)
                 case Notice(_, text):

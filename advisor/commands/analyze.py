@@ -31,6 +31,9 @@ from advisor.problems import Problem, UnusableInputError
     show_default=True,
     help="Search for each manoeuvre's optimum; nelder-mead is the paper's, slower by far.",
 )
+@click.option(
+    "--all", "every_movement", is_flag=True, help="List also what moved the elevator and was no test input."
+)
 @json_option
 def command(
     log: Path,
@@ -38,6 +41,7 @@ def command(
     rule: Rule | None,
     target_system: int | None,
     method: Literal["gauss-newton", "nelder-mead"],
+    every_movement: bool,
     as_json: bool,
 ) -> int:
     """Every manoeuvre's verdict, the estimates, stop or continue: as text, or as one JSON document.
@@ -60,7 +64,14 @@ def command(
 
         from advisor.report.text import AnalysisText
 
-        Console(highlight=False, soft_wrap=True).print(AnalysisText(state, log.name, aircraft))
+        Console(highlight=False, soft_wrap=True).print(
+            AnalysisText(state, log.name, aircraft, every_movement)
+        )
+    elif state is not None and every_movement:
+        from advisor.report.text import activity_line
+
+        for activity in state.activity:
+            click.echo(activity_line(activity))
     for problem in problems:
         click.echo(problem.about(log.name), err=True)
     return UNUSABLE if problems else 0

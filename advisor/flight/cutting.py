@@ -1,17 +1,16 @@
-"""From spans of elevator samples to manoeuvres: the channels cut out, and what is none left aside."""
+"""From movements of the elevator to manoeuvres with their channels, or to activities with their reasons."""
 
 from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.channels import SLOWEST_FLIGHT_M_S
-from advisor.flight.events import FlightEvent, ManeuverFlown, Notice
+from advisor.flight.events import Activity, FlightEvent, ManeuverFlown
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.purpose import not_an_input
 from advisor.flight.record import UNITS
 from advisor.flight.sense import Sense, turned
-from advisor.flight.shape import is_3211
 from advisor.flight.track import Tracks
 from advisor.flight.vehicle import closes_pitch_loop
 
@@ -33,8 +32,8 @@ class Cutting:
         self._modes = [(-np.inf, who.mode)]
         self.maneuvers = 0
         """How many manoeuvres have been found."""
-        self.autopilots: Counter[str] = Counter()
-        """Inputs that were the autopilot's own, by flight mode."""
+        self.activities: Counter[str] = Counter()
+        """Movements that were no test inputs, by their text."""
 
     @property
     def is_backwards(self) -> bool:
@@ -55,21 +54,26 @@ class Cutting:
         return turned(maneuver) if self.is_backwards else maneuver
 
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """What a span that has ended was: a manoeuvre, an input on the ground, an autopilot's own."""
+        """What a movement that has ended was: a manoeuvre, or an activity with its reason."""
         maneuver = self._cut(span, boot, up_to_order)
-        airspeed = maneuver.channels.get("airspeed")
-        if airspeed is not None and 0.0 < float(np.median(airspeed.y)) < SLOWEST_FLIGHT_M_S:
-            said = f"Elevator input at {span.start_s:.1f} s ignored: the aircraft does not fly."
-            return [Notice("on_ground", said)]
-        if closes_pitch_loop(maneuver.mode) and not is_3211(span.kind):
-            # In such a mode steps are the autopilot's own, unless their timing shows a test input.
-            self.autopilots[maneuver.mode] += 1
-            return []
+        because = not_an_input(maneuver)
+        if because is not None:
+            self.activities[because.text] += 1
+            stay_s, _ = self._stay(_middle_s(span))
+            return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
         self.maneuvers += 1
         if self._sense is None:
             return [ManeuverFlown(maneuver)]
         maneuver, found = self._sense.right(maneuver)
         return [*found, ManeuverFlown(maneuver)]
+
+    def pilot_flies(self, at_s: float) -> bool:
+        """Whether the pilot moves the elevator at this time, as far as the flight mode tells."""
+        return not closes_pitch_loop(self._stay(at_s)[1])
+
+    def _stay(self, at_s: float) -> tuple[float, str]:
+        """Since when the vehicle was in the flight mode that it had at this time, and the mode."""
+        return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
 
     def _cut(self, span: Span, boot: int, up_to_order: int | None) -> Maneuver:
         channels = {}
@@ -79,5 +83,9 @@ class Cutting:
                 channels[name] = replace(
                     channel, provenance=self._who.provenance(channel.source, channel.provenance)
                 )
-        mode = next(mode for since, mode in reversed(self._modes) if since <= span.start_s)
-        return Maneuver(self.maneuvers + 1, boot, span, channels, mode)
+        return Maneuver(self.maneuvers + 1, boot, span, channels, self._stay(_middle_s(span))[1])
+
+
+def _middle_s(span: Span) -> float:
+    """Middle of the input: a heartbeat tells of a new flight mode only up to a second or two later."""
+    return 0.5 * (span.start_s + span.last_step_s)

@@ -27,7 +27,6 @@ from advisor.flight.elevator_watch import ElevatorWatch
 from advisor.flight.events import (
     FlightEvent,
     ManeuverFlown,
-    ManeuverStarted,
     ModeChanged,
     Rebooted,
 )
@@ -142,7 +141,7 @@ class FlightStream:
         self._note_rates()
         flown = self._cutting
         return problems(
-            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.autopilots
+            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.activities
         )
 
     def recent(self, name: str, seconds: float) -> Channel | None:
@@ -152,7 +151,7 @@ class FlightStream:
     def so_far(self) -> Maneuver | None:
         """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
         onset, now = self._watch.onset_s, self._watch.newest_s
-        if onset is None or not now > onset:
+        if onset is None or not now > onset or not self._cutting.pilot_flies(onset):
             return None
         span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
         return self._cutting.so_far(span, self.boot)
@@ -262,7 +261,10 @@ class FlightStream:
                 arrived += zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
         for order, t, y in sorted(arrived):
             for found in self._watch.push(t, order, y):
-                events += [found] if isinstance(found, ManeuverStarted) else self._flown(found, order)
+                if isinstance(found, Span):
+                    events += self._flown(found, order)
+                elif self._cutting.pilot_flies(found.at_s):
+                    events.append(found)
         return events
 
     def _flown(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
