@@ -30,10 +30,11 @@ class Cutting:
         self._tracks, self._who = tracks, who
         self._sense = None if calibrated else Sense()
         self._modes = [(-np.inf, who.mode)]
+        self._released = (0, -np.inf)
         self.maneuvers = 0
         """How many manoeuvres have been found."""
         self.activities: Counter[str] = Counter()
-        """Movements that were no test inputs, by their text."""
+        """Movements that were no test inputs, by what they were in words."""
 
     @property
     def is_backwards(self) -> bool:
@@ -58,10 +59,11 @@ class Cutting:
         maneuver = self._cut(span, boot, up_to_order)
         because = not_an_input(maneuver)
         if because is not None:
-            self.activities[because.text] += 1
+            self.activities[because.what] += 1
             stay_s, _ = self._stay(_middle_s(span))
             return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
         self.maneuvers += 1
+        self._released = (boot, span.end_s)
         if self._sense is None:
             return [ManeuverFlown(maneuver)]
         maneuver, found = self._sense.right(maneuver)
@@ -76,6 +78,10 @@ class Cutting:
         return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
 
     def _cut(self, span: Span, boot: int, up_to_order: int | None) -> Maneuver:
+        earlier_boot, earlier_s = self._released
+        if earlier_boot == boot and earlier_s > span.record_from_s:
+            # The lead-in does not reach into the record of another manoeuvre.
+            span = replace(span, record_from_s=min(earlier_s, span.start_s))
         channels = {}
         for name in UNITS:
             channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
@@ -87,5 +93,5 @@ class Cutting:
 
 
 def _middle_s(span: Span) -> float:
-    """Middle of the input: a heartbeat tells of a new flight mode only up to a second or two later."""
-    return 0.5 * (span.start_s + span.last_step_s)
+    """Middle of the movement: a heartbeat tells of a new flight mode only up to two seconds later."""
+    return 0.5 * (span.start_s + span.end_s)

@@ -1,12 +1,15 @@
 """What a movement of the elevator tells about the short period, from the pitch rate alone.
 
-The short period makes of the elevator δ and the pitch rate q a linear recursion of second order,
+A pilot or an autopilot that steadies the aircraft moves the elevator with its motion. Only the rest e of the
+elevator, which no linear feedback of pitch rate q, pitch angle θ and its integral explains, tells cause from
+effect: it is the external input of closed-loop identification (Ljung, System Identification, 1999, ch. 13).
+The short period makes a linear recursion of second order of q and e,
 
-    q[k] = a1·q[k−1] + a2·q[k−2] + b0·δ[k] + b1·δ[k−1] + b2·δ[k−2] + c + d·k + ε[k],
+    q[k] = a1·q[k−1] + a2·q[k−2] + b0·e[k] + b1·e[k−1] + b2·e[k−2] + c + d·k + ε[k],
 
-on means over intervals of equal length. A servo's lag spreads over b0, b1, b2. The statistic
-F asks whether b0, b1 and b2 explain more than chance does once the aircraft's own motion is known
-(Draper & Smith, Applied Regression Analysis, 1998, ch. 6). Angle of attack and acceleration are not needed.
+on means over intervals of equal length. A servo's lag spreads over b0, b1, b2. The statistic F asks whether
+b0, b1 and b2 explain more than chance does (Draper & Smith, Applied Regression Analysis, 1998, ch. 6).
+Angle of attack and acceleration are not needed.
 """
 
 from dataclasses import dataclass
@@ -38,7 +41,7 @@ class Excitation:
     pitch_rate: float
     """Half of the range of the pitch rate, rad/s."""
     relative_error: float
-    """Relative standard error of the elevator's effect, one over the root of 3·F; infinite without any."""
+    """Relative standard error of the external input's effect: one over the root of 3·F, infinite for F = 0."""
 
 
 def excitation(maneuver: Maneuver) -> Excitation | None:
@@ -47,27 +50,43 @@ def excitation(maneuver: Maneuver) -> Excitation | None:
     Parameters
     ----------
     maneuver
-        The record with channels ``elevator`` and ``q``.
+        The record with channels ``elevator`` and ``q``; without ``theta`` the integral of ``q`` serves.
 
     Returns
     -------
     Excitation or None
-        None where the pitch rate is missing, never changes, or is too slow to say.
+        None where the pitch rate is missing or never changes. The error is infinite where
+        there are too few samples to say.
     """
     elevator, q = maneuver.channels.get("elevator"), maneuver.channels.get("q")
     if elevator is None or q is None or len(elevator) < 3 or len(q) < 3 or np.ptp(q.y) == 0.0:
         return None
     start, end = max(elevator.t[0], q.t[0]), min(elevator.t[-1], q.t[-1])
     lasting = [b - a for (a, _), (b, _) in pairwise(maneuver.span.steps)]
-    coarse = 2.0 * max(float(np.median(np.diff(elevator.t))), float(np.median(np.diff(q.t))))
+    coarse = max(float(np.median(np.diff(elevator.t))), float(np.median(np.diff(q.t))))
     wanted = min(min(lasting, default=inf) / _PER_STEP, (end - start) / _MANY, _LONGEST_S)
+    pitch_rate = 0.5 * float(np.ptp(q.y))
     edges = np.arange(start, end, max(coarse, wanted))
     if len(edges) <= _FEWEST:
-        return None
-    rate, moved = _means(edges, q.t, q.y), _means(edges, elevator.t, elevator.y - np.mean(elevator.y))
-    pitch_rate = 0.5 * float(np.ptp(q.y))
+        return Excitation(pitch_rate, inf)
+    rate, moved = _means(edges, q.t, q.y), _means(edges, elevator.t, _external(maneuver))
     statistic = _f_statistic(rate, moved)
     return Excitation(pitch_rate, 1.0 / sqrt(_INPUTS * statistic) if statistic > 0.0 else inf)
+
+
+def _external(maneuver: Maneuver) -> FloatArray:
+    """The part of the elevator that no linear feedback of the motion explains, at the elevator's stamps."""
+    elevator, q = maneuver.channels["elevator"], maneuver.channels["q"]
+    rate = np.interp(elevator.t, q.t, q.y)
+    theta = maneuver.channels.get("theta")
+    if theta is not None and len(theta) > 2:
+        pitch = np.interp(elevator.t, theta.t, theta.y)
+    else:
+        pitch = integrated(elevator.t, rate)
+    off = pitch - np.mean(pitch)
+    since = elevator.t - elevator.t[0]
+    terms = [rate, off, integrated(elevator.t, off), since, np.ones(len(rate))]
+    return _left(np.column_stack(terms), elevator.y)
 
 
 def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
@@ -81,13 +100,13 @@ def _f_statistic(q: FloatArray, elevator: FloatArray) -> float:
     n = len(q) - 2
     own = np.column_stack([q[1:-1], q[:-2], np.ones(n), np.linspace(-1.0, 1.0, n)])
     full = np.column_stack([own, elevator[2:], elevator[1:-1], elevator[:-2]])
-    without, left = _unexplained(own, q[2:]), _unexplained(full, q[2:])
+    without, left = (float(rest @ rest) for rest in (_left(own, q[2:]), _left(full, q[2:])))
     freedom = n - full.shape[1]
-    return max(0.0, without - left) / _INPUTS / max(left / freedom, 1e-300)
+    return float(max(0.0, without - left) / _INPUTS / max(left / freedom, 1e-300))
 
 
-def _unexplained(terms: FloatArray, y: FloatArray) -> float:
-    """Sum of squares that least squares on these terms leaves."""
+def _left(terms: FloatArray, y: FloatArray) -> FloatArray:
+    """What least squares on these terms leaves of a signal."""
     scaled = terms / np.maximum(np.abs(terms).max(axis=0), 1e-12)
-    left = y - scaled @ np.linalg.lstsq(scaled, y, rcond=None)[0]
-    return float(left @ left)
+    left: FloatArray = y - scaled @ np.linalg.lstsq(scaled, y, rcond=None)[0]
+    return left

@@ -121,7 +121,7 @@ def _name(t: FloatArray, steps: tuple[tuple[float, float], ...], is_stepped: boo
     """What pilots call such an input."""
     levels = np.array([level for _, level in steps[:-1]])
     lasting = np.diff([onset for onset, _ in steps])
-    share = np.abs(levels) / np.max(np.abs(levels))
+    share = np.abs(levels) / max(float(np.max(np.abs(levels))), 1e-12)
     if len(levels) == 4 and np.min(share) >= _LEAST_LEVEL:
         unit = float(np.sum(lasting)) / 7.0
         step_s = float(np.max(np.diff(t)))

@@ -19,9 +19,10 @@ from advisor.flight.vehicle import closes_pitch_loop
 LEAST_PITCH_RATE_DEG_S = 1.0
 """Least answer of the pitch rate to a test input, deg/s: smaller ones drown in light turbulence. The gentlest
 test input on record has 1.3 (a jet), a correction between inputs of another jet has 0.7."""
-LARGEST_ERROR = 0.25
-"""Largest relative standard error of the elevator's effect on the pitch rate: the effect is four of its
-standard errors. Test inputs on record have 0.01 to 0.16, the largest in gusts of 0.5 m/s."""
+LARGEST_ERROR = 0.3
+"""Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %.
+Test inputs on record have 0.02 to 0.15 in calm air and 0.21 in gusts of 0.5 m/s. An attitude hold in such
+gusts has 0.3 to 2."""
 _SHARP_S = 0.06
 """Half of the time within which a step of an external input happens, s. Feedback of the aircraft's motion
 takes longer."""
@@ -33,6 +34,13 @@ _FEWEST_SHARP = 3
 """Least number of such steps. The loop itself makes one where it is switched on, and one where its
 demand jumps."""
 
+_WHAT = {
+    "ground": "movements without flight",
+    "small": "corrections",
+    "no_information": "movements that followed the aircraft's motion",
+    "unsettled": "movements that never came to rest",
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Because:
@@ -41,6 +49,12 @@ class Because:
     reason: str
     """``autopilot``, ``ground``, ``small``, ``no_information`` or ``unsettled``."""
     text: str
+    """The reason in a sentence, with its number and limit."""
+
+    @property
+    def what(self) -> str:
+        """The kind of movement in words, without numbers."""
+        return _WHAT.get(self.reason, self.text)
 
 
 def not_an_input(maneuver: Maneuver) -> Because | None:
@@ -77,7 +91,7 @@ def _tells_nothing(maneuver: Maneuver) -> Because | None:
         if isfinite(found.relative_error) and found.relative_error < 1.0:
             shown, most = beside(100.0 * found.relative_error, 100.0 * LARGEST_ERROR)
             known = f"to {shown} % only (limit {most})"
-        return Because("no_information", f"the pitch rate shows what the elevator did {known}")
+        return Because("no_information", f"the elevator followed the motion: its own effect is known {known}")
     return None
 
 

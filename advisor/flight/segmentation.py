@@ -49,8 +49,6 @@ _LEAVES = (0.2, 0.35)
 within these shares of the amplitude."""
 _LEAST_REST_S = 0.3
 """A rest before the movement is at least so long, if anything else moved before."""
-_COMPARABLE = 0.5
-"""The lead-in does not reach into the record of a movement that is larger than this share."""
 _KEEP_S = _REACH_S + 30.0
 """Samples are kept for so long: a movement and its free response."""
 _GAP_S = 1.0
@@ -68,7 +66,6 @@ class Segmenter:
         self._size = 0
         self._from = 0
         self._ended: list[Span] = []
-        self._released_s, self._released_rad = -np.inf, 0.0
         self._begin_anew(-np.inf)
 
     def _begin_anew(self, from_s: float) -> None:
@@ -298,10 +295,6 @@ class Segmenter:
         past_s = at_s if why == "next input" else float(np.nextafter(at_s, np.inf))
         end_s = float(times[max(0, int(np.searchsorted(times, past_s)) - 1)])
         record_from_s = max(movement.start_s - LEAD_IN_S, float(times[0]))
-        if self._released_rad >= _COMPARABLE * movement.amplitude:
-            record_from_s = max(record_from_s, self._released_s)
-        record_from_s = min(record_from_s, movement.start_s)
-        self._released_s, self._released_rad = end_s, movement.amplitude
         self._ended.append(
             Span(
                 record_from_s,
