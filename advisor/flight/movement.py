@@ -14,8 +14,12 @@ from advisor.flight.rest import median, without_spikes
 
 BAND = 0.3
 """Within this share of its amplitude a movement counts as at trim."""
+_RETURNED = 0.45
+"""A rest this near to the level before is a trim that differs a little; a rest farther away is a step."""
 _LEAVING = 0.1
 """A movement begins where the elevator leaves trim by this share of the amplitude for good."""
+_EDGE_S = 0.6
+"""A step is over after so long, s: hand-flown edges take 0.2 to 0.4."""
 _LEAST_LEVEL = 0.4
 """A pattern of steps has no lobe smaller than this share of its largest."""
 _TIMING = 0.45
@@ -70,42 +74,51 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
     after = before if rest is None else median(rest)
     quiet = 0.0 if rest is None else float(np.std(rest))
     smooth = without_spikes(u)
-    size = np.maximum(np.abs(smooth - before), 0.0)
-    amplitude = float(size.max())
-    returned = abs(after - before) <= 0.5 * amplitude
+    returned = abs(after - before) <= _RETURNED * float(np.abs(smooth - before).max())
     d = smooth - (0.5 * (before + after) if returned else before)
     level = 0.0 if returned else after - before
     amplitude = float(np.abs(d).max())
-    if amplitude <= 0.0:
-        return None
     moving = np.flatnonzero(np.abs(d - level) > BAND * amplitude)
     away = np.flatnonzero(np.abs(d) > BAND * amplitude)
     if len(away) == 0 or len(moving) == 0:
         return None
-    first, last = int(away[0]), int(min(moving[-1], len(t) - 1))
+    first, last = int(away[0]), int(moving[-1])
     at_trim = np.flatnonzero(np.abs(smooth[: first + 1] - before) <= _LEAVING * amplitude)
-    start = int(at_trim[-1]) if len(at_trim) else 0
+    start_s = float(t[at_trim[-1]] if len(at_trim) else t[0])
     over = min(last + 1, len(t) - 1)
-    steps = _steps(t, d, first, last if returned else over, amplitude, level)
+    arrival_s = 0.5 * float(t[over] + t[over - 1])
+    steps = _steps(t, d, (first, last if returned else over), amplitude, level, arrival_s)
     stepped = _is_stepped(t, d, steps)
     kind = _name(t, steps, stepped) if returned and rest is not None else "other"
-    start_s = float(t[start])
     last_step_s = max(steps[-1][0], start_s)
     return Movement(kind, start_s, last_step_s, float(t[over]), after, amplitude, quiet, steps, stepped)
 
 
 def _steps(
-    t: FloatArray, d: FloatArray, first: int, last: int, amplitude: float, level: float
+    t: FloatArray, d: FloatArray, extent: tuple[int, int], amplitude: float, level: float, arrival_s: float
 ) -> tuple[tuple[float, float], ...]:
-    """The lobes on either side of trim as steps: onset where half of the way is done, level by the median."""
+    """The lobes on either side of trim as steps: onset where half of the way is done, level by the median.
+
+    Parameters
+    ----------
+    t, d
+        Shape (n,): stamps (s) and deviation from trim (rad).
+    extent
+        First and last sample away from trim.
+    amplitude
+        Largest deviation, rad.
+    level
+        Where the elevator rests at the end, rad from trim; 0 where it has returned.
+    arrival_s
+        When it has come there, s.
+    """
+    first, last = extent
     out = np.flatnonzero(np.abs(d[first : last + 1]) > BAND * amplitude) + first
     above = d[out] > 0.0
     turns = np.flatnonzero(above[1:] != above[:-1])
     starts = [int(out[0]), *(int(out[k + 1]) for k in turns)]
     ends = [*(int(out[k]) for k in turns), int(out[-1])]
     levels = [median(d[a : b + 1]) for a, b in zip(starts, ends, strict=True)]
-    if level:
-        levels[-1] = level
     around = [0.0, *levels, *([] if level else [0.0])]
     onsets = []
     for k, (old, new) in enumerate(pairwise(around)):
@@ -114,7 +127,12 @@ def _steps(
         passed = np.flatnonzero((d[back : until + 1] - 0.5 * (old + new)) * np.sign(new - old) >= 0.0)
         j = back + int(passed[0]) if len(passed) else until
         onsets.append(float(0.5 * (t[j] + t[max(j - 1, 0)])))
-    return tuple(zip(onsets, around[1:], strict=True))
+    steps = list(zip(onsets, around[1:], strict=True))
+    if level and arrival_s - onsets[-1] > _EDGE_S:
+        steps.append((arrival_s, level))
+    elif level:
+        steps[-1] = (onsets[-1], level)
+    return tuple(steps)
 
 
 def _name(t: FloatArray, steps: tuple[tuple[float, float], ...], is_stepped: bool) -> InputKind:

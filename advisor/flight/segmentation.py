@@ -15,7 +15,8 @@ import numpy as np
 from advisor.flight.maneuver import Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.movement import Movement, describe
-from advisor.flight.rest import SMALLEST_RAD, is_still, median
+from advisor.flight.rest import SMALLEST_RAD, is_still, median, without_spikes
+from advisor.flight.samples import Samples
 
 LEAD_IN_S = 1.0
 """How much of the flight before the first step belongs to the record."""
@@ -44,6 +45,8 @@ _NEAR = 0.4
 _HOLD_S = (8.0, 20.0)
 """A rest at another level ends a movement after the first time. It ends a single step after the second, so
 that a long pulse is one input."""
+_LONGER = 1.2
+"""... or after the longest earlier rest at another level and so much more: a slow input has long steps."""
 _LEAVES = (0.2, 0.35)
 """A free response ends where the elevator moves by five standard deviations of its rest, but
 within these shares of the amplitude."""
@@ -51,8 +54,13 @@ _LEAST_REST_S = 0.3
 """A rest before the movement is at least so long, if anything else moved before."""
 _KEEP_S = _REACH_S + 30.0
 """Samples are kept for so long: a movement and its free response."""
+_LEAVING_S = (1.0, 0.15)
+"""The part of a rest that is asked whether it is still, s before the elevator leaves: the last
+moment may be its setting out."""
 _GAP_S = 1.0
-"""A longer gap ends a free response."""
+"""A longer gap ends a free response, ..."""
+_MANY_INTERVALS = 5.0
+"""... if so many samples are missing."""
 _LONGEST_GAP_S = 3.0
 """A longer one ends everything; over a shorter one an input is recognised, to be refused for the gap."""
 
@@ -61,10 +69,7 @@ class Segmenter:
     """Takes elevator samples in the order of their stamps; gives spans as they end."""
 
     def __init__(self) -> None:
-        self._t = np.empty(4096)
-        self._u = np.empty(4096)
-        self._size = 0
-        self._from = 0
+        self._samples = Samples(_KEEP_S)
         self._ended: list[Span] = []
         self._begin_anew(-np.inf)
 
@@ -99,32 +104,33 @@ class Segmenter:
 
     def push(self, t: float, u: float) -> list[Span]:
         """Take one sample, stamp (s, rising) and elevator (rad); the spans that have ended by it."""
-        if self._size > self._from:
-            last = float(self._t[self._size - 1])
+        if self._samples.size:
+            last = float(self._samples.t[-1])
             if t <= last:
                 return []
-            if t - last > _GAP_S and t - last > self._longest_gap_s():
+            if t - last > _GAP_S and t - last > _MANY_INTERVALS * self._samples.interval_s():
                 self._interrupt(last, whole=t - last > _LONGEST_GAP_S)
-        self._store(t, u)
-        self._advance(self._size - 1)
+        self._samples.append(t, u)
+        self._advance(self._samples.size - 1)
         return self._drain()
 
     def mode_changed(self, t: float) -> list[Span]:
         """The flight mode changed, at ``t`` at the earliest: what moved before ends there."""
-        pending = self._pending
-        if pending is not None and pending.start_s < t:
+        if self._pending is not None:
+            pending = self._pending
+            if pending.start_s >= t:
+                return []
             self._end(pending, "mode change", max(t, pending.last_step_s))
-        elif pending is None and self._moved_from_s is not None and self._moved_from_s < t:
+            t = max(t, pending.over_s)
+        elif self._moved_from_s is not None and self._moved_from_s < t:
             self._cut_off("mode change", t)
-        elif pending is not None:
-            return []
         self._restart(t)
         return self._drain()
 
     def finish(self) -> list[Span]:
         """No more samples will come."""
-        if self._size > self._from:
-            last = float(self._t[self._size - 1])
+        if self._samples.size:
+            last = float(self._samples.t[-1])
             if self._pending is not None:
                 self._end(self._pending, "end of log", last)
             else:
@@ -139,7 +145,7 @@ class Segmenter:
     def _restart(self, from_s: float) -> None:
         """Follow the stored samples since ``from_s`` once more, as if the stream began there."""
         self._begin_anew(from_s)
-        for i in range(self._index(from_s), self._size):
+        for i in range(self._samples.index(from_s), self._samples.size):
             self._advance(i)
 
     def _interrupt(self, last_s: float, whole: bool) -> None:
@@ -154,21 +160,22 @@ class Segmenter:
 
     def _advance(self, i: int) -> None:
         """Take the stored sample ``i`` into account."""
-        t, u = float(self._t[i]), float(self._u[i])
+        samples = self._samples
+        t, u = float(samples.t[i]), float(samples.y[i])
         if self._base is None:
-            begun = max(self._from, self._index(self._new_from_s))
-            if i - begun >= 2 and t - self._t[begun] >= _FIRST_LEVEL_S:
-                self._base = median(self._u[begun : i + 1])
+            begun = samples.index(self._new_from_s)
+            if i - begun >= 2 and t - samples.t[begun] >= _FIRST_LEVEL_S:
+                self._base = median(samples.y[begun : i + 1])
             return
         if self._pending is not None:
             self._follow(self._pending, t, u)
             return
         # One sample alone is no movement.
-        deviation = min(abs(u - self._base), abs(float(self._u[max(i - 1, self._from)]) - self._base))
+        deviation = min(abs(u - self._base), abs(float(samples.y[i - 1]) - self._base))
         if self._moved_from_s is not None:
             self._amplitude = max(self._amplitude, deviation)
         elif deviation > self._leaving:
-            self._set_out(float(self._t[max(i - 2, self._from)]), deviation)
+            self._set_out(float(samples.t[max(i - 2, 0)]), deviation)
         if t >= self._next_check_s:
             self._next_check_s = t + _CHECK_S
             if self._moved_from_s is None:
@@ -179,7 +186,7 @@ class Segmenter:
 
     def _watch_rest(self, i: int, t: float) -> None:
         """The level of the rest moves slowly, and tells how far the elevator moves at rest."""
-        recent = self._u[max(self._index(t - LEAD_IN_S), self._index(self._new_from_s)) : i + 1]
+        recent = self._samples.since(max(t - LEAD_IN_S, self._new_from_s), i + 1)
         if len(recent) > 2:
             self._base = median(recent)
             self._leaving = min(max(4.0 * float(recent.std()), 0.5 * SMALLEST_RAD), 2.0 * SMALLEST_RAD)
@@ -190,8 +197,7 @@ class Segmenter:
             self._cut_off("no rest", t - _OVERLAP_S)
             self._restart(t - _OVERLAP_S)
             return
-        since = self._index(t - _RESTING_S)
-        rest = self._u[since : i + 1]
+        rest = self._samples.since(t - _RESTING_S, i + 1)
         if t - from_s < _RESTING_S or not is_still(rest, self._amplitude):
             self._let_go(t)
             return
@@ -203,8 +209,8 @@ class Segmenter:
                 self._set_out(None, 0.0)
         elif self._held_since_s is None or abs(level - self._held_rad) > _NEAR * self._amplitude:
             self._let_go(t)
-            self._held_since_s, self._held_rad = float(self._t[since]), level
-        elif t - self._held_since_s >= self._longest_s(base):
+            self._held_since_s, self._held_rad = t - _RESTING_S, level
+        elif t - self._held_since_s >= self._longest_hold(from_s, base):
             held = self._described(i + 1, rest)
             self._base = level
             if held is not None:
@@ -217,13 +223,13 @@ class Segmenter:
             self._longest_hold_s = max(self._longest_hold_s, t - self._held_since_s)
             self._held_since_s = None
 
-    def _longest_s(self, base: float) -> float:
-        """How long the elevator may rest away from trim within a movement."""
-        u = self._u[self._index(self._moved_from_s or 0.0) : self._size]
+    def _longest_hold(self, from_s: float, base: float) -> float:
+        """How long the elevator may rest away from trim within a movement, s."""
+        u = without_spikes(self._samples.since(from_s))
         low, high = min(base, self._held_rad), max(base, self._held_rad)
-        beyond = max(float(np.partition(u, 1)[1]) * -1.0 + low, float(np.partition(u, -2)[-2]) - high)
+        beyond = max(low - float(u.min()), float(u.max()) - high)
         single = beyond <= _NEAR * self._amplitude and self._longest_hold_s == 0.0
-        return _HOLD_S[1] if single else max(_HOLD_S[0], 1.2 * self._longest_hold_s)
+        return _HOLD_S[1] if single else max(_HOLD_S[0], _LONGER * self._longest_hold_s)
 
     def _follow(self, movement: Movement, t: float, u: float) -> None:
         """The free response: ends with time, or when the elevator leaves trim again."""
@@ -239,7 +245,8 @@ class Segmenter:
                 return
             self._end(movement, "next input", left_s)
             self._pending, self._base = None, movement.trim
-            self._set_out(float(self._t[max(self._index(left_s) - 1, self._from)]), deviation)
+            before = max(self._samples.index(left_s) - 1, 0)
+            self._set_out(float(self._samples.t[before]), deviation)
             return
         self._away = []
         duration_s = movement.last_step_s - movement.start_s
@@ -256,15 +263,16 @@ class Segmenter:
             return False
         if rested_s >= _SURELY_S:
             return True
-        rest = self._u[self._index(max(left_s - rested_s, left_s - 1.0)) : self._index(left_s - 0.15)]
+        from_s = left_s - min(rested_s, _LEAVING_S[0])
+        rest = self._samples.since(from_s, self._samples.index(left_s - _LEAVING_S[1]))
         return is_still(rest, (1.0 if movement.is_stepped else _WAVERING) * movement.amplitude)
 
     def _cut_off(self, why: str, at_s: float) -> None:
         """Something ends a movement before the elevator has come to rest."""
         if self._moved_from_s is None or self._base is None:
             return
-        until = self._index(float(np.nextafter(at_s, np.inf)))
-        rest = self._u[self._index(at_s - _RESTING_S) : until]
+        until = self._samples.index(float(np.nextafter(at_s, np.inf)))
+        rest = self._samples.since(at_s - _RESTING_S, until)
         movement = self._described(until, rest if is_still(rest, self._amplitude) else None)
         if movement is not None:
             self._end(movement, why, max(at_s, movement.last_step_s))
@@ -274,27 +282,27 @@ class Segmenter:
         begin, base = self._rest_before(until)
         if until - begin < 3:
             return None
-        movement = describe(self._t[begin:until], self._u[begin:until], base, rest)
+        t, u = self._samples.t[begin:until], self._samples.y[begin:until]
+        movement = describe(t, u, base, rest)
         return movement if movement is not None and movement.amplitude >= SMALLEST_RAD else None
 
     def _rest_before(self, until: int) -> tuple[int, float]:
         """Where the elevator last rested before it went far, and its level there."""
-        begin, base = self._index(self._moved_from_s or 0.0), self._base or 0.0
-        far = np.flatnonzero(np.abs(self._u[begin:until] - base) > _NEAR * self._amplitude)
-        first = begin + int(far[0]) if len(far) else begin
-        end = float(self._t[first])
-        while (i := self._index(end - _LEAST_REST_S)) > begin:
-            window = self._u[i : self._index(end) + 1]
+        samples, base = self._samples, self._base or 0.0
+        begin = samples.index(self._moved_from_s or 0.0)
+        far = np.flatnonzero(np.abs(samples.y[begin:until] - base) > _NEAR * self._amplitude)
+        end = float(samples.t[begin + int(far[0]) if len(far) else begin])
+        while (i := samples.index(end - _LEAST_REST_S)) > begin:
+            window = samples.y[i : samples.index(end) + 1]
             if is_still(window, 0.5 * self._amplitude):
                 return i, median(window)
             end -= 0.5 * _CHECK_S
         return begin, base
 
     def _end(self, movement: Movement, why: str, at_s: float) -> None:
-        times = self._t[self._from : self._size]
         past_s = at_s if why == "next input" else float(np.nextafter(at_s, np.inf))
-        end_s = float(times[max(0, int(np.searchsorted(times, past_s)) - 1)])
-        record_from_s = max(movement.start_s - LEAD_IN_S, float(times[0]))
+        end_s = float(self._samples.t[max(0, self._samples.index(past_s) - 1)])
+        record_from_s = max(movement.start_s - LEAD_IN_S, float(self._samples.t[0]))
         self._ended.append(
             Span(
                 record_from_s,
@@ -307,28 +315,8 @@ class Segmenter:
             )
         )
 
-    def _index(self, t: float) -> int:
-        """The first stored sample at or after ``t``."""
-        return self._from + int(np.searchsorted(self._t[self._from : self._size], t))
-
-    def _longest_gap_s(self) -> float:
-        recent = self._t[max(self._from, self._size - 20) : self._size]
-        return 5.0 * float(np.median(np.diff(recent))) if len(recent) > 2 else np.inf
-
-    def _store(self, t: float, u: float) -> None:
-        if self._size == len(self._t):
-            first = self._index(t - _KEEP_S)
-            n = self._size - first
-            t_kept, u_kept = self._t[first : self._size].copy(), self._u[first : self._size].copy()
-            if n > len(self._t) // 2:
-                self._t, self._u = np.empty(2 * len(self._t)), np.empty(2 * len(self._u))
-            self._t[:n], self._u[:n] = t_kept, u_kept
-            self._from, self._size = 0, n
-        self._t[self._size], self._u[self._size] = t, u
-        self._size += 1
-
     def _forget_all(self) -> None:
-        self._size = self._from = 0
+        self._samples.clear()
         self._begin_anew(-np.inf)
 
 
