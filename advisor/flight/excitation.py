@@ -1,8 +1,8 @@
 """What a movement of the elevator tells about the short period, from the pitch rate alone.
 
-A pilot or an autopilot that steadies the aircraft moves the elevator against its motion. Only the rest e of
-the elevator, which no feedback of pitch rate q, pitch angle θ and its integral explains, tells cause from
-effect. It is the external input of closed-loop identification (Ljung, System Identification, 1999, ch. 13).
+A pilot or an autopilot that steadies the aircraft moves the elevator with its motion. Only the rest e of
+the elevator, which no linear feedback of pitch rate q, pitch angle θ and its integral explains, tells cause
+from effect: the external input of closed-loop identification (Ljung, System Identification, 1999, ch. 13).
 The short period makes a linear recursion of second order of q and e,
 
     q[k] = a1·q[k−1] + a2·q[k−2] + b0·e[k] + b1·e[k−1] + b2·e[k−2] + c + d·k + ε[k],
@@ -13,7 +13,7 @@ Angle of attack and acceleration are not needed.
 """
 
 from dataclasses import dataclass
-from itertools import chain, combinations, pairwise
+from itertools import pairwise
 from math import inf, sqrt
 
 import numpy as np
@@ -72,20 +72,12 @@ def excitation(maneuver: Maneuver) -> Excitation | None:
     if len(edges) <= _FEWEST:
         return Excitation(pitch_rate, inf, inf)
     rate, moved = _means(edges, q.t, q.y), _means(edges, elevator.t, elevator.y - np.mean(elevator.y))
-    external = _means(edges, elevator.t, _external(maneuver, float(np.sign(_effect(rate, moved)))))
+    external = _means(edges, elevator.t, _external(maneuver))
     return Excitation(pitch_rate, _relative_error(rate, moved), _relative_error(rate, external))
 
 
-def _external(maneuver: Maneuver, sense: float) -> FloatArray:
-    """The part of the elevator that no feedback against the motion explains, at the elevator's stamps.
-
-    Parameters
-    ----------
-    maneuver
-        The record.
-    sense
-        Sign of the pitch acceleration that a positive elevator makes.
-    """
+def _external(maneuver: Maneuver) -> FloatArray:
+    """The part of the elevator that no linear feedback of the motion explains, at the elevator's stamps."""
     elevator, q = maneuver.channels["elevator"], maneuver.channels["q"]
     rate = np.interp(elevator.t, q.t, q.y)
     theta = maneuver.channels.get("theta")
@@ -94,18 +86,9 @@ def _external(maneuver: Maneuver, sense: float) -> FloatArray:
     else:
         pitch = integrated(elevator.t, rate)
     off = pitch - np.mean(pitch)
-    trim = np.column_stack([np.ones(len(rate)), elevator.t - elevator.t[0]])
-    moved = _left(trim, elevator.y)
-    fed_back = np.column_stack([_left(trim, -sense * x) for x in (rate, off, integrated(elevator.t, off))])
-    fed_back /= np.maximum(np.abs(fed_back).max(axis=0), 1e-12)
-    best = moved
-    for some in chain.from_iterable(combinations(range(3), n) for n in (1, 2, 3)):
-        terms = fed_back[:, some]
-        gains = np.linalg.lstsq(terms, moved, rcond=None)[0]
-        left = moved - terms @ gains
-        if np.all(gains >= 0.0) and left @ left < best @ best:
-            best = left
-    return best
+    fed_back = [rate, off, integrated(elevator.t, off)]
+    trim = [elevator.t - elevator.t[0], np.ones(len(rate))]
+    return _left(np.column_stack([*fed_back, *trim]), elevator.y)
 
 
 def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
@@ -114,27 +97,14 @@ def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
     return means
 
 
-def _terms(q: FloatArray, elevator: FloatArray) -> FloatArray:
-    """The terms of the recursion, shape (n − 2, 7): the elevator's three first."""
-    n = len(q) - 2
-    own = [q[1:-1], q[:-2], np.ones(n), np.linspace(-1.0, 1.0, n)]
-    return np.column_stack([elevator[2:], elevator[1:-1], elevator[:-2], *own])
-
-
-def _effect(q: FloatArray, elevator: FloatArray) -> float:
-    """Effect b0 + b1 + b2 of the elevator on the pitch rate."""
-    terms = _terms(q, elevator)
-    scale = np.maximum(np.abs(terms).max(axis=0), 1e-12)
-    return float(np.sum((np.linalg.lstsq(terms / scale, q[2:], rcond=None)[0] / scale)[:_INPUTS]))
-
-
 def _relative_error(q: FloatArray, elevator: FloatArray) -> float:
     """Relative standard error of the elevator's effect, from F of the elevator's three terms."""
-    terms = _terms(q, elevator)
-    without, left = (float(rest @ rest) for rest in (_left(terms[:, _INPUTS:], q[2:]), _left(terms, q[2:])))
-    freedom = terms.shape[0] - terms.shape[1]
+    n = len(q) - 2
+    own = np.column_stack([q[1:-1], q[:-2], np.ones(n), np.linspace(-1.0, 1.0, n)])
+    full = np.column_stack([own, elevator[2:], elevator[1:-1], elevator[:-2]])
+    without, left = (float(rest @ rest) for rest in (_left(own, q[2:]), _left(full, q[2:])))
     explained = max(0.0, without - left)
-    return sqrt(left / freedom / explained) if explained > 0.0 else inf
+    return sqrt(left / (n - full.shape[1]) / explained) if explained > 0.0 else inf
 
 
 def _left(terms: FloatArray, y: FloatArray) -> FloatArray:

@@ -22,7 +22,7 @@ test input on record has 1.3 (a jet), a correction between inputs of another jet
 LARGEST_ERROR = 0.3
 """Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %.
 Test inputs on record have 0.01 to 0.12 in calm air and 0.16 in gusts of 0.5 m/s. Where only the external
-input counts they have up to 0.26, and an attitude hold in such gusts 0.3 to 2."""
+input counts they have up to 0.21, and an attitude hold in such gusts 0.3 to 2."""
 _SHARP_S = 0.06
 """Half of the time within which a step of an external input happens, s. Feedback of the aircraft's motion
 takes longer."""
@@ -30,6 +30,9 @@ _SLOWEST_S = 0.15
 """Elevator samples farther apart hide how sharp a step is, s."""
 _SHARP = 0.5
 """Least share of such a step that happens within that time."""
+_QUANTA = 6.0
+"""A step of an external input is so many times the resolution of the output: smaller ones are sharp by
+the output's own pulses."""
 _FEWEST_SHARP = 3
 """Least number of such steps. The loop itself makes one where it is switched on, and one where its
 demand jumps."""
@@ -86,8 +89,9 @@ def _tells_nothing(maneuver: Maneuver) -> Because | None:
         return Because(
             "small", f"a correction: the pitch rate moved by {shown} deg/s only (at least {least})"
         )
-    # Known to be the pilot's own, the elevator needs no external input to tell cause from effect.
-    error = found.relative_error if maneuver.mode == "MANUAL" else found.external_error
+    # An elevator that is known to be moved from outside needs nothing else to tell cause from effect.
+    outside = maneuver.mode == "MANUAL" or _is_external(maneuver)
+    error = found.relative_error if outside else found.external_error
     if error > LARGEST_ERROR:
         known = "not at all"
         if isfinite(error) and error < 1.0:
@@ -116,9 +120,12 @@ def _is_external(maneuver: Maneuver) -> bool:
     if interval_s > _SLOWEST_S:
         return False
     reach = max(_SHARP_S, 1.01 * interval_s)
+    changes = np.abs(np.diff(elevator.y))
+    least = _QUANTA * float(np.min(changes[changes > 0.0], initial=np.inf))
     steps = [(maneuver.span.start_s, 0.0), *maneuver.span.steps]
     sharp = 0
     for (_, old), (onset, new) in pairwise(steps):
         before, after = np.interp([onset - reach, onset + reach], elevator.t, elevator.y)
-        sharp += (after - before) * np.sign(new - old) >= _SHARP * abs(new - old)
+        done = (after - before) * np.sign(new - old)
+        sharp += abs(new - old) >= least and done >= _SHARP * abs(new - old)
     return sharp >= max(_FEWEST_SHARP, 0.6 * (len(steps) - 1))

@@ -37,6 +37,8 @@ _PARTING_S = (0.5, 0.6)
 input may come one second later."""
 _SURELY_S = 2.5
 """A rest this long parts two movements however it wavers."""
+_BACK = 0.2
+"""After a shorter rest within this share of the amplitude from the level before, the next input may come."""
 _WAVERING = 0.25
 """A shorter rest after a movement without levels must be still against this share of its amplitude: a
 multisine has gentle parts of its own."""
@@ -263,6 +265,8 @@ class Segmenter:
             return False
         if rested_s >= _SURELY_S:
             return True
+        if self._base is not None and abs(movement.trim - self._base) > _BACK * movement.amplitude:
+            return False
         from_s = left_s - min(rested_s, _LEAVING_S[0])
         rest = self._samples.since(from_s, self._samples.index(left_s - _LEAVING_S[1]))
         return is_still(rest, (1.0 if movement.is_stepped else _WAVERING) * movement.amplitude)
