@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -67,7 +68,7 @@ def _slewed(stick: Input, slew_s: float, trim_after: float = 0.0) -> Input:
     corners = [0.0, *stick.corners_s]
     levels = [
         0.0,
-        *(stick.pull(0.5 * (a + b)) for a, b in zip(corners, corners[1:], strict=False)),
+        *(stick.pull(0.5 * (a + b)) for a, b in pairwise(corners)),
         trim_after,
     ]
 

@@ -14,6 +14,7 @@ from advisor.beside import beside
 from advisor.flight.channels import SLOWEST_FLIGHT_M_S
 from advisor.flight.excitation import excitation
 from advisor.flight.maneuver import Maneuver
+from advisor.flight.rest import SMALLEST_RAD
 from advisor.flight.vehicle import closes_pitch_loop
 
 LEAST_PITCH_RATE_DEG_S = 1.0
@@ -30,9 +31,6 @@ _SLOWEST_S = 0.15
 """Elevator samples farther apart hide how sharp a step is, s."""
 _SHARP = 0.5
 """Least share of such a step that happens within that time."""
-_QUANTA = 6.0
-"""A step of an external input is so many times the resolution of the output: smaller ones are sharp by
-the output's own pulses."""
 _FEWEST_SHARP = 3
 """Least number of such steps. The loop itself makes one where it is switched on, and one where its
 demand jumps."""
@@ -114,18 +112,19 @@ def _is_on_ground(maneuver: Maneuver) -> bool:
 
 
 def _is_external(maneuver: Maneuver) -> bool:
-    """Whether the elevator moves in sharp steps, which no feedback of the aircraft's motion makes."""
+    """Whether the elevator moves in sharp steps, which no feedback of the aircraft's motion makes.
+
+    A step of less than two of the smallest movements is sharp by the resolution of the output.
+    """
     elevator = maneuver.channels["elevator"]
     interval_s = float(np.median(np.diff(elevator.t))) if len(elevator) > 1 else np.inf
     if interval_s > _SLOWEST_S:
         return False
     reach = max(_SHARP_S, 1.01 * interval_s)
-    changes = np.abs(np.diff(elevator.y))
-    least = _QUANTA * float(np.min(changes[changes > 0.0], initial=np.inf))
     steps = [(maneuver.span.start_s, 0.0), *maneuver.span.steps]
     sharp = 0
     for (_, old), (onset, new) in pairwise(steps):
         before, after = np.interp([onset - reach, onset + reach], elevator.t, elevator.y)
         done = (after - before) * np.sign(new - old)
-        sharp += abs(new - old) >= least and done >= _SHARP * abs(new - old)
+        sharp += abs(new - old) >= 2.0 * SMALLEST_RAD and done >= _SHARP * abs(new - old)
     return sharp >= max(_FEWEST_SHARP, 0.6 * (len(steps) - 1))
