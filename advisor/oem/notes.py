@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.oem.identifiability import HIGH_CORRELATION, SUPPOSED_LAG_S, correlated
-from advisor.oem.instruments import Told
+from advisor.oem.instruments import KNOWN_TO, Told
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution
@@ -13,8 +13,6 @@ from advisor.oem.solution import Solution
 N = len(PARAMETERS)
 NOTED_LAG_S = 0.05
 NOTED_SCALE = 0.02
-KNOWN_TO = 0.1
-"""Standard deviation over the value below which a crew may write the value down."""
 
 
 def notes(
