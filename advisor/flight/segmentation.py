@@ -39,7 +39,7 @@ _SURELY_S = 2.5
 """A rest this long parts two movements however it wavers."""
 _BACK = 0.2
 """After a shorter rest within this share of the amplitude from the level before, the next input may come."""
-_WAVERING = 0.5
+_WAVERING = 0.2
 """A shorter rest after a movement without levels must be still against this share of its amplitude: a
 multisine has gentle parts of its own."""
 _NEAR = 0.4
