@@ -92,7 +92,8 @@ def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) 
     Without an angle of attack the specific force carries every gust, so that its noise is always modelled.
     """
     if prepared.alpha_left_out:
-        return moving_air(solution, seen_by_alpha=False)
+        found = moving_air(solution, seen_by_alpha=False)
+        return found if found.is_air else None
     fits = [fit["q"] for fit in channel_fits(solution)]
     if all(fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED for fit in fits):
         return None

@@ -36,6 +36,8 @@ def cost_of(
     )
 
 
+LARGEST_GUST_RAD = 0.26
+"""Largest standard deviation of the gust angle, rad: beyond 15 deg no lift is linear in the angle of attack."""
 _STEPS = (0.7, 0.35, 0.15)
 """Of the search in the logarithms of the noise figures: from a factor of two to one of 1.16."""
 _RANGE = (1e-12, 1e3)
@@ -58,7 +60,12 @@ class Turbulence:
     @property
     def present(self) -> bool:
         """Moving air, beyond what noise of instruments explains, and large enough to matter (0.1 deg)."""
-        return self.gain > 20.0 and self.gust_angle > 0.0017
+        return self.gain > 20.0 and self.gust_angle > 0.0017 and self.is_air
+
+    @property
+    def is_air(self) -> bool:
+        """Whether the gusts are within a linear model of the aircraft; larger ones are errors of the model."""
+        return self.gust_angle < LARGEST_GUST_RAD
 
 
 def find_turbulence(
