@@ -160,7 +160,7 @@ def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
     """False stops of the rule ``information``, and manoeuvres needed beside those of the paper's rules."""
     lines = [
         f"Stops of the rule information, {campaigns} campaigns of seven manoeuvres each. A stop is false",
-        "where the predicted response is wrong by more than the tolerance. Needed: median (share without stop).",
+        "where the predicted response is wrong by more than the tolerance. Needed: median (never).",
         f"{'case':<26}{'noise':>6}{'tolerance':>10}{'false':>8}{'error, 95 %':>13}"
         f"{'information':>14}{'continuous':>14}{'separate':>14}",
     ]
