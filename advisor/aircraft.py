@@ -15,18 +15,56 @@ PARAMETERS = ("Z_0", "Z_alpha", "Z_q", "Z_delta_e", "M_0", "M_alpha", "M_q", "M_
 """Names of θ, Eq. (3), in the order used by every vector of parameters here."""
 
 
+Pairs = tuple[tuple[float, float], ...]
+"""A calibration: (PWM in us, deflection in deg), linear between."""
+
+
+@dataclass(frozen=True)
+class ElevatorOutput:
+    """One of several servo outputs that make the elevator's deflection."""
+
+    output: int
+    """Servo output 1..32."""
+    calibration: Pairs | None = None
+    """Pairs (PWM in us, deflection in deg, positive where the nose goes down); None: SERVOn_MIN/TRIM/MAX."""
+    weight: float = 1.0
+    """Share of the pitch effect per degree, relative to the other outputs."""
+
+
 @dataclass(frozen=True)
 class Elevator:
     """How the elevator command becomes a deflection."""
 
     output: int | Literal["auto"] = "auto"
-    """Servo output 1..32; auto: the one whose SERVOn_FUNCTION is 19."""
-    calibration: tuple[tuple[float, float], ...] | None = None
+    """Servo output 1..32; auto: those whose SERVOn_FUNCTION is 19, an elevon or half of a V-tail."""
+    calibration: Pairs | None = None
     """Pairs (PWM in us, deflection in deg, trailing edge down positive), linear between."""
+    outputs: tuple[ElevatorOutput, ...] = ()
+    """All outputs that make the deflection, in place of ``output`` and ``calibration``."""
     lag_s: float | None = None
     """First-order lag of the servo; None: unknown, and every output says so."""
     delay_s: float | None = None
     """Delay between command and servo; None: unknown."""
+    lag_found_s: float | None = None
+    """The lag as all manoeuvres together tell it, used where ``lag_s`` is unknown; no key of the file."""
+
+    @property
+    def is_calibrated(self) -> bool:
+        """Whether the file says what the pulses of the elevator's outputs mean."""
+        return self.calibration is not None or any(one.calibration for one in self.outputs)
+
+    @property
+    def ends_deg(self) -> tuple[float, float] | None:
+        """Lowest and highest deflection by the calibration; None without one."""
+        calibrations = [(one.weight, one.calibration) for one in self.outputs if one.calibration]
+        if self.calibration:
+            calibrations = [(1.0, self.calibration)]
+        if not calibrations:
+            return None
+        total = sum(weight for weight, _ in calibrations)
+        low = sum(weight * min(deg for _, deg in pairs) for weight, pairs in calibrations)
+        high = sum(weight * max(deg for _, deg in pairs) for weight, pairs in calibrations)
+        return low / total, high / total
 
 
 @dataclass(frozen=True)
@@ -45,6 +83,18 @@ class Accelerometer:
 
     arm_m: float | None = None
     """Distance of the IMU ahead of the centre of gravity; None: unknown."""
+
+
+@dataclass(frozen=True)
+class Markers:
+    """How the crew marks manoeuvres in flight."""
+
+    rc: int | None = None
+    """Channel 1..18 of RC_CHANNELS that is a pilot's switch; None: there is none."""
+    above_us: float = 1700.0
+    """Above this pulse the switch is on, us: switched on and off again, it marks what lies between."""
+    text: tuple[str, str] | None = None
+    """Beginnings of the two STATUSTEXTs that begin and end a mark, besides those of ArduPlane's SystemID."""
 
 
 @dataclass(frozen=True)
@@ -101,6 +151,7 @@ class Aircraft:
     """Effects added to the simulator's model: effect name of the gap analysis to its parameters."""
     campaign: CampaignPlan = field(default_factory=CampaignPlan)
     limits: Limits = field(default_factory=Limits)
+    markers: Markers = field(default_factory=Markers)
 
     @property
     def stated_airspeed_m_s(self) -> float | None:

@@ -2,78 +2,73 @@
 
 import math
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft import Aircraft
 from advisor.decision.history import Flown
-from advisor.decision.judge import COLOURED
 from advisor.decision.quality import judge_quality
 from advisor.flight.kinematics import check_alpha
 from advisor.flight.maneuver import Maneuver
+from advisor.flight.marked_input import MARKED
 from advisor.flight.vehicle import closes_pitch_loop
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
-from advisor.oem.filter_error import filter_error_estimate
 from advisor.oem.solution import Method
 from advisor.oem.surface import Servo
-from advisor.oem.turbulence import turbulence_in
-
-UNEXPLAINED = 0.004
-"""Share of the pitch rate's variance that moving air leaves unexplained at the least."""
 
 
 def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newton") -> Flown:
     """Estimate a manoeuvre and examine it, before any rule compares it with others."""
     estimated = estimate(maneuver, aircraft, method=method)
-    opinion, air = _second_opinion(maneuver, estimated, aircraft)
     return Flown(
         estimated,
         judge_quality(maneuver, estimated, aircraft),
-        (*_cautions(maneuver, aircraft), *air),
+        tuple(_cautions(maneuver, estimated, aircraft)),
         maneuver=maneuver,
-        second_opinion=opinion,
-        air_moved=bool(air),  # it is spoken of only then
-        servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
+        air_moved=isinstance(estimated, Estimate) and estimated.gust_rad is not None,
+        servo=_servo(estimated, aircraft),
     )
 
 
-def _cautions(maneuver: Maneuver, aircraft: Aircraft) -> list[str]:
+def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
+    """The servo as the estimate has it: given, or told by the record."""
+    lag_s = aircraft.elevator.lag_s or 0.0
+    if isinstance(estimated, Estimate):
+        lag_s = estimated.servo_lag_s
+    return Servo(lag_s, aircraft.elevator.delay_s or 0.0)
+
+
+def _cautions(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft) -> list[str]:
     cautions = []
+    if maneuver.span.closed_by in MARKED.values():
+        cautions.append(maneuver.span.closed_by)
     if closes_pitch_loop(maneuver.mode):
         cautions.append(
             f"flown in {maneuver.mode} with the pitch loop closed: elevator, angle of attack and pitch rate "
             "move together and are hard to tell apart"
         )
+    if not isinstance(estimated, Estimate):
+        return cautions
     alpha = maneuver.channels.get("alpha")
-    if alpha is not None:
+    if alpha is not None and "alpha" in estimated.outputs:
         cautions.append(f"angle of attack: {alpha.provenance}, from {alpha.source}")
-    check = check_alpha(
-        maneuver, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
-    )
-    if check.finding != "consistent":
-        cautions.append(check.sentence)
+        cautions += _uncertain_alpha(maneuver, estimated, aircraft)
+    if estimated.gust_rad is not None:
+        cautions.append(_moving_air(estimated, estimated.gust_rad))
     return cautions
 
 
-def _second_opinion(
-    maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft
-) -> tuple[Estimate | None, tuple[str, ...]]:
-    """Filter error where the air moved: output error takes what the air does for noise of the instruments."""
-    if isinstance(estimated, NoEstimate):
-        return None, ()
-    fit = estimated.fits[0]["q"]
-    if fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED:
-        return None, ()
-    found = turbulence_in(estimated, maneuver.channels["alpha"].provenance != "derived")
-    if not found.present:
-        return None, ()
-    size = f"gusts of {math.degrees(found.gust_angle):.1f} deg"
-    if estimated.airspeed_m_s is not None:
-        size += f" ({found.gust_angle * estimated.airspeed_m_s:.1f} m/s)"
-    opinion = filter_error_estimate([maneuver], aircraft, estimated, found)
-    if isinstance(opinion, NoEstimate):
-        return None, (f"turbulence, {size}: output error is out of its validity, and filter error failed",)
-    values = ", ".join(
-        f"{name} {opinion.value(name):.3g} ± {2.0 * opinion.std[PARAMETERS.index(name)]:.2g} "
-        f"instead of {estimated.value(name):.3g}"
-        for name in ("M_alpha", "M_delta_e")
+def _uncertain_alpha(maneuver: Maneuver, estimated: Estimate, aircraft: Aircraft) -> list[str]:
+    """What the kinematics say against alpha and the fit does not allow for."""
+    if estimated.instrument("vane_arm_m") or estimated.instrument("alpha_delay_s"):
+        return []
+    check = check_alpha(
+        maneuver, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
     )
-    return opinion, (f"turbulence, {size}: output error is out of its validity; filter error gives {values}",)
+    return [] if check.finding == "consistent" else [check.sentence]
+
+
+def _moving_air(estimated: Estimate, gust_rad: float) -> str:
+    size = f"{math.degrees(gust_rad):.1f} deg"
+    if estimated.airspeed_m_s is not None:
+        size += f" ({gust_rad * estimated.airspeed_m_s:.1f} m/s)"
+    how = "allowed for by filter error" if estimated.filtered else "filter error failed, output error stands"
+    return f"moving air, gusts of {size}: {how}"

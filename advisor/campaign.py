@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from advisor.aircraft import Aircraft
 from advisor.assessment import assess
+from advisor.by_hand import NOTHING, ByHand, Remark
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.history import Flown
 from advisor.decision.judge import judge_campaign
@@ -20,8 +21,10 @@ from advisor.flight.events import (
     VehicleFound,
 )
 from advisor.flight.maneuver import Maneuver
+from advisor.flight.marks import MARK_NOTICES, Mark
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
+from advisor.learning import learnt as learnt_from
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.solution import Method
@@ -56,6 +59,10 @@ class Campaign:
         Called with every event, for whoever announces verdicts.
     method
         How each manoeuvre's optimum is sought: Gauss-Newton, or the paper's simplex.
+    by_hand
+        What was decided by hand on this flight before.
+    marks
+        Further marks, which win over those of ``by_hand`` and are not kept with them.
     """
 
     def __init__(
@@ -65,15 +72,21 @@ class Campaign:
         settle: bool = False,
         tell: Callable[[CampaignEvent], object] | None = None,
         method: Method = "gauss-newton",
+        by_hand: ByHand = NOTHING,
+        marks: Sequence[Mark] = (),
     ) -> None:
         self._aircraft = aircraft
+        self._learnt = aircraft
         self._method: Method = method
         self._tell = tell
-        self._stream = FlightStream(aircraft, target_system)
+        self._stream = FlightStream(aircraft, target_system, (*marks, *by_hand.marks))
+        self.by_hand = by_hand
+        """Everything that has been decided by hand."""
+        self._to_remark = list(by_hand.remarks)
         self._maneuvers: list[Maneuver] = []
         self._history: list[Flown] = []
-        self._notes: dict[int, tuple[str, ...]] = {}
         self._notices: list[str] = []
+        self._mark_notes: list[str] = []
         self._judged: tuple[JudgedManeuver, ...] = ()
         self._flight_test = flight_test((), aircraft.campaign, aircraft)
         self._model: Estimate | None = None
@@ -81,11 +94,19 @@ class Campaign:
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
         """Take the next messages, in order of arrival; how they are cut into batches does not matter."""
-        return self._take(self._stream.feed(list(columns)))
+        told = self._take(self._stream.feed(list(columns)))
+        self._repeat_remarks()
+        return told
 
     def finish(self) -> list[CampaignEvent]:
         """The stream has ended: a manoeuvre that is complete but for its quiet end still counts."""
-        return self._take(self._stream.finish())
+        if self._stream.marks.by_hand_since_s is not None:
+            self.end_maneuver()
+        told = self._take(self._stream.finish())
+        self._learn(exactly=True)
+        for problem in self._stream.marks.problems():
+            self._log(str(problem))
+        return told
 
     @property
     def state(self) -> CampaignState:
@@ -103,10 +124,12 @@ class Campaign:
             flight_test=self._flight_test,
             model=self._model,
             flying=flying,
+            marking_since_s=stream.marks.by_hand_since_s,
             settling=settled.estimate if settled else None,
             enough=settled.enough if settled else None,
             estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
             elevator_notes=stream.elevator_notes,
+            mark_notes=tuple(self._mark_notes),
             notices=tuple(self._notices),
         )
 
@@ -125,12 +148,30 @@ class Campaign:
 
     def mark(self, text: str) -> None:
         """Set a mark in the event log at the newest vehicle time."""
+        if math.isfinite(self._now_s):
+            self.by_hand = self.by_hand.remarking(Remark(self._now_s, text, self._stream.boot))
         self._log(f"mark: {text}", self._stream.now_s)
+
+    def begin_maneuver(self) -> None:
+        """Mark a manoeuvre from the newest vehicle time on; a mark that is open already is dropped."""
+        if not math.isfinite(self._now_s):
+            self._log("nothing can be marked before the vehicle's clock is heard")
+            return
+        self._stream.marks.begin_by_hand(self._now_s)
+        self._log("a manoeuvre is marked from here", self._stream.now_s)
+
+    def end_maneuver(self) -> None:
+        """End the mark at the newest vehicle time; its manoeuvre is judged when all of it has arrived."""
+        ended = self._stream.marks.end_by_hand(self._now_s)
+        if isinstance(ended, Notice):
+            self._log(ended.text, self._stream.now_s)
+            return
+        self.by_hand = self.by_hand.marking(ended)
+        self._log(f"a manoeuvre is marked from {ended.start_s:.1f} s to here", self._stream.now_s)
 
     def note(self, number: int, text: str) -> None:
         """Write a note beside a manoeuvre."""
-        self._index(number)
-        self._notes[number] = (*self._notes.get(number, ()), text)
+        self.by_hand = self.by_hand.noting(self._maneuvers[self._index(number)], text)
         self._log(f"note on manoeuvre {number}: {text}", self._stream.now_s)
         self._decide()
 
@@ -141,16 +182,21 @@ class Campaign:
             match event:
                 case ManeuverFlown(maneuver):
                     self._maneuvers.append(maneuver)
-                    self._history.append(assess(maneuver, self._aircraft, self._method))
+                    flown = assess(maneuver, self._learnt, self._method)
+                    because = self.by_hand.excluded_because(maneuver)
+                    self._history.append(replace(flown, excluded_because=because))
                     self._decide()
+                    self._learn()
                     told.append(ManeuverJudged(self._judged[-1], self._flight_test))
                     ended_s = maneuver.span.end_s
                     self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
                     self._log(self._flight_test.sentence, ended_s)
                 case ModeChanged(mode, at_s):
                     self._log(f"mode {mode}", at_s)
-                case Notice(_, text):
+                case Notice(code, text):
                     self._log(text)
+                    if code in MARK_NOTICES:
+                        self._mark_notes.append(text)
                 case VehicleFound(vehicle):
                     self._log(f"following {vehicle}")
                 case Rebooted(boot):
@@ -159,6 +205,18 @@ class Campaign:
             for happened in told:
                 self._tell(happened)
         return told
+
+    @property
+    def _now_s(self) -> float:
+        """Newest vehicle time to the millisecond, as the vehicle's clock counts and a file keeps."""
+        return round(self._stream.now_s, 3)
+
+    def _repeat_remarks(self) -> None:
+        """Write the moments marked before into the event log, each at its time."""
+        now_s, boot = self._stream.now_s, self._stream.boot
+        for remark in [r for r in self._to_remark if (r.boot, r.at_s) <= (boot, now_s)]:
+            self._to_remark.remove(remark)
+            self._log(f"mark: {remark.text}", remark.at_s)
 
     def _decide(self) -> None:
         plan = self._aircraft.campaign
@@ -169,8 +227,7 @@ class Campaign:
                 flown.estimate,
                 verdict,
                 flown.excluded_because,
-                self._notes.get(maneuver.number, ()),
-                flown.second_opinion,
+                self.by_hand.notes_on(maneuver),
             )
             for maneuver, flown, verdict in zip(self._maneuvers, self._history, verdicts, strict=True)
         )
@@ -178,12 +235,29 @@ class Campaign:
         model = estimate_jointly([j.maneuver for j in self._judged if j.verdict.accepted], self._aircraft)
         self._model = model if isinstance(model, Estimate) else None
 
+    def _learn(self, exactly: bool = False) -> None:
+        """Examine all manoeuvres again when they have told more of the instruments."""
+        learnt = learnt_from(self._learnt, self._model, exactly=exactly)
+        if learnt is self._learnt:
+            return
+        self._learnt = learnt
+        again = [assess(maneuver, learnt, self._method) for maneuver in self._maneuvers]
+        self._history = [
+            replace(flown, excluded_because=before.excluded_because)
+            for flown, before in zip(again, self._history, strict=True)
+        ]
+        lag = learnt.elevator.lag_found_s
+        self._log(f"the servo's lag is {lag:.3f} s by all manoeuvres together; every estimate uses it now")
+        self._decide()
+
     def _decide_by_hand(self, number: int, because: str | None) -> None:
         i = self._index(number)
         self._history[i] = replace(self._history[i], excluded_because=because)
+        self.by_hand = self.by_hand.excluding(self._maneuvers[i], because)
         what = "included again" if because is None else f"excluded: {because}"
         self._log(f"manoeuvre {number} {what}", self._stream.now_s)
         self._decide()
+        self._learn()
 
     def _log(self, text: str, at_s: float = math.nan) -> None:
         self._notices.append(f"{at_s:.1f} s: {text}" if math.isfinite(at_s) else text)

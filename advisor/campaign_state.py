@@ -21,8 +21,6 @@ class JudgedManeuver:
     """Set when an engineer took it out by hand."""
     notes: tuple[str, ...] = ()
     """What the engineer wrote beside it."""
-    second_opinion: Estimate | None = None
-    """Filter error's estimate, where the air moved and output error is out of its validity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +41,8 @@ class CampaignState:
     """Joint estimate over the accepted manoeuvres."""
     flying: Maneuver | None = None
     """The manoeuvre being flown now, cut so far."""
+    marking_since_s: float | None = None
+    """When the mark began that a hand has still to end, s since boot."""
     settling: Estimate | None = None
     """Estimate from the manoeuvre being flown, refreshed as it goes."""
     enough: str | None = None
@@ -51,5 +51,7 @@ class CampaignState:
     """Numbers of the manoeuvres that ``model`` is made from."""
     elevator_notes: tuple[str, ...] = ()
     """What is assumed of the elevator's scale and sense, in sentences."""
+    mark_notes: tuple[str, ...] = ()
+    """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()
     """Sentences for the event log, oldest first."""

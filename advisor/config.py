@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft import PARAMETERS, Aircraft, Elevator, Markers, Pairs
 from advisor.effects import mistakes_in
 from advisor.problems import ConfigurationError
 
@@ -95,12 +95,14 @@ def _reader() -> TypeAdapter[Aircraft]:
 
     strict = with_config(ConfigDict(extra="forbid", allow_inf_nan=False))
     for part in (
+        aircraft.ElevatorOutput,
         aircraft.Elevator,
         aircraft.Alpha,
         aircraft.Accelerometer,
         aircraft.Reference,
         aircraft.CampaignPlan,
         aircraft.Limits,
+        aircraft.Markers,
         aircraft.Aircraft,
     ):
         strict(part)
@@ -127,27 +129,14 @@ def _sentence(item: Any) -> str:
 
 _LONGEST_WINDOW = 50
 """Manoeuvres in Eq. (12): more than any flight has."""
+_OUTPUTS = 32
+"""Servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
 _UNION_TAGS = frozenset({"int", "str", "float", "none"})
 
 
 def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     """Yield mistakes that types do not show, as ``path: what is wrong``."""
-    elevator = aircraft.elevator
-    if isinstance(elevator.output, int) and not 1 <= elevator.output <= 32:
-        yield f"elevator.output: {elevator.output} is not a servo output 1..32 (or auto)"
-    points = elevator.calibration
-    if points is not None:
-        if len(points) < 2:
-            yield "elevator.calibration: needs at least two points [PWM us, deflection deg]"
-        for i, (below, above) in enumerate(pairwise(points), start=1):
-            if above[0] <= below[0]:
-                yield f"elevator.calibration[{i}]: PWM must rise from point to point"
-        rises = {(b[1] > a[1]) - (b[1] < a[1]) for a, b in pairwise(points)}
-        if len(rises) > 1 or rises == {0}:
-            yield "elevator.calibration: deflection must rise all the way or fall all the way"
-    for path, value in (("elevator.lag_s", elevator.lag_s), ("elevator.delay_s", elevator.delay_s)):
-        if value is not None and not 0.0 <= value <= 2.0:
-            yield f"{path}: {value} s is outside 0..2"
+    yield from _elevator_mistakes(aircraft.elevator)
     source = aircraft.alpha.source
     if source not in ("auto", "aoa_ssa", "derived") and not (
         source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
@@ -187,3 +176,53 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
             yield f"campaign.tolerance.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
         elif value <= 0.0:
             yield f"campaign.tolerance.{name}: must be above 0, is {value}"
+    yield from _mistakes_in_markers(aircraft.markers)
+
+
+def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
+    if isinstance(elevator.output, int) and not 1 <= elevator.output <= _OUTPUTS:
+        yield f"elevator.output: {elevator.output} is not a servo output 1..{_OUTPUTS} (or auto)"
+    if elevator.calibration is not None:
+        yield from _calibration_mistakes("elevator.calibration", elevator.calibration)
+    if elevator.outputs and (elevator.output != "auto" or elevator.calibration is not None):
+        yield (
+            "elevator.outputs: stands in place of elevator.output and elevator.calibration; "
+            "take these out, or the list"
+        )
+    for i, one in enumerate(elevator.outputs):
+        path = f"elevator.outputs[{i}]"
+        if not 1 <= one.output <= _OUTPUTS:
+            yield f"{path}.output: {one.output} is not a servo output 1..{_OUTPUTS}"
+        if one.output in [other.output for other in elevator.outputs[:i]]:
+            yield f"{path}.output: {one.output} is listed twice"
+        if one.weight <= 0.0:
+            yield f"{path}.weight: must be above 0, is {one.weight}"
+        if one.calibration is not None:
+            yield from _calibration_mistakes(f"{path}.calibration", one.calibration)
+        elif elevator.is_calibrated:
+            yield f"{path}.calibration: give one for every output, or for none"
+    for path, value in (("elevator.lag_s", elevator.lag_s), ("elevator.delay_s", elevator.delay_s)):
+        if value is not None and not 0.0 <= value <= 2.0:
+            yield f"{path}: {value} s is outside 0..2"
+
+
+def _calibration_mistakes(path: str, points: Pairs) -> Iterator[str]:
+    if len(points) < 2:
+        yield f"{path}: needs at least two points [PWM us, deflection deg]"
+    for i, (below, above) in enumerate(pairwise(points), start=1):
+        if above[0] <= below[0]:
+            yield f"{path}[{i}]: PWM must rise from point to point"
+    rises = {(b[1] > a[1]) - (b[1] < a[1]) for a, b in pairwise(points)}
+    if len(rises) > 1 or rises == {0}:
+        yield f"{path}: deflection must rise all the way or fall all the way"
+
+
+def _mistakes_in_markers(markers: Markers) -> Iterator[str]:
+    if markers.rc is not None and not 1 <= markers.rc <= 18:
+        yield f"markers.rc: {markers.rc} is not a channel 1..18 of RC_CHANNELS"
+    if not 800.0 <= markers.above_us <= 2200.0:
+        yield f"markers.above_us: {markers.above_us} us is outside 800..2200"
+    if markers.text is not None:
+        begins, ends = markers.text
+        if not begins.strip() or not ends.strip() or begins == ends:
+            yield "markers.text: needs two different texts, [begins, ends]"

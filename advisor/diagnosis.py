@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft import Aircraft
+from advisor.by_hand import ByHand
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.stream import FlightStream
@@ -28,11 +29,16 @@ class Flown:
     again: int
     """How many came a second time."""
     notes: tuple[str, ...]
-    """What was assumed of the elevator."""
+    """What was assumed of the elevator, and which manoeuvres are left out by hand."""
 
 
-def maneuvers_of(logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None) -> Flown:
-    """Read the manoeuvres of all logs.
+def maneuvers_of(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    by_hand: Sequence[ByHand] = (),
+) -> Flown:
+    """Read the manoeuvres of all logs, with what was decided on each log by hand.
 
     The clock begins as the first log's, and runs on where another log or the vehicle begins anew.
 
@@ -41,26 +47,31 @@ def maneuvers_of(logs: Sequence[Path], aircraft: Aircraft, target_system: int | 
     UnusableInputError
         A log cannot be read or cannot serve.
     """
-    recorded, notes = _recorded(logs, aircraft, target_system)
+    recorded, notes = _recorded(logs, aircraft, target_system, by_hand or [ByHand()] * len(logs))
     maneuvers = _on_one_clock(_each_once(recorded))
     return Flown(maneuvers, len(recorded) - len(maneuvers), notes)
 
 
 def _recorded(
-    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None
+    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None, by_hand: Sequence[ByHand]
 ) -> tuple[list[Maneuver], tuple[str, ...]]:
     """What the logs hold, log by log, and what was assumed to read it."""
     found: list[Maneuver] = []
     notes: list[str] = []
-    for log in logs:
-        stream = FlightStream(aircraft, target_system)
+    for log, decided in zip(logs, by_hand, strict=True):
+        stream = FlightStream(aircraft, target_system, decided.marks)
         events = [event for columns in open_log(log) for event in stream.feed(columns)]
         events += stream.finish()
         found_wrong = [Problem(p.code, f"{log.name}: {p.text}", p.fix) for p in stream.problems()]
         if found_wrong:
             raise UnusableInputError.of(found_wrong)
-        found += [e.maneuver for e in events if isinstance(e, ManeuverFlown)]
         notes += stream.elevator_notes
+        for maneuver in (e.maneuver for e in events if isinstance(e, ManeuverFlown)):
+            because = decided.excluded_because(maneuver)
+            if because is None:
+                found.append(maneuver)
+            else:
+                notes.append(f"{log.name}: manoeuvre {maneuver.number} is left out by hand: {because}.")
     return found, tuple(dict.fromkeys(notes))
 
 
@@ -101,10 +112,11 @@ def diagnose_logs(
     holdout: int | None = None,
     target_system: int | None = None,
     progress: Callable[[str, float], None] = lambda *_: None,
+    by_hand: Sequence[ByHand] = (),
 ) -> Diagnosis:
     """Read logs and diagnose their gap."""
     progress("reading", 0.0)
-    flown = maneuvers_of(logs, aircraft, target_system)
+    flown = maneuvers_of(logs, aircraft, target_system, by_hand)
     found = diagnose(flown.maneuvers, aircraft, holdout, progress)
     notes = list(flown.notes)
     if flown.again:

@@ -53,6 +53,11 @@ def read_aircraft(path: Path) -> AircraftFile:
         f"model.{name}: must be a number, is {value}" for name, value in model.items()
         if not (isinstance(value, int | float) and math.isfinite(value))
     ]  # fmt: skip
+    if elevator.get("outputs"):
+        problems.append(
+            "elevator.outputs: the bundled aircraft has one elevator output; give elevator.output and "
+            "elevator.calibration to fly it"
+        )
     effects = {str(name): _numbers(sizes) for name, sizes in _section(data, "effects", problems).items()}
     problems += problems_with(effects)
     if problems:

@@ -29,6 +29,9 @@ ARMED_CRUISE = int(ARMED_MANUAL | mavlink.MAV_MODE_FLAG_STABILIZE_ENABLED)
 
 PARAMETERS_PER_TICK = 10
 
+SWITCH_ON_US, SWITCH_OFF_US = 1900, 1100
+"""Pulses of the pilot's switch, which is on from the change to MANUAL to that back."""
+
 Message = Any
 """A pymavlink message; the package carries no types."""
 
@@ -195,6 +198,11 @@ class Voice:
         ]
         stamp = round(1e6 * (boot_s + self._output_late_s)) % 2**32
         return mavlink.MAVLink_servo_output_raw_message(stamp, 0, *outputs, *([0] * 12))
+
+    def _rc_channels(self, sample: Sample, boot_s: float) -> Message:
+        """The receiver's channels: sticks at rest, and on channel 9 a switch that is on in a manoeuvre."""
+        pulses = [1500] * 8 + [SWITCH_ON_US if sample.flying else SWITCH_OFF_US] + [0] * 9
+        return mavlink.MAVLink_rc_channels_message(_milliseconds(boot_s), 9, *pulses, 255)
 
     def _raw_imu(self, sample: Sample, boot_s: float) -> Message:
         r = sample.reading

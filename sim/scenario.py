@@ -138,6 +138,7 @@ def _rates() -> dict[str, float]:
         "GLOBAL_POSITION_INT": 10.0,
         "SYSTEM_TIME": 1.0,
         "HEARTBEAT": 1.0,
+        "RC_CHANNELS": 0.0,
     }
 
 
@@ -176,6 +177,8 @@ class Scenario:
     air: Air = field(default_factory=Air)
     clock: Clock = field(default_factory=Clock)
     link: Link = field(default_factory=Link)
+    said: tuple[str, ...] = ()
+    """Two texts that the vehicle says (STATUSTEXT) where it goes to MANUAL for a manoeuvre, and back."""
     rates: dict[str, float] = field(default_factory=_rates)
     """Message name to Hz."""
     airframe: dict[str, float] = field(default_factory=dict)
@@ -247,6 +250,8 @@ def _contradictions(scenario: Scenario) -> list[str]:
     )
     if ticks < 1.0 or not math.isclose(ticks, round(ticks), rel_tol=1e-9):
         errors.append("loop_hz: one period of the loop must be a whole number of step_s")
+    if len(scenario.said) not in (0, 2):
+        errors.append("said: must be two texts, for the beginning and the end of a manoeuvre")
     if not 0.0 <= scenario.link.drop < 1.0:
         errors.append("link.drop: must be at least 0 and below 1")
     if not 0.0 <= scenario.noise.colour < 1.0:

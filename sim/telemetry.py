@@ -41,8 +41,11 @@ class Telemetry:
         scenario = self.flight.scenario
         # A ground station on the same link has asked for the parameters.
         self.voice.send_parameters()
-        arrival, greeting_s = 0.0, 0.0
+        arrival, greeting_s, was_flying = 0.0, 0.0, False
         for sample in self.flight.samples():
+            if scenario.said and (sample.flying is not None) != was_flying:
+                self.voice.say(scenario.said[was_flying])
+                was_flying = not was_flying
             if sample.time_s >= greeting_s:
                 self.voice.say(GREETING)
                 greeting_s += GREETING_EVERY_S

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft import Aircraft, Elevator, ElevatorOutput, Markers
 from advisor.config import load_aircraft, parse_aircraft
 from advisor.effects import LEAST
 from advisor.gap.candidates.traits import TRAITS
@@ -42,6 +42,30 @@ def test_the_example_of_the_contract_is_read(tmp_path: Path) -> None:
     assert aircraft.elevator.calibration == ((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))
     assert aircraft.model["M_alpha"] == -4.9
     assert aircraft.limits.alpha_deg is None
+
+
+def test_outputs_of_the_elevator_are_read_with_a_calibration_and_a_weight_each() -> None:
+    pairs = [[1100, -25], [1500, 0], [1900, 25]]
+    outputs = [{"output": 1, "calibration": pairs}, {"output": 7, "calibration": pairs, "weight": 0.3}]
+    elevator = parse_aircraft({"elevator": {"outputs": outputs}}).elevator
+    assert [(one.output, one.weight) for one in elevator.outputs] == [(1, 1.0), (7, 0.3)]
+    assert elevator.outputs[1].calibration == ((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))
+    assert elevator.is_calibrated
+
+
+def test_the_ends_of_several_outputs_are_those_of_their_weighted_mean() -> None:
+    wide, narrow = ((1000.0, -30.0), (2000.0, 20.0)), ((1000.0, 10.0), (2000.0, -10.0))
+    elevator = Elevator(outputs=(ElevatorOutput(1, wide), ElevatorOutput(2, narrow, 0.25)))
+    assert elevator.ends_deg == pytest.approx((-26.0, 18.0))
+    assert Elevator(calibration=wide).ends_deg == (-30.0, 20.0)
+    assert Elevator(outputs=(ElevatorOutput(1),)).ends_deg is None
+
+
+def test_markers_are_read() -> None:
+    markers = parse_aircraft(
+        {"markers": {"rc": 9, "above_us": 1600, "text": ["MARK ON", "MARK OFF"]}}
+    ).markers
+    assert markers == Markers(rc=9, above_us=1600.0, text=("MARK ON", "MARK OFF"))
 
 
 def test_an_empty_file_and_empty_sections_mean_the_defaults(tmp_path: Path) -> None:
@@ -114,12 +138,43 @@ def test_effects_of_a_file_are_those_of_the_gap_analysis_and_the_simulator_flies
         ({"elevator": {"calibration": [[1100]]}}, "elevator.calibration[0]"),
         ({"elevator": {"calibration": [[1100, 1.0], [1500, 1.0]]}}, "rise all the way or fall"),
         ({"elevator": {"output": 40}}, "elevator.output"),
+        ({"elevator": {"output": 2, "outputs": [{"output": 1}]}}, "elevator.outputs: stands in place of"),
+        (
+            {"elevator": {"calibration": [[1100, 1.0], [1500, 2.0]], "outputs": [{"output": 1}]}},
+            "elevator.outputs: stands in place of",
+        ),
+        ({"elevator": {"outputs": [{"output": 0}]}}, "elevator.outputs[0].output: 0 is not a servo output"),
+        (
+            {"elevator": {"outputs": [{"output": 1}, {"output": 1}]}},
+            "elevator.outputs[1].output: 1 is listed",
+        ),
+        ({"elevator": {"outputs": [{"output": 1, "weight": 0}]}}, "elevator.outputs[0].weight"),
+        ({"elevator": {"outputs": [{"output": 1, "scale": 2}]}}, "elevator.outputs[0].scale: unknown key"),
+        ({"elevator": {"outputs": [{"calibration": None}]}}, "elevator.outputs[0].output"),
+        ({"elevator": {"outputs": 3}}, "elevator.outputs"),
+        (
+            {"elevator": {"outputs": [{"output": 1, "calibration": [[1500, 0.0], [1100, 25.0]]}]}},
+            "elevator.outputs[0].calibration[1]: PWM must rise",
+        ),
+        (
+            {
+                "elevator": {
+                    "outputs": [{"output": 1, "calibration": [[1100, 0.0], [1500, 25.0]]}, {"output": 2}]
+                }
+            },
+            "elevator.outputs[1].calibration: give one for every output, or for none",
+        ),
         ({"campaign": {"window": 1}}, "campaign.window"),
         ({"campaign": {"tolerance": {"M_beta": 1.0}}}, "campaign.tolerance.M_beta"),
         ({"campaign": {"tolerance": {"M_q": 0.0}}}, "campaign.tolerance.M_q"),
         ({"elevator": {"lag_s": -0.1}}, "elevator.lag_s"),
         ({"alpha": {"source": "vane"}}, "alpha.source"),
         ({"airspeed_m_s": 0}, "airspeed_m_s"),
+        ({"markers": {"rc": 19}}, "markers.rc: 19 is not a channel 1..18"),
+        ({"markers": {"rc": 9, "above_us": 3000}}, "markers.above_us"),
+        ({"markers": {"text": ["ON"]}}, "markers.text"),
+        ({"markers": {"text": ["ON", "ON"]}}, "markers.text: needs two different texts"),
+        ({"markers": {"switch": 9}}, "markers.switch: unknown key"),
         ({"airspeed_m_s": float("nan")}, "airspeed_m_s"),
     ],
 )

@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.by_hand import NOTHING, ByHand
 from advisor.campaign import Campaign
 from advisor.campaign_state import CampaignState
 from advisor.demo import Demonstration
 from advisor.flight.messages import Columns
+from advisor.marks_file import read_by_hand
 from advisor.mavlink.logs import open_log
 from advisor.oem.estimate import Estimate
+from advisor.tui.live import LinkSource
 from tests.flights import FOUR, TWO, recorded
 
 pytestmark = pytest.mark.xdist_group("links")
@@ -29,8 +32,8 @@ def facts(state: CampaignState) -> list[object]:
     return [*told, state.model.theta.tobytes()]
 
 
-def replayed(log: Path) -> Campaign:
-    campaign = Campaign(Aircraft())
+def replayed(log: Path, by_hand: ByHand = NOTHING) -> Campaign:
+    campaign = Campaign(Aircraft(), by_hand=by_hand)
     for batch in open_log(log):
         campaign.feed(batch)
     campaign.finish()
@@ -60,6 +63,31 @@ def test_a_flight_followed_live_and_its_own_recording_give_identical_verdicts(tm
     campaign.finish()
     assert len(campaign.state.maneuvers) == 7
     assert facts(campaign.state) == facts(replayed(recording).state)
+
+
+def test_a_mark_made_on_a_live_link_gives_the_same_manoeuvre_from_the_file_beside_the_recording(
+    tmp_path: Path,
+) -> None:
+    recording = tmp_path / "live.tlog"
+    campaign = Campaign(Aircraft(), settle=True)
+    flight = Demonstration("linear", 30.0, 5, recording)
+    source, begun = LinkSource(flight, flight.over), False
+    while (columns := source.read(0.05)) is not None:
+        campaign.feed(columns)
+        state = campaign.state
+        if state.flying is not None and not begun:
+            begun = True
+            campaign.begin_maneuver()
+        elif state.marking_since_s is not None and state.now_s > state.marking_since_s + 4.0:
+            campaign.end_maneuver()
+    campaign.finish()
+    campaign.exclude(3, "a gust")
+    assert "live.maneuvers.yaml" in source.keep(campaign.by_hand)
+    source.close()
+    assert campaign.state.maneuvers[0].maneuver.span.closed_by == "marked by hand"
+    again = replayed(recording, read_by_hand(recording)).state
+    assert again.maneuvers[2].excluded_because == "a gust"
+    assert facts(again) == facts(campaign.state)
 
 
 def one_by_one(columns: list[Columns]) -> list[Columns]:

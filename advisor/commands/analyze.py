@@ -2,21 +2,28 @@
 
 import json
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import click
 
-from advisor.aircraft import Aircraft, Rule
+from advisor.aircraft import Rule
 from advisor.campaign_state import CampaignState
 from advisor.commands.options import (
     UNUSABLE,
     aircraft_option,
+    decided_on,
     json_option,
+    maneuver_option,
+    no_marks_option,
     read_aircraft,
     rule_option,
     target_system_option,
 )
 from advisor.problems import Problem, UnusableInputError
+
+if TYPE_CHECKING:
+    from advisor.campaign import Campaign
+    from advisor.flight.marks import Mark
 
 
 @click.command
@@ -24,6 +31,8 @@ from advisor.problems import Problem, UnusableInputError
 @aircraft_option
 @rule_option
 @target_system_option
+@maneuver_option
+@no_marks_option
 @click.option(
     "--method",
     type=click.Choice(["gauss-newton", "nelder-mead"]),
@@ -37,6 +46,8 @@ def command(
     aircraft_file: Path | None,
     rule: Rule | None,
     target_system: int | None,
+    marks: "tuple[Mark, ...]",
+    no_marks: bool,
     method: Literal["gauss-newton", "nelder-mead"],
     as_json: bool,
 ) -> int:
@@ -45,10 +56,15 @@ def command(
     \b
     Example:
       advisor analyze flight.tlog --aircraft my-aircraft.yaml
+      advisor analyze flight.tlog --maneuver +12:+24 --maneuver 312.5:320
       advisor analyze flight.tlog --json | python -m json.tool
     """
     aircraft = read_aircraft(aircraft_file, rule)
-    state, problems = _analyze(log, aircraft, target_system, method)
+    by_hand = decided_on(log, no_marks)
+    from advisor.campaign import Campaign
+
+    campaign = Campaign(aircraft, target_system, method=method, by_hand=by_hand, marks=marks)
+    state, problems = _analyze(log, campaign)
     if as_json:
         from advisor.report.document import analysis_document
 
@@ -66,13 +82,9 @@ def command(
     return UNUSABLE if problems else 0
 
 
-def _analyze(
-    log: Path, aircraft: Aircraft, target_system: int | None, method: Literal["gauss-newton", "nelder-mead"]
-) -> tuple[CampaignState | None, list[Problem]]:
-    from advisor.campaign import Campaign
+def _analyze(log: Path, campaign: "Campaign") -> tuple[CampaignState | None, list[Problem]]:
     from advisor.mavlink.logs import open_log
 
-    campaign = Campaign(aircraft, target_system, method=method)
     try:
         for columns in open_log(log):
             campaign.feed(columns)

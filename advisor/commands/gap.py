@@ -3,7 +3,9 @@
 import json
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 from click.core import ParameterSource
@@ -11,14 +13,23 @@ from click.core import ParameterSource
 from advisor.commands.options import (
     UNUSABLE,
     aircraft_option,
+    decided_on,
     json_option,
+    maneuver_option,
+    no_marks_option,
     read_aircraft,
     refuse_unwritable,
     target_system_option,
 )
 from advisor.problems import ConfigurationError, UnusableInputError
 
-_OF_A_FLIGHT = {"holdout": "--holdout", "out": "--out", "target_system": "--target-system"}
+if TYPE_CHECKING:
+    from advisor.flight.marks import Mark
+
+_OF_A_FLIGHT = {
+    "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
+    "no_marks": "--no-marks",
+}  # fmt: skip
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -28,6 +39,8 @@ _OF_A_PLAN = {
 @click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
 @aircraft_option
 @target_system_option
+@maneuver_option
+@no_marks_option
 @click.option(
     "--holdout",
     type=click.IntRange(1),
@@ -46,6 +59,8 @@ def command(
     logs: tuple[Path, ...],
     aircraft_file: Path | None,
     target_system: int | None,
+    marks: "tuple[Mark, ...]",
+    no_marks: bool,
     holdout: int | None,
     out: Path | None,
     foresee: bool,
@@ -61,6 +76,7 @@ def command(
     Example:
       advisor gap flight.tlog --aircraft my-aircraft.yaml
       advisor gap flight-1.tlog flight-2.tlog --holdout 3 --json
+      advisor gap flight.tlog --maneuver +12:+24
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
     _refuse_foreign(foresee)
@@ -76,6 +92,13 @@ def command(
         return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
     if not logs:
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
+    if marks and len(logs) > 1:
+        raise ConfigurationError(
+            "--maneuver does not say in which of several logs: write the marks into LOG.maneuvers.yaml "
+            "beside each."
+        )
+    decided = [decided_on(log, no_marks) for log in logs]
+    by_hand = [replace(before, marks=(*marks, *before.marks)) for before in decided]
     if out is not None:
         refuse_unwritable("--out", out)
         if aircraft_file is not None and out.resolve() == aircraft_file.resolve():
@@ -89,7 +112,7 @@ def command(
     watched = sys.stderr.isatty()
     try:
         found = diagnose_logs(
-            logs, aircraft, holdout, target_system, _progress if watched else lambda *_: None
+            logs, aircraft, holdout, target_system, _progress if watched else lambda *_: None, by_hand
         )
     except UnusableInputError as error:
         if as_json:

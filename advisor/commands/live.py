@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft import Rule
-from advisor.commands.options import aircraft_option, read_aircraft, rule_option, target_system_option
+from advisor.commands.options import (
+    aircraft_option,
+    decided_on,
+    no_marks_option,
+    read_aircraft,
+    rule_option,
+    target_system_option,
+)
 from advisor.commands.screen import advise
 from advisor.problems import ConfigurationError
 
@@ -46,6 +53,7 @@ if TYPE_CHECKING:
 @aircraft_option
 @rule_option
 @target_system_option
+@no_marks_option
 def command(
     master: str,
     record_to: Path | None,
@@ -57,6 +65,7 @@ def command(
     aircraft_file: Path | None,
     rule: Rule | None,
     target_system: int | None,
+    no_marks: bool,
 ) -> None:
     """Advise while flying. Nothing is sent to the vehicle unless an option here asks for it.
 
@@ -70,6 +79,9 @@ def command(
     if no_record and record_to is not None:
         raise ConfigurationError("--record and --no-record contradict each other; give one of them.")
     aircraft = read_aircraft(aircraft_file, rule)
+    # A recording that exists is not overwritten: what was decided on it belongs to another flight.
+    is_new = record_to is not None and not record_to.exists()
+    by_hand = decided_on(record_to, no_marks) if record_to is not None and is_new else None
     from advisor.mavlink.announce import Announcer
     from advisor.mavlink.connection import parse_connection
     from advisor.mavlink.signing import read_key
@@ -88,7 +100,7 @@ def command(
         announcer=announcer,
     )
     tell = partial(_announce, announcer) if announcer else None
-    advise(partial(LinkSource, connection), master, aircraft, target_system, tell)
+    advise(partial(LinkSource, connection), master, aircraft, target_system, tell, by_hand=by_hand)
 
 
 @dataclass

@@ -1,15 +1,21 @@
 """Options that commands share, so that they read and behave the same everywhere."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import combinations
+from math import isfinite, nan
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from advisor.aircraft import Aircraft, Rule
 from advisor.problems import ConfigurationError
+
+if TYPE_CHECKING:
+    from advisor.by_hand import ByHand
+    from advisor.flight.marks import Mark
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -51,6 +57,85 @@ def target_system_option(command: F) -> F:
         metavar="N",
         help="System id of the vehicle when several are heard.",
     )(command)
+
+
+def maneuver_option(command: F) -> F:
+    """``--maneuver START:END``, given to the command as ``marks``."""
+    return click.option(
+        "--maneuver",
+        "marks",
+        multiple=True,
+        metavar="START:END",
+        callback=lambda ctx, parameter, texts: parse_marks(texts),
+        help="Call this stretch a manoeuvre: seconds since boot, or with + since the log's first ATTITUDE "
+        "(+12:+24). Repeatable.",
+    )(command)
+
+
+def no_marks_option(command: F) -> F:
+    """``--no-marks``, given to the command as ``no_marks``."""
+    return click.option(
+        "--no-marks", is_flag=True, help="Leave out what was decided by hand before (LOG.maneuvers.yaml)."
+    )(command)
+
+
+def parse_marks(texts: Sequence[str]) -> "tuple[Mark, ...]":
+    """Read several ``START:END`` that do not overlap.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`parse_mark`, and where two stretches share time.
+    """
+    marks = tuple(map(parse_mark, texts))
+    for a, b in combinations(marks, 2):
+        if a.from_log_start == b.from_log_start and a.overlaps(b.start_s, b.end_s):
+            raise ConfigurationError(f"{b.name} overlaps {a.name}: make one mark of both, or part them.")
+    return marks
+
+
+def parse_mark(text: str) -> "Mark":
+    """Read ``START:END``.
+
+    Raises
+    ------
+    ConfigurationError
+        The text is no stretch of time that can be a manoeuvre.
+    """
+    from advisor.flight.marks import LONGEST_S, Mark
+
+    start, _, end = text.partition(":")
+    relative = [time.strip().startswith("+") for time in (start, end)]
+    try:
+        start_s, end_s = float(start), float(end)
+    except ValueError:
+        start_s = end_s = nan
+    if not (isfinite(start_s) and isfinite(end_s) and start_s >= 0.0 and relative[0] == relative[1]):
+        raise ConfigurationError(
+            f"--maneuver {text}: give START:END in seconds since boot, or both with + from the start of the "
+            "log, e.g. --maneuver +12:+24."
+        )
+    if end_s <= start_s:
+        raise ConfigurationError(f"--maneuver {text}: END must lie after START; exchange or mend them.")
+    if end_s - start_s > LONGEST_S:
+        raise ConfigurationError(
+            f"--maneuver {text}: a manoeuvre lasts {LONGEST_S:.0f} s at most; mark each input by itself."
+        )
+    return Mark(start_s, end_s, from_log_start=relative[0], name=f"--maneuver {text}")
+
+
+def decided_on(log: Path, no_marks: bool) -> "ByHand":
+    """What was decided by hand on a log before, as the file beside the log keeps it.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`advisor.marks_file.read_by_hand`.
+    """
+    from advisor.by_hand import NOTHING
+    from advisor.marks_file import read_by_hand
+
+    return NOTHING if no_marks else read_by_hand(log)
 
 
 def read_aircraft(aircraft_file: Path | None, rule: Rule | None = None) -> Aircraft:

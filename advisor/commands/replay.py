@@ -3,13 +3,25 @@
 from functools import partial
 from math import inf
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from advisor.aircraft import Rule
-from advisor.commands.options import aircraft_option, read_aircraft, rule_option, target_system_option
+from advisor.commands.options import (
+    aircraft_option,
+    decided_on,
+    maneuver_option,
+    no_marks_option,
+    read_aircraft,
+    rule_option,
+    target_system_option,
+)
 from advisor.commands.screen import advise
 from advisor.flight.messages import Columns
+
+if TYPE_CHECKING:
+    from advisor.flight.marks import Mark
 
 
 def _speed(ctx: click.Context, parameter: click.Parameter, text: str) -> float:
@@ -32,8 +44,16 @@ def _speed(ctx: click.Context, parameter: click.Parameter, text: str) -> float:
 @aircraft_option
 @rule_option
 @target_system_option
+@maneuver_option
+@no_marks_option
 def command(
-    log: Path, speed: float, aircraft_file: Path | None, rule: Rule | None, target_system: int | None
+    log: Path,
+    speed: float,
+    aircraft_file: Path | None,
+    rule: Rule | None,
+    target_system: int | None,
+    marks: "tuple[Mark, ...]",
+    no_marks: bool,
 ) -> None:
     """The same screens on a log: pause, step, speed, jump to a manoeuvre.
 
@@ -42,13 +62,17 @@ def command(
     \b
     Example:
       advisor replay logs/arduplane-calm.tlog --speed 10
+      advisor replay flight.tlog --maneuver +12:+24
     """
     aircraft = read_aircraft(aircraft_file, rule)
+    by_hand = decided_on(log, no_marks)
     from advisor.tui.replay import LogPlayer
     from advisor.tui.source import Tempo
 
-    player = partial(LogPlayer, log.name, partial(_columns, log), speed)
-    advise(player, log.name, aircraft, target_system, tempo=Tempo(speed=speed))
+    keep_beside = None if no_marks else log
+    player = partial(LogPlayer, log.name, partial(_columns, log), speed, keep_beside=keep_beside)
+    tempo = Tempo(speed=speed)
+    advise(player, log.name, aircraft, target_system, tempo=tempo, by_hand=by_hand, marks=marks)
 
 
 def _columns(log: Path) -> list[Columns]:

@@ -15,7 +15,9 @@ from advisor.problems import Problem, UnusableInputError
 from advisor.tui.source import Source, Tempo
 
 if TYPE_CHECKING:
+    from advisor.by_hand import ByHand
     from advisor.campaign import Campaign
+    from advisor.flight.marks import Mark
 
 READ_S = 0.2
 
@@ -34,6 +36,8 @@ def advise(
     target_system: int | None = None,
     tell: Listener | None = None,
     tempo: Tempo | None = None,
+    by_hand: "ByHand | None" = None,
+    marks: "Sequence[Mark]" = (),
 ) -> None:
     """Run a campaign on a source: in the terminal application, or as lines of text.
 
@@ -47,30 +51,43 @@ def advise(
         Called with every event of the campaign, where it is estimated.
     tempo
         How a replay starts; None: the source is no replay.
+    by_hand
+        What was decided by hand on this flight before.
+    marks
+        Marks of the command line.
 
     Raises
     ------
     UnusableInputError
         When the source can never serve, or has ended without anything to judge.
     """
-    make_campaign = partial(_campaign, aircraft, target_system, tell)
+    from advisor.by_hand import NOTHING
+
+    before = by_hand or NOTHING
+    make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks))
     if headless():
-        _narrate(open_source(), make_campaign(settle=False))
+        _narrate(open_source(), make_campaign(settle=False, by_hand=before))
     else:
-        _show(open_source, partial(make_campaign, settle=True), aircraft, title, tempo)
+        _show(open_source, partial(make_campaign, True), before, aircraft, title, tempo)
 
 
 def _campaign(
-    aircraft: Aircraft, target_system: int | None, tell: Listener | None, settle: bool
+    aircraft: Aircraft,
+    target_system: int | None,
+    tell: Listener | None,
+    marks: "Sequence[Mark]",
+    settle: bool,
+    by_hand: "ByHand",
 ) -> "Campaign":
     from advisor.campaign import Campaign
 
-    return Campaign(aircraft, target_system, settle=settle, tell=tell)
+    return Campaign(aircraft, target_system, settle=settle, tell=tell, by_hand=by_hand, marks=marks)
 
 
 def _show(
     open_source: Callable[[], Source],
-    make_campaign: "Callable[[], Campaign]",
+    make_campaign: "Callable[[ByHand], Campaign]",
+    by_hand: "ByHand",
     aircraft: Aircraft,
     title: str,
     tempo: Tempo | None,
@@ -79,7 +96,7 @@ def _show(
     from advisor.tui.remote import RemoteConductor, Task
     from advisor.tui.settings import load_settings
 
-    conductor = RemoteConductor(Task(open_source, make_campaign))
+    conductor = RemoteConductor(Task(open_source, make_campaign, by_hand))
     app = AdvisorApp(conductor, aircraft, title, tempo, load_settings())
     app.run()
     if app.failure is not None:

@@ -120,6 +120,6 @@ def _step(t: FloatArray) -> float:
 
 
 def _travel(aircraft: Aircraft, trim_rad: float) -> float:
-    calibration = aircraft.elevator.calibration
-    ends = [np.radians(deg) for _, deg in calibration] if calibration else [-FULL_TRAVEL_RAD, FULL_TRAVEL_RAD]
+    ends_deg = aircraft.elevator.ends_deg
+    ends = np.radians(ends_deg) if ends_deg else [-FULL_TRAVEL_RAD, FULL_TRAVEL_RAD]
     return float(max(min(max(ends) - trim_rad, trim_rad - min(ends)), 0.1 * FULL_TRAVEL_RAD))

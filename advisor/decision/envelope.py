@@ -4,6 +4,8 @@ The model knows one input, a constant speed and wings level; each check here is 
 assumptions, with the number beside the limit.
 """
 
+from collections.abc import Collection
+
 import numpy as np
 
 from advisor.aircraft import Aircraft
@@ -13,9 +15,10 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 
-NEEDED = ("elevator", "q", "alpha")
+NEEDED = ("elevator", "q")
 SAMPLES_PER_PERIOD = 8.0
-"""Fewest samples to one natural period: an aircraft of 2 rad/s needs 2.6 Hz, one of 9 rad/s 11 Hz."""
+"""Fewest samples of elevator and pitch rate to one natural period: an aircraft of 2 rad/s needs 2.6 Hz, one
+of 9 rad/s 11 Hz. Between slower samples nobody knows the input, and no interval tells what that costs."""
 _LONGEST_GAP = (0.3, 0.2, 1.0)
 """Longest gap: this share of the natural period, but within these, s."""
 _SHORTEST_FREE = 0.75
@@ -28,7 +31,7 @@ _ASSUMED_STROKE_DEG = 25.0
 """Full travel where the aircraft file has no calibration."""
 
 
-def incomplete(maneuver: Maneuver, period_s: float) -> list[Reason]:
+def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
     """Missing channels, slow ones, gaps, a free response cut short.
 
     Parameters
@@ -37,15 +40,18 @@ def incomplete(maneuver: Maneuver, period_s: float) -> list[Reason]:
         As cut from the stream.
     period_s
         Natural period of the short period, as far as it is known.
+    counted
+        Outputs that counted in the estimate; gaps in other channels do no harm.
     """
     missing = [name for name in NEEDED if name not in maneuver.channels]
     if missing:
         text = f"no {' and no '.join(missing)} during the manoeuvre; check the link and fly it again"
         return [Reason("missing", text, float(len(missing)), 0.0)]
-    channels = [maneuver.channels[name] for name in NEEDED]
+    needed = [maneuver.channels[name] for name in NEEDED]
+    used = [maneuver.channels[name] for name in {*NEEDED, *counted} if name in maneuver.channels]
     return [
-        *_rate(channels, period_s),
-        *_gap(channels, maneuver, period_s),
+        *_rate(needed, period_s),
+        *_gap(used, maneuver, period_s),
         *_free_response(maneuver, period_s),
     ]
 
@@ -105,7 +111,7 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
             missing, most_missing = beside(gap, limit, 1)
             text = f"{missing} s of {c.name} are missing (limit {most_missing}); check the link, fly it again"
             reasons.append(Reason("gap", text, gap, limit))
-    return sorted(reasons, key=lambda reason: -reason.value)[:1]
+    return sorted(reasons, key=lambda reason: (-reason.value, reason.text))[:1]
 
 
 def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
@@ -128,13 +134,13 @@ def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:
 def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     """Air speed away from where it was before the first step; often it follows from something else."""
     limit = aircraft.limits.airspeed_change_percent
-    channel = maneuver.channels.get("airspeed")
-    if channel is None or len(channel) < 2 or not np.median(channel.y) > 0.0:
+    channel, speed = maneuver.channels.get("airspeed"), flown(maneuver, "airspeed")
+    if channel is None or len(speed) < 2 or not np.median(channel.y) > 0.0:
         return []
     before = channel.cut(maneuver.span.record_from_s, maneuver.span.start_s).y
     trim = float(np.median(before if len(before) else channel.y[:1]))
     # The second largest: one wild reading of the air speed is no change of speed.
-    change = 100.0 * float(np.sort(np.abs(flown(maneuver, "airspeed") / trim - 1.0))[-2:][0])
+    change = 100.0 * float(np.sort(np.abs(speed / trim - 1.0))[-2:][0])
     if change <= limit:
         return []
     shown, most = beside(change, limit)
@@ -152,8 +158,7 @@ def _alpha(maneuver: Maneuver, limit: float | None) -> list[Reason]:
 
 
 def _saturation(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    pairs = aircraft.elevator.calibration
-    ends = [deg for _, deg in pairs] if pairs else [-_ASSUMED_STROKE_DEG, _ASSUMED_STROKE_DEG]
+    ends = aircraft.elevator.ends_deg or (-_ASSUMED_STROKE_DEG, _ASSUMED_STROKE_DEG)
     elevator = np.degrees(flown(maneuver, "elevator"))
     stuck = (elevator <= min(ends) + 1e-6) | (elevator >= max(ends) - 1e-6)
     share = 100.0 * float(np.mean(stuck)) if len(stuck) else 0.0

@@ -26,8 +26,6 @@ class Flown:
     """Set when an engineer took it out by hand."""
     maneuver: Maneuver | None = None
     """What was flown, for advice on what to fly next."""
-    second_opinion: Estimate | None = None
-    """Filter error's estimate, where the air moved."""
     air_moved: bool = False
     """Whether its residuals bear the mark of moving air."""
     servo: Servo = field(default_factory=Servo)

@@ -3,37 +3,33 @@
 Whole, inside the model, rich enough, well explained, in this order: the first reason is the
 one the crew can act on, and what follows from it comes after it.
 
-Richness is information, not amplitude: the corrected standard deviations of the derivatives
-that every campaign needs, beside their natural size on this aircraft. Where they are too
-large for an input of a good shape, more stick is the cure, and the reason says how much more,
-since standard deviations fall with the amplitude.
-"""
+Richness is information, not amplitude: how well the estimate from this manoeuvre alone predicts the pitch
+rate that its own input makes. Moving air, a slow channel, a missing vane or a gentle input all show in that
+one number. Where the input has a good shape, more stick is the cure, and the reason says how much more,
+since standard deviations fall with the amplitude."""
 
 import math
 from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft import Aircraft
 from advisor.beside import beside
 from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
-from advisor.oem.identifiability import natural_size
 
-LARGEST_STD_PERCENT: Mapping[str, float] = {"M_alpha": 12.0, "M_delta_e": 12.0, "Z_alpha": 15.0, "M_q": 25.0}
-"""Largest corrected standard deviation, as a percentage of the derivative's natural size."""
+WIDEST_PREDICTION_PERCENT = 25.0
+"""Widest half of the 95 % band of the predicted pitch rate, in percent of its peak. A standard deviation of
+12 % in M_δe alone makes 24. Real records that two halves of a campaign agree on have 9 to 21."""
 LEAST_SIGNAL: Mapping[str, float] = {"q": 12.0, "alpha": 8.0}
 """Least peak of the response over the white part of its noise."""
 LEAST_PITCH_RATE_DEG_S = 1.0
 """Below this peak the response drowns in what no model holds, however quiet the sensor."""
 LEAST_R2: Mapping[str, float] = {"q": 0.85, "alpha": 0.70}
 """Least share of the response that the model must explain, white noise left out of account."""
-LARGEST_UNREST_PERCENT = 8.0
-"""Largest pitch rate that the elevator does not explain while it is at rest, beside the peak."""
 
 
 def judge_quality(
@@ -51,16 +47,18 @@ def judge_quality(
         Its limits and calibration.
     """
     period_s = natural_period(maneuver, estimate)
-    reasons = [*incomplete(maneuver, period_s), *outside(maneuver, aircraft)]
+    fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
+    reasons = [*incomplete(maneuver, period_s, fits), *outside(maneuver, aircraft)]
     if any(reason.code == "missing" for reason in reasons):
         return tuple(reasons)
-    fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
-    rough = _rough_air(maneuver, fits)
-    reasons += [*rough, *changed_speed(maneuver, aircraft), *too_quick(maneuver, period_s)]
-    reasons += _too_gentle(maneuver, fits)
-    if isinstance(estimate, NoEstimate) or rough:
-        return tuple(reasons)
-    return (*reasons, *(_badly_explained(fits) or _poor(maneuver, estimate, reasons)))
+    follows = [*changed_speed(maneuver, aircraft), *too_quick(maneuver, period_s)]
+    gentle = _too_gentle(maneuver, fits)
+    if isinstance(estimate, NoEstimate):
+        return (*reasons, *follows, *gentle)
+    lacking = _badly_explained(estimate) or ([] if gentle else _poor(maneuver, estimate))
+    if lacking and lacking[0].code == "turbulence":
+        return (*reasons, *lacking, *follows)
+    return (*reasons, *follows, *gentle, *lacking)
 
 
 def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
@@ -85,6 +83,8 @@ def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reas
     """The response hardly stands out of the noise."""
     wanting = []
     for name, least in LEAST_SIGNAL.items():
+        if name not in (fits or ("q",)):
+            continue
         peak = _peak(maneuver, name)
         noise = _white(fits[name].residual if name in fits else maneuver.channels[name].y)
         wanting.append((least * noise / peak if peak > 0.0 else math.inf, name))
@@ -101,78 +101,43 @@ def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reas
     return [Reason("amplitude", text, peak, limit)]
 
 
-def _rough_air(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reason]:
-    """The aircraft moves although the elevator rests: before the first step, late in the free response."""
-    span, q = maneuver.span, maneuver.channels["q"]
-    before = q.cut(span.record_from_s, span.start_s)
-    peak = max(_peak(maneuver, "q"), 1e-9)
-    if len(before) < 5 or _beyond_noise(_detrended(before), before.y) < 0.005 * LARGEST_UNREST_PERCENT * peak:
-        return []
-    unexplained = _detrended(before)
-    if "q" in fits:
-        fit = fits["q"]
-        rest = (fit.t < span.start_s) | (fit.t > 0.5 * (span.last_step_s + span.end_s))
-        unexplained = fit.residual[rest]
-    unrest = 100.0 * _beyond_noise(unexplained, q.y) / peak
-    if unrest <= LARGEST_UNREST_PERCENT:
-        return []
-    shown, most = beside(unrest, LARGEST_UNREST_PERCENT)
-    text = (
-        f"rough air, {shown} % of the pitch rate comes with the elevator at rest (limit {most}); "
-        "fly it in calmer air"
-    )
-    return [Reason("turbulence", text, unrest, LARGEST_UNREST_PERCENT)]
+def _badly_explained(estimate: Estimate) -> list[Reason]:
+    """Residuals that are no noise: the model does not hold for what was flown.
 
-
-def _detrended(channel: Channel) -> FloatArray:
-    """Values less their straight line."""
-    t = channel.t - channel.t[0]
-    return channel.y - np.polyval(np.polyfit(t, channel.y, 1), t)
-
-
-def _beyond_noise(values: FloatArray, channel: FloatArray) -> float:
-    """Root mean square of what is more than the white noise of the channel."""
-    return math.sqrt(max(0.0, float(np.mean(values**2)) - _white(channel) ** 2))
-
-
-def _badly_explained(fits: Mapping[str, ChannelFit]) -> list[Reason]:
-    """Residuals that are no noise: the model does not hold for what was flown."""
+    In moving air the angle of attack of a vane shows the air, which no model of the aircraft explains.
+    """
     reasons = []
     for name, least in LEAST_R2.items():
-        fit = fits[name]
+        fit = estimate.fits[0].get(name)
+        if fit is None or (name == "alpha" and estimate.filtered):
+            continue
         noise = _white(fit.residual) ** 2
         spread = float(np.var(fit.measured)) - noise
         explained = 1.0 - max(0.0, fit.rms**2 - noise) / spread if spread > 0.0 else 1.0
         if explained < least:
             what = "pitch rate" if name == "q" else "angle of attack"
             shown, limit = beside(100.0 * max(0.0, explained), 100.0 * least)
-            text = (
-                f"the model explains {shown} % of {what} (at least {limit}); "
-                "smaller steps, steady flight before, calm air"
-            )
-            reasons.append(Reason("fit", text, explained, least))
+            moving = estimate.gust_rad is not None
+            cure = "fly it in calmer air" if moving else "smaller steps, steady flight before, calm air"
+            text = f"the model explains {shown} % of {what} (at least {limit}); {cure}"
+            reasons.append(Reason("turbulence" if moving else "fit", text, explained, least))
     return reasons
 
 
-def _poor(maneuver: Maneuver, estimate: Estimate, already: list[Reason]) -> list[Reason]:
-    """Derivatives that this manoeuvre leaves too uncertain, the worst of them."""
-    sizes = natural_size(estimate.theta)
-    percent = {
-        name: 100.0 * float(estimate.std[PARAMETERS.index(name)]) / sizes[name]
-        if sizes[name] > 0.0
-        else math.inf
-        for name in LARGEST_STD_PERCENT
-    }
-    worst = max(percent, key=lambda name: percent[name] / LARGEST_STD_PERCENT[name])
-    value, limit = percent[worst], LARGEST_STD_PERCENT[worst]
-    if value <= limit or any(reason.code == "amplitude" for reason in already):
+def _poor(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
+    """An estimate that predicts too little of the response it was made from."""
+    value = 100.0 * estimate.prediction.get("q", math.inf)
+    if value <= WIDEST_PREDICTION_PERCENT:
         return []
-    cure = f"use about {_times(value / limit)} the stick"
-    if maneuver.span.kind == "pulse":
-        cure = "fly a 3-2-1-1: this input tells too little of it"
-    shown, most = beside(value, limit)
-    text = f"{worst} known to {shown} % only (limit {most}); {cure}"
-    return [Reason("information", text, value, limit)]
+    more = _times(value / WIDEST_PREDICTION_PERCENT) if math.isfinite(value) else "more of"
+    code, cure = "information", f"use about {more} the stick"
+    if estimate.gust_rad is not None:
+        code, cure = "turbulence", f"fly it in calmer air, or with about {more} the stick"
+    elif maneuver.span.kind == "pulse":
+        cure = "fly a 3-2-1-1: this input tells too little of the response"
+    shown, most = beside(value, WIDEST_PREDICTION_PERCENT)
+    text = f"the pitch rate is predicted to {shown} % of its peak only (limit {most}); {cure}"
+    return [Reason(code, text, value, WIDEST_PREDICTION_PERCENT)]
 
 
 def _peak(maneuver: Maneuver, name: str) -> float:

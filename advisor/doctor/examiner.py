@@ -160,11 +160,11 @@ class Examiner:
         elevator = self._stream.elevator
         if not isinstance(elevator, Surface):
             return None
-        # One output moves alone: the halves of a mixed pair may count in opposite directions.
-        pulses = np.full((1401, len(elevator.outputs)), 1500.0)
-        pulses[:, 0] = np.arange(800.0, 2201.0)
-        angle = np.degrees(elevator.deflection(pulses))
-        return ElevatorFound(elevator.outputs, float(np.max(np.abs(np.diff(angle)))), elevator.calibrated)
+        # Each output moves alone: the halves of a mixed pair may count in opposite directions.
+        pulses = np.repeat(np.arange(800.0, 2201.0)[:, None], len(elevator.parts), axis=1)
+        steps = np.degrees(np.max(np.abs(np.diff(elevator.angles(pulses), axis=0)), axis=0))
+        coarsest = max(part.share * float(step) for part, step in zip(elevator.parts, steps, strict=True))
+        return ElevatorFound(elevator.outputs, coarsest, elevator.calibrated)
 
     def _alpha(self, paced: dict[str, Paced]) -> AlphaFound | None:
         status = self._stream.channels.get("alpha")

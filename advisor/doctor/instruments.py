@@ -7,6 +7,7 @@ from advisor.beside import beside
 from advisor.doctor.asking import how_to_ask
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.survey import Clocks
+from advisor.flight.surfaces import joined_numbers
 from advisor.flight.track import ChannelStatus
 
 COARSE_DEG = 0.5
@@ -35,15 +36,16 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
     """Calibration, resolution and servo."""
     limits = []
     if not found.calibrated:
-        listed = " and ".join(map(str, found.outputs))
-        outputs = f"Outputs {listed} are" if len(found.outputs) > 1 else f"Output {listed} is"
+        listed = joined_numbers(found.outputs)
+        several = len(found.outputs) > 1
+        outputs = f"Outputs {listed} are" if several else f"Output {listed} is"
+        key = "elevator.outputs, each with its calibration," if several else "elevator.calibration"
         limits.append(
             Limit(
                 "calibration",
                 f"{outputs} not calibrated: full strokes of SERVOn_MIN/TRIM/MAX count as 25 deg, "
                 "so Z_delta_e and M_delta_e have an assumed scale",
-                "measure the deflection at three pulse widths and give elevator.calibration in the aircraft "
-                "file",
+                f"measure the deflection at three pulse widths and give {key} in the aircraft file",
             )
         )
     if found.resolution_deg > COARSE_DEG:
@@ -52,7 +54,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
             Limit(
                 "resolution",
                 f"One microsecond of the elevator's pulse is {shown} deg (limit {most})",
-                "check elevator.calibration; use more of the servo's travel",
+                "check the calibration in the aircraft file; use more of the servo's travel",
             )
         )
     if elevator.lag_s is None:

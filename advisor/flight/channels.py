@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from advisor.flight.clocks import place
 from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.motion import gravity_in_plane
-from advisor.flight.surfaces import Surface, driven
 from advisor.gravity import GRAVITY_M_S2
 
 _MILLI_G = GRAVITY_M_S2 / 1000.0
@@ -81,6 +80,7 @@ _STAMPS = {
     "SERVO_OUTPUT_RAW": _USEC,
     "ACTUATOR_OUTPUT_STATUS": _USEC,
     "NAMED_VALUE_FLOAT": _BOOT_MS,
+    "RC_CHANNELS": _BOOT_MS,
 }
 """VFR_HUD has no stamp: it takes that of the last ATTITUDE."""
 
@@ -155,29 +155,6 @@ def derived_alpha(hud: Columns, t: FloatArray, attitude: FloatArray, airspeed: f
     path = np.arcsin(np.clip(sine * GRAVITY_M_S2 / size, -1.0, 1.0))
     alpha = np.where(flying, up - path, np.nan)
     return _decoded("alpha", DERIVED_ALPHA, "derived", t, alpha, hud)
-
-
-def surface_angle(
-    channel: str, columns: Columns, t: FloatArray, surface: Surface, autopilot: str
-) -> Decoded | None:
-    """Commanded deflection from servo outputs; None when this message has none of the surface's.
-
-    Pulses outside the calibration give the deflection at its end, as the last pair has it.
-    """
-    if columns.name == "ACTUATOR_OUTPUT_STATUS":
-        pwm = np.asarray(columns.fields["actuator"], dtype=np.float64)[:, [n - 1 for n in surface.outputs]]
-        field = "actuator" + "+".join(f"[{n - 1}]" for n in surface.outputs)
-    else:
-        names = [f"servo{(n - 1) % 16 + 1}_raw" for n in surface.outputs]
-        if any(name not in columns.fields for name in names):
-            return None
-        pwm = np.stack([np.asarray(columns.fields[name], dtype=np.float64) for name in names], axis=1)
-        field = "+".join(names)
-    alive = driven(pwm, autopilot)
-    if columns.name == "SERVO_OUTPUT_RAW":
-        alive &= columns.fields["port"] == surface.port
-    y = np.where(alive, surface.deflection(pwm), np.nan)
-    return _decoded(channel, f"{columns.name}.{field}", "commanded", t, y, columns)
 
 
 def _decoded(

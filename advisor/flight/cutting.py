@@ -9,7 +9,10 @@ from advisor.flight.channels import SLOWEST_FLIGHT_M_S
 from advisor.flight.events import FlightEvent, ManeuverFlown, Notice
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.marked_input import marked_span
+from advisor.flight.marks import Mark
 from advisor.flight.record import UNITS
+from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.sense import Sense, turned
 from advisor.flight.shape import is_3211
 from advisor.flight.track import Tracks
@@ -65,8 +68,16 @@ class Cutting:
             # In such a mode steps are the autopilot's own, unless their timing shows a test input.
             self.autopilots[maneuver.mode] += 1
             return []
+        return self._counted(maneuver)
+
+    def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
+        """A marked stretch is a manoeuvre, whatever the finder would make of it."""
+        elevator = self._tracks.cut("elevator", mark.start_s - LEAD_IN_S, mark.end_s, up_to_order)
+        return self._counted(self._cut(marked_span(mark, elevator), boot, up_to_order))
+
+    def _counted(self, maneuver: Maneuver) -> list[FlightEvent]:
         self.maneuvers += 1
-        if self._sense is None:
+        if self._sense is None or "elevator" not in maneuver.channels:
             return [ManeuverFlown(maneuver)]
         maneuver, found = self._sense.right(maneuver)
         return [*found, ManeuverFlown(maneuver)]

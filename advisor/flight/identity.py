@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 from advisor.aircraft import Elevator
+from advisor.flight.elevator_outputs import find_elevator
 from advisor.flight.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.messages import Columns
-from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_elevator, find_surface
+from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_surface
 from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
 from advisor.problems import Problem
 

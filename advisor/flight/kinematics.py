@@ -14,11 +14,11 @@ import numpy as np
 
 from advisor.flight.alpha_offset import UNKNOWN, AlphaOffset, mean_offset, offset_of, speed_at, weighted
 from advisor.flight.coloured import coloured_covariance
+from advisor.flight.inferred_alpha import alpha_rate
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import bank_at, gravity_in_plane, integrated
+from advisor.flight.motion import integrated
 from advisor.flight.renewal import renewed
-from advisor.gravity import GRAVITY_M_S2
 
 NEEDED = ("alpha", "q", "theta", "a_z")
 _FOLLOW_S = np.array([0.08, 0.2, 0.5, 1.2])
@@ -92,26 +92,16 @@ def check_alpha(
         return KinematicCheck("not possible", said, tuple(missing), offset=offset)
     t_alpha, alpha = renewed(found["alpha"].t, found["alpha"].y)
     t = found["q"].t
-
-    def at(name: str) -> FloatArray:
-        return np.interp(t, found[name].t, found[name].y)
-
     speed = speed_at(t, maneuver, airspeed_m_s)
     assert speed is not None
     if np.min(speed) < 1.0 or len(t_alpha) < 12:
         return KinematicCheck("not possible", "alpha cannot be checked against the motion: no usable speed.")
-    q, theta, a_z = found["q"].y, at("theta"), at("a_z")
-    if accelerometer_arm_m:
-        a_z = a_z + accelerometer_arm_m * np.gradient(q, t)
     if vane_arm_m:
-        alpha = alpha + vane_arm_m * np.interp(t_alpha, t, q / speed)
-    a_x = at("a_x") if "a_x" in found and len(found["a_x"]) > 1 else GRAVITY_M_S2 * np.sin(theta)
-    alpha_now = np.interp(t, t_alpha, alpha)
-    up, size = gravity_in_plane(theta, bank_at(t, found))
-    force = a_z * np.cos(alpha_now) - a_x * np.sin(alpha_now) + size * np.cos(up - alpha_now)
-    rate = q + force / speed
+        alpha = alpha + vane_arm_m * np.interp(t_alpha, t, found["q"].y / speed)
+    rate = alpha_rate(t, np.interp(t, t_alpha, alpha), speed, found, accelerometer_arm_m or 0.0)
     rebuilt = integrated(t, rate)
-    commanded = _followers(t, at("elevator")) if "elevator" in found else None
+    elevator = found.get("elevator")
+    commanded = None if elevator is None else _followers(t, np.interp(t, elevator.t, elevator.y))
     return _compare(t, rebuilt, rate, commanded, t_alpha, alpha, offset_of(maneuver, airspeed_m_s))
 
 

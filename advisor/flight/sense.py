@@ -17,7 +17,7 @@ _OTHER: dict[InputKind, InputKind] = {"3-2-1-1": "reverse 3-2-1-1", "reverse 3-2
 
 SAID = (
     "The nose went the other way than the elevator's output suggests (SERVOn_REVERSED): its deflections "
-    "count with the other sign. Give elevator.calibration if that is wrong, as for a canard."
+    "count with the other sign. Give a calibration if that is wrong, as for a canard."
 )
 
 

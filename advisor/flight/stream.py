@@ -12,6 +12,7 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.flight.attitude import Attitudes
+from advisor.flight.banks import Banks, merged
 from advisor.flight.boots import Master, by_boot
 from advisor.flight.channels import (
     Decoded,
@@ -19,21 +20,25 @@ from advisor.flight.channels import (
     named_value,
     quantities,
     stamps,
-    surface_angle,
 )
 from advisor.flight.clocks import BootClock
+from advisor.flight.commanded import Commanded, commanded
 from advisor.flight.cutting import Cutting
-from advisor.flight.elevator_watch import ElevatorWatch
+from advisor.flight.elevator_watch import SETTLE_S, ElevatorWatch
 from advisor.flight.events import (
     FlightEvent,
     ManeuverFlown,
     ManeuverStarted,
     ModeChanged,
+    Notice,
     Rebooted,
 )
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.markers import HEARD, MarkerWatch
+from advisor.flight.marks import Due, Mark, Marks
 from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.mixing import Mixing
 from advisor.flight.pieces import pieces
 from advisor.flight.record import Channel
 from advisor.flight.segmentation import LEAD_IN_S
@@ -60,15 +65,24 @@ class FlightStream:
         The aircraft file: elevator output and calibration, source of the angle of attack.
     target_system
         System id to follow; None: the first vehicle heard.
+    marks
+        Stretches that somebody has called manoeuvres, known before the stream begins.
     """
 
-    def __init__(self, aircraft: Aircraft, target_system: int | None = None) -> None:
+    def __init__(
+        self, aircraft: Aircraft, target_system: int | None = None, marks: Sequence[Mark] = ()
+    ) -> None:
         self._aircraft = aircraft
         self._who = Identity(aircraft.elevator, target_system)
         self._attitudes = Attitudes()
         self._clock = BootClock()
         self._tracks = Tracks(aircraft.alpha.source)
-        self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.calibration is not None)
+        self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.is_calibrated)
+        self._mixing = Mixing(self._tracks)
+        self.marks = Marks(marks)
+        """What is marked by hand, by a switch and by texts."""
+        self._markers = MarkerWatch(aircraft.markers)
+        self._over = False
         self._start_boot()
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
@@ -80,7 +94,9 @@ class FlightStream:
     def _start_boot(self) -> None:
         self._tracks.clear()
         self._watch = ElevatorWatch()
-        self._elevator_source: str | None = None
+        self._banks = Banks()
+        self._mixing.begin()
+        self._elevator_message: str | None = None
         self._cutting.begin(self._who.mode)
         self._first_s = np.nan
         self._master_s = np.nan
@@ -114,9 +130,12 @@ class FlightStream:
 
     @property
     def elevator_notes(self) -> tuple[str, ...]:
-        """What is assumed of the elevator's scale and sense, in sentences."""
-        scale = self.elevator.said if isinstance(self.elevator, Surface) else ""
-        return tuple(said for said in (scale, SAID if self._cutting.is_backwards else "") if said)
+        """What the elevator is made of, what is assumed of its scale and sense, in sentences."""
+        backwards = SAID if self._cutting.is_backwards else ""
+        if not isinstance(self.elevator, Surface):
+            return (backwards,) if backwards else ()
+        sentences = (self.elevator.said, self._mixing.said(self.elevator), backwards)
+        return tuple(said for said in sentences if said)
 
     @property
     def now_s(self) -> float:
@@ -141,9 +160,15 @@ class FlightStream:
         """Why this stream cannot be used, as far as it has been heard; empty when it can."""
         self._note_rates()
         flown = self._cutting
-        return problems(
+        found = problems(
             self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.autopilots
         )
+        wrong = self._mixing.contradiction
+        return [
+            *(self.marks.problems() if self._over else ()),
+            *([wrong] if wrong and not flown.maneuvers else ()),
+            *found,
+        ]
 
     def recent(self, name: str, seconds: float) -> Channel | None:
         """The newest stretch of a channel; None when nothing of it has arrived."""
@@ -151,7 +176,9 @@ class FlightStream:
 
     def so_far(self) -> Maneuver | None:
         """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
-        onset, now = self._watch.onset_s, self._watch.newest_s
+        now = self._watch.newest_s
+        marked_s = self.marks.since_s(now)
+        onset = self._watch.onset_s if marked_s is None else marked_s
         if onset is None or not now > onset:
             return None
         span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
@@ -166,9 +193,16 @@ class FlightStream:
 
     def finish(self) -> list[FlightEvent]:
         """No more messages will come: whatever is open is closed."""
-        events: list[FlightEvent] = []
+        events = self._finish_boot()
+        self._over = True
+        return events
+
+    def _finish_boot(self) -> list[FlightEvent]:
+        events = self._watch_elevator(self._mixing.finish())
+        due = self.marks.finish(self._master_s)
         for span in self._watch.finish():
-            events += self._flown(span, None)
+            events += self._found(span, None)
+        events += self._marked(due, None)
         self._note_rates()
         return events
 
@@ -201,10 +235,12 @@ class FlightStream:
         self.seen.update(c.name for c in mine)
         for part, master in by_boot(mine, vehicle.component, self._clock, self.boot):
             if master.boot != self.boot:
-                events += self.finish()
+                events += self._finish_boot()
                 self._earlier_s = self.duration_s
                 self.boot = master.boot
                 self._start_boot()
+                self.marks.start_boot(self.boot, self._earlier_s)
+                self._markers.start_boot()
                 events.append(Rebooted(self.boot))
             events += self._feed_part(part, master, vehicle)
         return events
@@ -215,54 +251,76 @@ class FlightStream:
         orders = np.concatenate(([-1], master.order))
         clock = np.concatenate(([self._master_s], master.t))
         attitude = _last_finite(np.concatenate((self._attitude, master.attitude)))
-        elevator: list[Decoded] = []
-        for columns in part:
+        elevator: list[Commanded] = []
+        for columns in merged(part):
+            now = np.searchsorted(orders, columns.order, side="right") - 1
+            if columns.name in HEARD:
+                self.marks.hear(self._markers.heard(columns, stamps(columns, clock[now])))
             if columns.component != vehicle.component and columns.name != "NAMED_VALUE_FLOAT":
                 continue
-            now = np.searchsorted(orders, columns.order, side="right") - 1
             t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
-            for new in self._decode(columns, t, attitude[now], vehicle):
-                if new.channel == "elevator":
-                    elevator.append(new)
-                else:
-                    self._tracks.append(new)
+            for new in self._decode(columns, t, attitude[now]):
+                self._tracks.append(new)
+            if columns.name in _OUTPUTS:
+                pulses = self._banks.together(columns)
+                for moved in commanded(self._who.surfaces, pulses, t, vehicle.autopilot):
+                    if moved.channel == "elevator":
+                        elevator.append(moved)
+                    else:
+                        self._tracks.append(moved.combined())
         if np.isnan(self._first_s) and len(master.t):
             self._first_s = float(master.t[0])
+            self.marks.start_clock(self._first_s)
         self._master_s, self._attitude = float(clock[-1]), attitude[-1:]
         return self._feed_elevator(elevator)
 
-    def _decode(
-        self, columns: Columns, t: FloatArray, attitude: FloatArray, vehicle: Vehicle
-    ) -> Iterator[Decoded]:
+    def _decode(self, columns: Columns, t: FloatArray, attitude: FloatArray) -> Iterator[Decoded]:
         yield from quantities(columns, t)
         if columns.name == "VFR_HUD":
             yield derived_alpha(columns, t, attitude, self._aircraft.airspeed_m_s)
         elif columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
             yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))
-        elif columns.name in _OUTPUTS:
-            for name, surface in self._who.surfaces.items():
-                if (new := surface_angle(name, columns, t, surface, vehicle.autopilot)) is not None:
-                    yield new
 
-    def _feed_elevator(self, decoded: Sequence[Decoded]) -> list[FlightEvent]:
+    def _feed_elevator(self, moved: Sequence[Commanded]) -> list[FlightEvent]:
+        """Form the elevator's samples out of its outputs, and follow them."""
+        events: list[FlightEvent] = []
+        arrived = [new for new in moved if len(new.t)]
+        if self._elevator_message is None and arrived:
+            # Some vehicles report their outputs in two messages: the first to speak is listened to.
+            self._elevator_message = min(arrived, key=lambda new: int(new.order[0])).message
+        for new in arrived:
+            if new.message == self._elevator_message:
+                for known in self._mixing.take(new, closes_pitch_loop(self._who.mode)):
+                    events += [known] if isinstance(known, Notice) else self._watch_elevator([known])
+        return events
+
+    def _watch_elevator(self, decoded: Sequence[Decoded]) -> list[FlightEvent]:
         """Give the segmenter its samples in the order of their stamps, and cut what has ended."""
         events: list[FlightEvent] = []
-        if self._elevator_source is None:
-            # Some vehicles report their outputs in two messages: the first to speak is listened to.
-            first = min(
-                (new for new in decoded if len(new.t)), key=lambda new: int(new.order[0]), default=None
-            )
-            self._elevator_source = first.source if first else None
         arrived: list[tuple[int, float, float]] = []
         for new in decoded:
-            if new.source == self._elevator_source:
-                self._tracks.append(new)
-                arrived += zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
+            self._tracks.append(new)
+            arrived += zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
         for order, t, y in sorted(arrived):
+            self.marks.advance(order)
             for found in self._watch.push(t, order, y):
-                events += [found] if isinstance(found, ManeuverStarted) else self._flown(found, order)
+                events += [found] if isinstance(found, ManeuverStarted) else self._found(found, order)
+            events += self._marked(self.marks.due(self._watch.newest_s - SETTLE_S), order)
+        return events
+
+    def _found(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
+        """What the finder has found, unless it lies in a marked stretch."""
+        return [] if self.marks.hides(span, up_to_order) else self._flown(span, up_to_order)
+
+    def _marked(self, due: Due, up_to_order: int | None) -> list[FlightEvent]:
+        events: list[FlightEvent] = list(due.notices)
+        for span, order in due.spans:
+            events += self._flown(span, order)
+        for mark in due.marks:
+            events += self._cutting.marked(mark, self.boot, up_to_order)
+            self._note_rates()
         return events
 
     def _flown(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:

@@ -12,7 +12,7 @@ from collections.abc import Collection, Mapping
 from math import isfinite
 
 from advisor.beside import beside
-from advisor.flight.surfaces import Surface
+from advisor.flight.surfaces import Surface, joined_numbers
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
@@ -109,7 +109,7 @@ def _missing(
         text = "There is no pitch rate: no ATTITUDE arrived."
         return [*found, Problem("no_pitch_rate", text, f"Ask for ATTITUDE: {_ask('ATTITUDE', vehicle)}.")]
     if isinstance(elevator, Surface) and "elevator" not in channels:
-        outputs = " and ".join(str(n) for n in elevator.outputs)
+        outputs = joined_numbers(elevator.outputs)
         found.append(
             Problem(
                 "no_elevator",

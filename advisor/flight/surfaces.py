@@ -1,4 +1,4 @@
-"""From servo outputs to surfaces: which output drives the elevator, and what a pulse width means.
+"""Control surfaces: which servo outputs move one, and what their pulse widths mean.
 
 The deflection is that of the *command*; what the servo makes of it is the estimator's business.
 
@@ -7,19 +7,16 @@ demand lifts the nose; so more PWM is trailing edge up unless SERVOn_REVERSED is
 elevator channel counts trailing edge down as positive, hence the minus in `Scale.deflection`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.aircraft import Elevator
 from advisor.flight.messages import FloatArray
-from advisor.problems import Problem
 
 # Values of SERVOn_FUNCTION, ArduPilot's SRV_Channel.h.
 AILERON, ELEVATOR, RUDDER = 4, 19, 21
-_MIXED = {77: "elevon", 78: "elevon", 79: "V-tail", 80: "V-tail"}
 _FULL_STROKE_RAD = np.radians(25.0)
 _UNUSED_PX4 = 900.0
 
@@ -53,112 +50,125 @@ class Calibration:
         pwm, deg = zip(*sorted(self.pairs), strict=True)
         return np.asarray(np.radians(np.interp(pwm_us, pwm, deg)))
 
+    def carried_over(self, measured: Scale, other: Scale) -> "Calibration":
+        """This calibration for an output of the same linkage: counted from TRIM, turned by REVERSED.
+
+        Parameters
+        ----------
+        measured
+            Of the output that the calibration belongs to.
+        other
+            Of the output that it is carried over to.
+        """
+        turn = 1.0 if measured.reversed == other.reversed else -1.0
+        moved = ((other.trim_us + turn * (pwm - measured.trim_us), deg) for pwm, deg in self.pairs)
+        return Calibration(tuple(sorted(moved)))
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One servo output that moves a surface."""
+
+    output: int
+    """1..32."""
+    scale: Scale | Calibration
+    share: float = 1.0
+    """Of the surface's deflection; the shares of one surface sum to 1."""
+    sure: bool = True
+    """Whether a calibration or the parameters say which way the output counts."""
+
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """One control surface: the output or outputs that drive it, and their scales."""
+    """One control surface: the outputs that drive it, each with its scale and its share."""
 
-    outputs: tuple[int, ...]
-    """Servo outputs 1..32; two for elevons, a V-tail, or a split elevator: their mean counts."""
-    scales: tuple[Scale | Calibration, ...]
+    parts: tuple[Part, ...]
     calibrated: bool
     """False when the scale is SERVOn_MIN/TRIM/MAX and an assumed 25 deg."""
     said: str
     """What the user should know about this mapping."""
 
     @property
-    def port(self) -> int:
-        """SERVO_OUTPUT_RAW.port of the bank of 16 that holds the outputs."""
-        return (self.outputs[0] - 1) // 16
+    def outputs(self) -> tuple[int, ...]:
+        """Servo outputs 1..32; several for elevons, a V-tail, a split elevator, a stabilator with a tab."""
+        return tuple(part.output for part in self.parts)
+
+    @property
+    def ports(self) -> tuple[int, ...]:
+        """SERVO_OUTPUT_RAW.port of the banks of 16 that hold the outputs, rising."""
+        return tuple(sorted({(n - 1) // 16 for n in self.outputs}))
+
+    @property
+    def unsure(self) -> tuple[int, ...]:
+        """Outputs of several that nothing tells the sense of; a single one's is the surface's."""
+        return tuple(part.output for part in self.parts if not part.sure) if len(self.parts) > 1 else ()
+
+    def angles(self, pwm_us: FloatArray) -> FloatArray:
+        """What each output commands, rad, from pulses; both of shape (n, number of outputs)."""
+        columns = [part.scale.deflection(pwm_us[:, k]) for k, part in enumerate(self.parts)]
+        return np.stack(columns, axis=1)
+
+    def combined(self, angles: FloatArray, turned: Iterable[int] = ()) -> FloatArray:
+        """Surface angle in rad, shape (n,), from what each output commands.
+
+        Parameters
+        ----------
+        angles
+            Shape (n, number of outputs), rad.
+        turned
+            Outputs that count the other way.
+        """
+        total = np.zeros(len(angles))
+        # Column by column, for a product of matrices may round otherwise for another n.
+        for k, part in enumerate(self.parts):
+            total += (-part.share if part.output in turned else part.share) * angles[:, k]
+        return total
 
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
-        """Mean surface angle in rad from pulses of shape (n, number of outputs)."""
-        angles = [scale.deflection(pwm_us[:, k]) for k, scale in enumerate(self.scales)]
-        return np.asarray(np.mean(angles, axis=0))
+        """Surface angle in rad from pulses of shape (n, number of outputs)."""
+        return self.combined(self.angles(pwm_us))
 
 
 def driven(pwm_us: FloatArray, autopilot: str) -> NDArray[np.bool_]:
-    """Rows in which every output carries a pulse: 0 and 65535 mean none, on PX4 900 too."""
+    """Rows in which every output carries a pulse: 0, 65535 and NaN mean none, on PX4 900 too."""
     alive = (pwm_us > 0) & (pwm_us < 65535)
     if autopilot == "px4":
         alive &= pwm_us != _UNUSED_PX4
     return np.asarray(np.all(alive, axis=1))
 
 
-def find_elevator(elevator: Elevator, parameters: Parameters) -> Surface | Problem:
-    """Which output is the elevator, and its scale.
-
-    Parameters
-    ----------
-    elevator
-        As the aircraft file has it.
-    parameters
-        What is known of SERVOn_*; may be empty.
-    """
-    functions = _functions(parameters)
-    if elevator.output != "auto":
-        given = _surface((elevator.output,), elevator, parameters, "as the aircraft file says")
-        mixed = _MIXED.get(functions.get(elevator.output, 0))
-        if mixed and elevator.calibration is None:
-            return Problem(
-                "no_elevator",
-                f"Output {elevator.output} is one half of a mixed {mixed} pair, not an elevator.",
-                "Set elevator.output to auto: both halves are then read together.",
-            )
-        return replace(given, said=_half_of(elevator.output, mixed)) if mixed else given
-    found = tuple(n for n, function in functions.items() if function == ELEVATOR)
-    halves = tuple(n for n, function in functions.items() if function in _MIXED)
-    outputs = found or halves
-    if not outputs:
-        return _nothing_found(bool(functions))
-    if halves and not found and len(halves) != 2:
-        return Problem(
-            "no_elevator",
-            f"Outputs {_listed(halves)} are mixed elevons or V-tail halves, and only pairs are understood.",
-            "Set elevator.output to the output of a plain elevator.",
-        )
-    if len({(n - 1) // 16 for n in outputs}) > 1:
-        return Problem(
-            "no_elevator",
-            f"The elevator's outputs {_listed(outputs)} come in separate messages, by banks of 16.",
-            "Set elevator.output to one of them.",
-        )
-    if elevator.calibration is not None and len(outputs) > 1:
-        return Problem(
-            "no_elevator",
-            f"elevator.calibration describes one output, but outputs {_listed(outputs)} act together.",
-            "Leave elevator.calibration out, or set elevator.output to one plain output.",
-        )
-    kind = _MIXED[functions[halves[0]]] + " pair" if halves and not found else "SERVOn_FUNCTION 19"
-    return _surface(outputs, elevator, parameters, kind)
-
-
 def find_surface(function: int, parameters: Parameters) -> Surface | None:
-    """The outputs of any other function, e.g. ``AILERON``; None when no parameter says."""
-    outputs = tuple(n for n, value in _functions(parameters).items() if value == function)
-    if not outputs or len({(n - 1) // 16 for n in outputs}) > 1:
-        return None
-    return _surface(outputs, Elevator(), parameters, "")
+    """The outputs of one function, e.g. ``AILERON``; None when no parameter says, or in two banks."""
+    outputs = [n for n, value in functions_of(parameters).items() if value == function]
+    surface = Surface(in_shares([Part(n, scale_of(n, parameters)) for n in outputs]), False, "")
+    return surface if len(surface.ports) == 1 else None
 
 
-def _surface(outputs: tuple[int, ...], elevator: Elevator, parameters: Parameters, why: str) -> Surface:
-    if elevator.calibration is not None:
-        return Surface(outputs, (Calibration(elevator.calibration),), True, "")
-    said = (
-        f"No elevator.calibration: output {_listed(outputs)} ({why}) is scaled by SERVOn_MIN/TRIM/MAX "
-        "as full strokes of 25 deg, so Z_delta_e and M_delta_e are per assumed degree."
-    )
-    return Surface(outputs, tuple(_scale(n, parameters) for n in outputs), False, said)
+def in_shares(parts: Iterable[Part]) -> tuple[Part, ...]:
+    """The parts of one surface, in the order of their outputs, with shares that sum to 1."""
+    ordered = sorted(parts, key=lambda part: part.output)
+    total = sum(part.share for part in ordered)
+    return tuple(replace(part, share=part.share / total) for part in ordered)
 
 
-def _half_of(output: int, mixed: str) -> str:
-    return (
-        f"Output {output} is one half of a mixed {mixed} pair, calibrated as an elevator in the aircraft "
-        "file: what it does for the other axis counts as elevator, too."
-    )
+def joined_numbers(outputs: Sequence[int]) -> str:
+    """Outputs as a sentence lists them: ``1``, ``1 and 2``, ``1, 2 and 3``."""
+    return listed([str(n) for n in outputs])
 
 
-def _scale(n: int, parameters: Parameters) -> Scale:
+def listed(words: Sequence[str]) -> str:
+    """Words as a sentence lists them."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
+
+
+def functions_of(parameters: Parameters) -> dict[int, int]:
+    """SERVOn_FUNCTION by output, as far as it is known."""
+    outputs = {n: parameters.get(f"SERVO{n}_FUNCTION") for n in range(1, 33)}
+    return {n: int(value) for n, value in outputs.items() if value is not None}
+
+
+def scale_of(n: int, parameters: Parameters) -> Scale:
+    """SERVOn_MIN/TRIM/MAX/REVERSED of output ``n``; ArduPilot's defaults where they are unknown."""
     default = Scale()
     return Scale(
         low_us=parameters.get(f"SERVO{n}_MIN", default.low_us),
@@ -166,26 +176,3 @@ def _scale(n: int, parameters: Parameters) -> Scale:
         high_us=parameters.get(f"SERVO{n}_MAX", default.high_us),
         reversed=bool(parameters.get(f"SERVO{n}_REVERSED", 0.0)),
     )
-
-
-def _functions(parameters: Parameters) -> dict[int, int]:
-    outputs = {n: parameters.get(f"SERVO{n}_FUNCTION") for n in range(1, 33)}
-    return {n: int(value) for n, value in outputs.items() if value is not None}
-
-
-def _nothing_found(functions_known: bool) -> Problem:
-    if functions_known:
-        return Problem(
-            "no_elevator",
-            "No output has SERVOn_FUNCTION 19 (elevator), nor an elevon or V-tail pair.",
-            "Set elevator.output and elevator.calibration in the aircraft file.",
-        )
-    return Problem(
-        "no_elevator",
-        "Nothing says which servo output is the elevator: no SERVOn_FUNCTION was received.",
-        "Set elevator.output in the aircraft file (on most ArduPlane aircraft 2), or record the parameters.",
-    )
-
-
-def _listed(outputs: tuple[int, ...]) -> str:
-    return " and ".join(str(n) for n in outputs)

@@ -24,6 +24,7 @@ _RECORDS: dict[str, set[str]] = {
     "MSG": {"Message"},
     "PARM": {"Name", "Value"},
     "POS": {"Lat", "Lng", "Alt", "RelHomeAlt"},
+    "RCIN": {"C1"},
     "RCOU": {"C1"},
     "RCO2": set(),
     "RCO3": set(),
@@ -79,6 +80,7 @@ class _Translation:
             "IMU": self._highres_imu,
             "AOA": self._aoa_ssa,
             "POS": self._global_position_int,
+            "RCIN": self._rc_channels,
             "PARM": self._param_value,
             "MSG": self._statustext,
             "VER": self._autopilot_version,
@@ -147,8 +149,9 @@ class _Translation:
                 table = self._tables[name]
                 for field, values in table.fields.items():
                     if field[0] == "C" and field[1:].isdigit():
-                        held = values if table is rcou else latest(rcou.order, table.order, values)
-                        pulses[int(field[1:])] = held
+                        # The autopilot writes the records of one loop's outputs one after the other.
+                        at = _nearest(rcou.time_us, table.time_us)
+                        pulses[int(field[1:])] = values if table is rcou else values[at]
         banks = []
         for port in range(2):
             outputs = {
@@ -160,6 +163,14 @@ class _Translation:
                 fields: dict[str, ArrayLike] = {"time_usec": rcou.time_us, "port": port, **outputs}
                 banks.append(self._message("SERVO_OUTPUT_RAW", rcou, fields, place=port))
         yield from banks
+
+    def _rc_channels(self, rcin: Table) -> Columns:
+        pulses: dict[str, ArrayLike] = {
+            f"chan{field[1:]}_raw": values
+            for field, values in rcin.fields.items()
+            if field[0] == "C" and field[1:].isdigit()
+        }
+        return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
     def _vfr_hud(self, air: Table) -> Columns:
         fields: dict[str, ArrayLike] = {
@@ -249,3 +260,11 @@ class _Translation:
 
 def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:
     return (time_us + 500) // 1000
+
+
+def _nearest(at_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Index of the record nearest to each time asked for, the earlier of two."""
+    after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
+    before = after - 1
+    after = np.minimum(after, len(time_us) - 1)
+    return np.where(at_us - time_us[before] <= time_us[after] - at_us, before, after)

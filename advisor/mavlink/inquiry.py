@@ -8,8 +8,8 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from advisor.mavlink.framing import Frame
 
 OUTPUTS = range(1, 17)
-PITCH_FUNCTIONS = (19, 77, 78, 79, 80)
-"""SERVOn_FUNCTION of elevator, left and right elevon, left and right V-tail."""
+PITCH_FUNCTIONS = (19, 77, 78, 79, 80, 16, 17, 86, 87)
+"""SERVOn_FUNCTION of elevator, left and right elevon, left and right V-tail, differential spoilers."""
 
 STREAM_GROUPS = ("EXTRA1", "RAW_SENS", "RC_CHAN", "EXTRA2")
 RENAMED = {

@@ -19,6 +19,7 @@ TOPICS: dict[str, set[str]] = {
     "airspeed": {"indicated_airspeed_m_s"},
     "airspeed_validated": {"calibrated_airspeed_m_s"},
     "debug_key_value": {"key[9]", "value"},
+    "input_rc": {"values[17]"},
     "sensor_combined": {"gyro_rad[2]", "accelerometer_m_s2[2]"},
     "vehicle_angular_velocity": {"xyz[2]"},
     "vehicle_attitude": {"q[3]"},
@@ -60,6 +61,7 @@ def translate(log: Any) -> list[TimedMessages]:
         *_vfr_hud(first),
         *_heights(first),
         *_named_values(first),
+        *_receiver(first),
         *(_outputs(port, topic) for port, topic in enumerate(topics.get("actuator_outputs", []))),
         *_texts(log),
     ]
@@ -183,6 +185,14 @@ def _named_values(topics: Mapping[str, Topic]) -> Iterator[TimedMessages]:
             at,
             {"time_boot_ms": _milliseconds(at), "name": np.array(names, "S10"), "value": values["value"]},
         )
+
+
+def _receiver(topics: Mapping[str, Topic]) -> Iterator[TimedMessages]:
+    received = topics.get("input_rc")
+    if received is not None:
+        at = _time_us(received)
+        pulses: dict[str, ArrayLike] = {f"chan{i + 1}_raw": received[f"values[{i}]"] for i in range(18)}
+        yield TimedMessages("RC_CHANNELS", at, {"time_boot_ms": _milliseconds(at), **pulses})
 
 
 def _outputs(port: int, topic: Topic) -> TimedMessages:

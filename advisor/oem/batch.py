@@ -109,7 +109,7 @@ def _each(
     noise = np.full((rows, 2), np.nan)
     iterations = np.full(rows, -1)
     for i in range(rows):
-        optimum = descend(grid, z[i], channel, owner, free, floor, shared, local)
+        optimum = descend(grid, z[i], channel, owner, free, floor, np.zeros(N_SHARED), shared, local)
         if optimum.status != CONVERGED:
             continue
         information, _ = normal_equations(

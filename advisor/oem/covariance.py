@@ -41,6 +41,8 @@ class Influence:
     """Condition number of the information matrix of the eight, normalised to a unit diagonal."""
     unresolved: tuple[str, ...]
     """Parameters that lie in a direction about which the data say nothing at all."""
+    extra_covariance: FloatArray
+    """(k, k) inverse information of the extra parameters, all others free."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +56,11 @@ class Coloured:
 
 
 def influence(
-    assembly: Assembly, g: FloatArray, noise: FloatArray, extra: FloatArray | None = None
+    assembly: Assembly,
+    g: FloatArray,
+    noise: FloatArray,
+    extra: FloatArray | None = None,
+    prior: FloatArray | None = None,
 ) -> Influence | None:
     """Influence of every measurement on the eight parameters; None when it overflows.
 
@@ -64,6 +70,7 @@ def influence(
     ----------
     extra : (N, k) derivatives of the outputs by parameters estimated besides, such as a servo's lag;
         the result then has their columns after the eight.
+    prior : (7,) inverse variances of the shared parameters known beforehand.
     """
     weight = 1.0 / noise[assembly.channel] ** 2
     common, own = assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
@@ -85,6 +92,8 @@ def influence(
         parts.append((rows, inverse, weighted, mix))
     weighted_shared = projected * weight[:, None]
     information = projected.T @ weighted_shared
+    if prior is not None:
+        information[: len(common), : len(common)] += np.diag(prior[common])
     if not np.all(np.isfinite(information)):
         return None
     inverse, left_open = _inverse(information)
@@ -115,6 +124,7 @@ def influence(
             for name, (is_shared, index) in zip(PARAMETERS, REPORTED, strict=True)
             if open_share[index if is_shared else N_SHARED + index] > OPEN_SHARE
         ),
+        extra_covariance=inverse[len(common) :, len(common) :],
     )
 
 

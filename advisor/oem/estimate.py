@@ -1,7 +1,8 @@
 """What an estimate is: values, errors one can believe, and how well the model explains the data."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
@@ -51,6 +52,17 @@ class ChannelFit:
 
 
 @dataclass(frozen=True, slots=True)
+class InstrumentEstimate:
+    """A parameter of the instruments that was estimated together with the derivatives."""
+
+    name: Literal["servo_lag_s", "vane_arm_m", "alpha_delay_s", "accelerometer_arm_m"]
+    value: float
+    """In the unit that ends the name."""
+    std: float
+    """Standard deviation corrected for coloured residuals."""
+
+
+@dataclass(frozen=True, slots=True)
 class Estimate:
     """The eight parameters of Eq. (3) from one manoeuvre or from several at once."""
 
@@ -61,7 +73,8 @@ class Estimate:
     covariance: FloatArray
     """Shape (8, 8). Corrected for coloured residuals."""
     cost: float
-    """The lowest J = det R of Eq. (7) over angle of attack and pitch rate."""
+    """The lowest J = det R of Eq. (7) over angle of attack and pitch rate; where no angle of attack counts,
+    over pitch rate and a_z."""
     fits: tuple[Mapping[str, ChannelFit], ...]
     """One mapping of output name to fit per manoeuvre, the fit of lowest cost."""
     iterations: int
@@ -77,7 +90,27 @@ class Estimate:
     """What the user must know about these numbers, one sentence each."""
     theta_of_lowest_cost: FloatArray | None = None
     """Shape (8,), the parameters of ``cost`` and ``fits`` where they are not ``theta``: with coloured noise
-    the smallest error lies elsewhere (``efficient``)."""
+    or in moving air the smallest error lies elsewhere (``efficient``, ``filter_error``)."""
+    instruments: tuple[InstrumentEstimate, ...] = ()
+    """What the data tell of the instruments, used in this estimate."""
+    gust_rad: float | None = None
+    """Standard deviation of the gust angle w/V, where the air moved."""
+    filtered: bool = False
+    """Whether ``theta`` is filter error's, which allows for moving air and coloured instruments."""
+    servo_lag_s: float = 0.0
+    """First-order lag of the servo used, given or estimated."""
+    prediction: Mapping[str, float] = field(default_factory=dict)
+    """Output name to the largest half-width of the predicted response's 95 % band, over the peak of that
+    response; empty while a manoeuvre is still being flown."""
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs that counted."""
+        return tuple(self.fits[0])
+
+    def instrument(self, name: str) -> InstrumentEstimate | None:
+        """What the data tell of one instrument; None where nothing is told."""
+        return next((x for x in self.instruments if x.name == name), None)
 
     @property
     def std(self) -> FloatArray:

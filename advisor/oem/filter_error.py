@@ -1,148 +1,269 @@
-"""Filter error: a second opinion when the air moves.
+"""Filter error: the estimate in the air there is.
 
-Output error takes every deviation for measurement noise. In turbulence the deviations are driven
-through the aircraft, and a Kalman filter has to follow them (``turbulence``). Since filter and model are
-linear about the fitted motion, it whitens residuals and sensitivities alike, and the estimate is least
-squares of the whitened ones (Maine & Iliff, NASA RP-1168; Jategaonkar, *Flight Vehicle System
-Identification*, chapter 5).
-"""
+Output error takes every deviation for measurement noise. Moving air drives the aircraft, and its motion
+remembers each gust. A Kalman filter of air and instruments (``innovations``) follows both. Filter and model
+are linear about the fitted motion, so the filter whitens residuals and sensitivities alike, and the
+estimate is least squares of the whitened ones (Maine & Iliff, NASA RP-1168; Jategaonkar, *Flight Vehicle
+System Identification*, chapter 5)."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
 
-from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
-from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
-from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.innovations import gains_of
-from advisor.oem.turbulence import Turbulence, system_of, turbulence_in
+from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS, SHARED, Index, respond
+from advisor.oem.covariance import Coloured as Noise
+from advisor.oem.covariance import coloured, colours_of, influence, widening
+from advisor.oem.innovations import AirModel, Gains, gains_of
+from advisor.oem.instruments import Instrument, by_instruments
+from advisor.oem.prior import precision
+from advisor.oem.problem import Assembly, Problem, assemble
+from advisor.oem.solution import Solution, contributions_of, reported
+from advisor.oem.turbulence import Rows, Turbulence, find_turbulence
 
-_GROWTH = 25.0
-"""Powers of e by which a model may grow over a record: one that runs away says nothing of the aircraft."""
-_GRID_S = 0.005
-"""Step of the linear model."""
+ROUNDS = 6
+SETTLED = 0.1
+"""Largest step, in standard deviations, after which the estimate is settled."""
+MOST_MANEUVERS = 7
+"""Newest manoeuvres from which the noise is found: its figures are known well enough by then."""
+_UNIT = np.ones(len(OUTPUTS))
+_STILL_M_S = 20.0
+"""Air speed supposed where none was measured, to turn a gust's speed into an angle."""
 
 
-def filter_error_estimate(
-    maneuvers: Sequence[Maneuver],
-    aircraft: Aircraft,
-    start: Estimate | NoEstimate | None = None,
-    found: Turbulence | None = None,
-) -> Estimate | NoEstimate:
-    """The eight parameters with the air's motion allowed for.
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A setting of all parameters, with residuals and sensitivities there."""
 
-    One whitened Gauss-Newton step from the output error estimate, with sensitivities by differences of
-    the fitted responses, repeated until it moves less than a tenth of its own error.
+    problem: Problem
+    assembly: Assembly
+    shared: FloatArray
+    local: FloatArray
+    residual: FloatArray
+    """(N,)."""
+    sensitivities: FloatArray
+    """(N, 14)."""
+    extra: FloatArray
+    """(N, k) derivatives by the instrument parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Whitened:
+    """A place seen through the filter, the manoeuvres' own parameters eliminated."""
+
+    cost: float
+    """-2 log likelihood, but for a constant, with the prior's part."""
+    step: FloatArray
+    """(n,) of the shared and instrument parameters that are free."""
+    own_steps: tuple[FloatArray, ...]
+    """Of each manoeuvre's own parameters that are free."""
+    std: FloatArray
+    """(n,) Cramér-Rao standard deviations."""
+
+
+def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
+    """Whether the residuals of a solution bear the mark of moving air, and the noise that fits best.
 
     Parameters
     ----------
-    start
-        Output error estimate of the same manoeuvres, where it is known already.
-    found
-        What ``turbulence_in`` said of it, where that is known already.
+    seen_by_alpha
+        Whether the angle of attack reads the air, as a vane does, or is made from inertial sensors.
+    """
+    none = np.empty((len(solution.residual), 0))
+    place = Place(
+        solution.problem,
+        solution.assembly,
+        solution.optimum.shared,
+        solution.optimum.local,
+        solution.residual,
+        solution.sensitivities,
+        none,
+    )
+    rows = _rows(place)[-MOST_MANEUVERS:]
+    white = np.array([_white(rows, c) for c in range(len(OUTPUTS))])
+    return find_turbulence(rows, _system(place, 1.0)[:4], white, seen_by_alpha, start_variance=0.0)
+
+
+def _white(rows: Sequence[Rows], channel: int) -> float:
+    """Standard deviation of the white part of an output's residual, from its differences."""
+    steps = np.concatenate([np.diff(r.left[r.channel == channel]) for r in rows])
+    return float(np.median(np.abs(steps))) / 0.6745 / np.sqrt(2.0) if len(steps) else 1.0
+
+
+def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instrument]) -> Solution | None:
+    """The estimate with moving air and coloured instruments allowed for; None where the search runs away.
+
+    Parameters
+    ----------
+    solution
+        Where the search begins: an output error solution.
+    air
+        Noise of the instruments and motion of the air.
+    instruments
+        Parameters of the instruments that are estimated, too.
 
     Returns
     -------
-    An estimate whose note says how it was made, or the output error's own failure.
+    Solution or None
+        ``theta``, ``covariance_cr`` and ``covariance`` are filter error's; residuals are the innovations'
+        raw counterparts at the new place, and the cost is that of the new place.
     """
-    if start is None:
-        single = len(maneuvers) == 1
-        start = estimate(maneuvers[0], aircraft) if single else estimate_jointly(maneuvers, aircraft)
-    if isinstance(start, NoEstimate):
-        return start
-    if found is None:
-        derived = any(m.channels["alpha"].provenance == "derived" for m in maneuvers)
-        found = turbulence_in(start, seen_by_alpha=not derived)
-    speed = start.airspeed_m_s or 20.0
-    fitted_at = start.theta if start.theta_of_lowest_cost is None else start.theta_of_lowest_cost
-    theta = fitted_at.copy()
-    information, step = np.eye(len(theta)), np.zeros(len(theta))
-    for _ in range(3):
-        if any(_runs_away(theta, maneuver) for maneuver in maneuvers):
-            return NoEstimate("not_converged", "The filter error estimate did not settle.")
-        information, gradient = np.zeros((8, 8)), np.zeros(8)
-        for maneuver, fits in zip(maneuvers, start.fits, strict=False):
-            t, channel, columns = _linear(maneuver, fits, theta, fitted_at)
-            white = gains_of(t, channel, np.append(system_of(start), speed), found.air).innovations(columns)
-            own = white[:, 9:]
-            project = np.linalg.qr(own)[0]
-            kept = white[:, :9] - project @ (project.T @ white[:, :9])
-            information += kept[:, 1:].T @ kept[:, 1:]
-            gradient += kept[:, 1:].T @ kept[:, 0]
-        scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
-        step = np.linalg.lstsq(information / np.outer(scale, scale), gradient / scale, rcond=1e-10)[0] / scale
-        theta = theta + step
-        if np.all(np.abs(step) < 0.1 / scale):
+    optimum = solution.optimum
+    here = _at(solution.problem, optimum.shared, optimum.local, instruments)
+    seen = None if here is None else _whitened(here, air, len(instruments))
+    if here is None or seen is None:
+        return None
+    for _ in range(ROUNDS):
+        there, next_seen = _better(here, seen, air, instruments)
+        if there is None or next_seen is None:
             break
-    covariance = np.asarray(np.linalg.pinv(information, rcond=1e-12, hermitian=True), float)
-    note = (
-        f"Filter error: gusts of {np.degrees(found.gust_angle):.2f} deg allowed for." if found.present
-        else "Filter error: no moving air found, noise of the instruments only."
-    )  # fmt: skip
-    return replace(
-        start, theta=theta, covariance=covariance, covariance_cr=covariance, notes=(*start.notes, note)
+        here, step, std = there, seen.step, seen.std
+        seen = next_seen
+        if np.max(np.abs(step) / std) < SETTLED:
+            break
+    return _solution(solution, here, air)
+
+
+def _better(
+    here: Place, seen: Whitened, air: AirModel, instruments: Sequence[Instrument]
+) -> tuple[Place | None, Whitened | None]:
+    """The place after a step, halved until the likelihood does not fall; none where it always does."""
+    common, own = _free(here.assembly)
+    scale = 1.0
+    for _ in range(5):
+        shared, local, problem = here.shared.copy(), here.local.copy(), here.problem
+        shared[common] += scale * seen.step[: len(common)]
+        for m, step in enumerate(seen.own_steps):
+            local[m, own - N_SHARED] += scale * step
+        for x, change in zip(instruments, seen.step[len(common) :], strict=True):
+            problem = x.write(problem, float(np.clip(x.read(problem) + scale * change, x.lowest, x.highest)))
+        there = _at(problem, shared, local, instruments)
+        found = None if there is None else _whitened(there, air, len(instruments))
+        if found is not None and found.cost < seen.cost:
+            return there, found
+        scale /= 3.0
+    return None, None
+
+
+def _at(
+    problem: Problem, shared: FloatArray, local: FloatArray, instruments: Sequence[Instrument]
+) -> Place | None:
+    assembly = assemble(problem)
+    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
+    if not respond(assembly.grid, shared, local, y, g):
+        return None
+    extra = by_instruments(problem, shared, local, instruments)
+    return Place(problem, assembly, shared, local, assembly.z - y, g, extra)
+
+
+def _free(assembly: Assembly) -> tuple[Index, Index]:
+    """Free shared parameters and free parameters of each manoeuvre's own, as indices of all 14."""
+    return assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
+
+
+def _in_time(assembly: Assembly, m: int) -> Index:
+    """Rows of one manoeuvre in order of time."""
+    rows = np.concatenate([np.arange(s.start, s.stop) for s in assembly.rows[m].values()])
+    return np.asarray(rows[np.argsort(assembly.t[rows], kind="stable")])
+
+
+def _speeds(place: Place) -> list[float]:
+    speeds = [record.airspeed for record in place.problem.records]
+    return [_STILL_M_S if speed is None else float(np.mean(speed.y)) for speed in speeds]
+
+
+def _rows(place: Place) -> list[Rows]:
+    found = []
+    for m, speed in enumerate(_speeds(place)):
+        order = _in_time(place.assembly, m)
+        channel, left = place.assembly.channel[order], place.residual[order].copy()
+        for c in np.unique(channel):
+            left[channel == c] -= left[channel == c].mean()
+        found.append(Rows(place.assembly.t[order], channel, left, speed))
+    return found
+
+
+def _system(place: Place, ratio: float) -> FloatArray:
+    """Z_α, Z_q, M_α, M_q at an air speed of ``ratio`` times the reference."""
+    z_a, z_q, m_a, m_q = (place.shared[SHARED.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
+    return np.array([ratio * z_a, z_q, ratio**2 * m_a, ratio * m_q])
+
+
+def _gains(place: Place, air: AirModel) -> list[tuple[Index, Gains]]:
+    """For each manoeuvre its rows in order of time, and the filter's gains along them."""
+    problem, found = place.problem, []
+    for m, speed in enumerate(_speeds(place)):
+        system = np.append(_system(place, speed / (problem.reference_airspeed_m_s or speed)), speed)
+        order = _in_time(place.assembly, m)
+        arms = (problem.vane_arm_m, problem.accelerometer_arm_m)
+        # The fit has initial states of its own, so the filter begins without any doubt about them.
+        gains = gains_of(
+            place.assembly.t[order], place.assembly.channel[order], system, air, 0.0, arms_m=arms
+        )
+        found.append((order, gains))
+    return found
+
+
+def _whitened(place: Place, air: AirModel, instruments: int) -> Whitened | None:
+    common, own = _free(place.assembly)
+    n = len(common) + instruments
+    prior = precision(place.problem, place.shared)[common]
+    information, gradient = np.zeros((n, n)), np.zeros(n)
+    information[: len(common), : len(common)] = np.diag(prior)
+    gradient[: len(common)] = -prior * place.shared[common]
+    cost, parts = float(np.sum(prior * place.shared[common] ** 2)), []
+    columns = np.column_stack([place.residual, place.sensitivities, place.extra])
+    shared_columns = [*(1 + common), *range(1 + N_PARAMETERS, 1 + N_PARAMETERS + instruments)]
+    for order, gains in _gains(place, air):
+        white = gains.innovations(columns[order])
+        left, mine = white[:, 0], white[:, shared_columns]
+        basis, triangle = np.linalg.qr(white[:, 1 + own])
+        kept, rest = mine - basis @ (basis.T @ mine), left - basis @ (basis.T @ left)
+        information += kept.T @ kept
+        gradient += kept.T @ rest
+        cost += 2.0 * float(np.sum(np.log(gains.root))) + float(rest @ rest)
+        parts.append((basis, triangle, mine, left))
+    if not (np.all(np.isfinite(information)) and np.isfinite(cost)):
+        return None
+    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
+    inverse = np.linalg.pinv(information / np.outer(scale, scale), rcond=1e-12, hermitian=True)
+    step = (inverse @ (gradient / scale)) / scale
+    own_steps = tuple(
+        np.asarray(np.linalg.lstsq(triangle, basis.T @ (left - mine @ step), rcond=1e-10)[0])
+        for basis, triangle, mine, left in parts
     )
+    return Whitened(cost, step, own_steps, np.sqrt(np.diag(inverse)) / scale)
 
 
-def _runs_away(theta: FloatArray, maneuver: Maneuver) -> bool:
-    """Whether no linear model can be followed over the record: it diverges, or is too fast for the grid."""
-    if not np.all(np.isfinite(theta)):
-        return True
-    z_a, z_q, m_a, m_q = (theta[PARAMETERS.index(name)] for name in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
-    eigenvalues = np.linalg.eigvals(np.array([[z_a, 1.0 + z_q], [m_a, m_q]]))
-    record_s = float(np.ptp(maneuver.channels["q"].t))
-    return bool(np.max(eigenvalues.real) * record_s > _GROWTH or np.max(np.abs(eigenvalues)) * _GRID_S > 1.0)
-
-
-def _linear(
-    maneuver: Maneuver, fits: Mapping[str, ChannelFit], theta: FloatArray, fitted_at: FloatArray
-) -> tuple[FloatArray, np.ndarray, FloatArray]:
-    """Times, channels, and columns: residual, eight sensitivities, then initial states and offsets.
-
-    Responses of the linear model of Eqs. (1)-(2) to α, q, δe and a constant, driven by the fitted motion.
-    """
-    t_all, channel_all, column_all = [], [], []
-    base = fits["q"].t[0]
-    grid = np.arange(base, fits["q"].t[-1], _GRID_S)
-    a = np.interp(grid, fits["alpha"].t, fits["alpha"].fitted)
-    q = np.interp(grid, fits["q"].t, fits["q"].fitted)
-    d = np.interp(grid, maneuver.channels["elevator"].t, maneuver.channels["elevator"].y)
-    drives = np.zeros((10, 2, len(grid)))
-    for k, signal in enumerate((np.ones_like(grid), a, q, d)):
-        drives[k, 0], drives[4 + k, 1] = signal, signal
-    drives[8, 0, 0], drives[9, 1, 0] = 1.0 / _GRID_S, 1.0 / _GRID_S
-    names = PARAMETERS
-    z_a, z_q = theta[names.index("Z_alpha")], theta[names.index("Z_q")]
-    m_a, m_q = theta[names.index("M_alpha")], theta[names.index("M_q")]
-    states = _respond(drives, _GRID_S, z_a, 1.0 + z_q, m_a, m_q)
-    for c, name in enumerate(("alpha", "q")):
-        fit = fits[name]
-        response = np.column_stack([np.interp(fit.t, grid, states[k, c]) for k in range(10)])
-        shift = response[:, :8] @ (theta - fitted_at)
-        t_all.append(fit.t)
-        channel_all.append(np.full(len(fit.t), c))
-        column_all.append(np.column_stack([fit.residual - shift, response]))
-    t = np.concatenate(t_all)
-    order = np.argsort(t, kind="stable")
-    return t[order], np.concatenate(channel_all)[order], np.vstack(column_all)[order]
-
-
-@njit(cache=True)
-def _respond(drives: FloatArray, h: float, z_a: float, z_q: float, m_a: float, m_q: float) -> FloatArray:
-    """States (k, 2, n) of the linear model driven in both equations, by the midpoint rule."""
-    k, _, n = drives.shape
-    out = np.zeros((k, 2, n))
-    for j in range(k):
-        x, y = 0.0, 0.0
-        for i in range(n - 1):
-            u, v = drives[j, 0, i], drives[j, 1, i]
-            dx, dy = z_a * x + z_q * y + u, m_a * x + m_q * y + v
-            mx, my = x + 0.5 * h * dx, y + 0.5 * h * dy
-            x += h * (z_a * mx + z_q * my + u)
-            y += h * (m_a * mx + m_q * my + v)
-            out[j, 0, i + 1], out[j, 1, i + 1] = x, y
-    return out
+def _solution(start: Solution, place: Place, air: AirModel) -> Solution | None:
+    """Errors of the place reached: Cramér-Rao's, and those that allow for colour left in the innovations."""
+    assembly, n = place.assembly, len(PARAMETERS)
+    white = np.empty((len(place.residual), 1 + N_PARAMETERS + place.extra.shape[1]))
+    columns = np.column_stack([place.residual, place.sensitivities, place.extra])
+    for order, gains in _gains(place, air):
+        white[order] = gains.innovations(columns[order])
+    g, extra = white[:, 1 : 1 + N_PARAMETERS], white[:, 1 + N_PARAMETERS :]
+    effect = influence(assembly, g, _UNIT, extra, precision(place.problem, place.shared))
+    if effect is None:
+        return None
+    colours = colours_of(assembly, white[:, 0], g)
+    noise = Noise(colours, widening(assembly, effect.rows, colours))
+    fitted = assembly.z - place.residual
+    optimum = start.optimum._replace(
+        shared=place.shared, local=place.local, fitted=fitted, sensitivities=place.sensitivities
+    )
+    return replace(
+        start,
+        problem=place.problem,
+        assembly=assembly,
+        optimum=optimum,
+        influence=effect,
+        theta=reported(place.shared, place.local),
+        covariance_cr=effect.rows[:, :n].T @ effect.rows[:, :n],
+        covariance=coloured(assembly, effect.rows, noise),
+        noise=noise,
+        contributions=contributions_of(assembly, effect.rows, white[:, 0]),
+        extra=place.extra,
+    )

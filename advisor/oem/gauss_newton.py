@@ -238,23 +238,32 @@ def descend(
     owner: Index,
     free: Index,
     floor: FloatArray,
+    prior: FloatArray,
     shared: FloatArray,
     local: FloatArray,
     flat: float = FLAT,
 ) -> Optimum:
-    """Minimise Σ n_c·log σ_c² from a start. Shapes as in ``Assembly``; ``floor`` (4,) of σ."""
+    """Minimise Σ n_c·log σ_c² from a start. Shapes as in ``Assembly``; ``floor`` (4,) of σ.
+
+    ``prior`` (7,) holds inverse variances that draw the shared parameters to zero; the cost counts them.
+    """
     shared, local = shared.copy(), local.copy()
     y, g = np.empty(len(z)), np.empty((len(z), N_PARAMETERS))
     y_trial, g_trial = np.empty(len(z)), np.empty((len(z), N_PARAMETERS))
     if not respond(grid, shared, local, y, g):
         return Optimum(OVERFLOW, shared, local, np.zeros(len(OUTPUTS)), np.inf, 0, y, g)
     noise, cost = weigh(z, y, channel, floor)
+    cost += np.sum(prior * shared**2)
     damping = 0.0
     status = EXHAUSTED
     iteration = 0
     while iteration < MOST_ITERATIONS:
         iteration += 1
         information, gradient = normal_equations(grid, z, y, g, channel, owner, free, noise)
+        for j in range(len(free)):
+            if free[j] < N_SHARED:
+                information[0, j, j] += prior[free[j]]
+                gradient[0, j] -= prior[free[j]] * shared[free[j]]
         accepted = False
         for _ in range(16):
             fine, shared_step, local_step, promise = arrow_step(information, gradient, free, damping)
@@ -262,6 +271,7 @@ def descend(
                 trial, trial_local = shared + shared_step, local + local_step
                 if respond(grid, trial, trial_local, y_trial, g_trial):
                     trial_noise, trial_cost = weigh(z, y_trial, channel, floor)
+                    trial_cost += np.sum(prior * trial**2)
                     if trial_cost <= cost:
                         accepted = True
                         break

@@ -29,6 +29,7 @@ LARGEST_SHIFT = 0.5
 """Change with the lag below over the new value or the natural size, whichever is larger."""
 LEAST_OWN_MOTION = 0.02
 """Root mean square of the elevator's motion that no feedback explains, as a share of all of it."""
+LEVEL_UNKNOWN = "not identifiable without a measured angle of attack, whose level it goes with"
 SUPPOSED_LAG_S = 0.05
 """A servo lag nobody would notice in the fit."""
 
@@ -62,6 +63,8 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
     reasons = dict.fromkeys(
         solution.influence.unresolved, "not identifiable from this input: the record does not depend on it"
     )
+    if not all("alpha" in record.outputs for record in solution.problem.records):
+        reasons |= dict.fromkeys(("Z_0", "M_0"), LEVEL_UNKNOWN)
     std = np.sqrt(np.diag(solution.covariance))
     sizes = natural_size(solution.theta)
     own = own_motion(solution)
@@ -104,8 +107,8 @@ def own_motion(solution: Solution) -> float:
     elevator[assembly.grid.row[OUTPUTS.index("q")][measured]] = assembly.grid.elevator[measured]
     motion, feedback = [], []
     for rows in assembly.rows:
-        alpha, q = rows["alpha"], rows["q"]
-        at_q = np.interp(assembly.t[q], assembly.t[alpha], fitted[alpha])
+        lift, q = rows["alpha" if "alpha" in rows else "a_z"], rows["q"]
+        at_q = np.interp(assembly.t[q], assembly.t[lift], fitted[lift])
         states = np.column_stack([at_q, fitted[q]])
         motion.append(elevator[q] - elevator[q].mean())
         feedback.append(states - states.mean(axis=0))

@@ -19,7 +19,7 @@ from advisor.oem import kalman
 from advisor.oem.kalman import DIFFUSE
 
 CHANNELS = ("alpha", "q", "a_z", "theta")
-ALPHA = CHANNELS.index("alpha")
+ALPHA, A_Z = CHANNELS.index("alpha"), CHANNELS.index("a_z")
 
 
 @dataclass(frozen=True)
@@ -95,13 +95,22 @@ def gains_of(
     return Gains(step, keep, gain, root, channel, observed)
 
 
-def cost_of(t: FloatArray, channel: np.ndarray, left: FloatArray, system: FloatArray, air: AirModel) -> float:
+def cost_of(
+    t: FloatArray,
+    channel: np.ndarray,
+    left: FloatArray,
+    system: FloatArray,
+    air: AirModel,
+    start_variance: float = DIFFUSE,
+) -> float:
     """-2 log likelihood of a residual, shape (n,), without its constant and without rows still diffuse.
 
     Arguments as in ``gains_of``. A search for the noise asks for it a few hundred times, so nothing is kept.
     """
     observed = kalman.observed_by(system, air.seen_by_alpha, 0.0, 0.0)
-    return float(kalman.cost_along(t, channel, left, system, air.white**2, _memory(air), observed, DIFFUSE))
+    return float(
+        kalman.cost_along(t, channel, left, system, air.white**2, _memory(air), observed, start_variance)
+    )
 
 
 def _memory(air: AirModel) -> FloatArray:

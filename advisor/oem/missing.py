@@ -1,4 +1,4 @@
-"""What a channel that was not measured would have brought, as a factor on each parameter's error.
+"""What a_z would have brought where it was not measured, as a factor on each parameter's error.
 
 The channel is imagined at the stamps of the pitch rate and as clear as it (the same noise over the same
 motion), with the bias that comes with it; the sensitivities of the present fit then give the Cramér-Rao
@@ -17,23 +17,19 @@ from advisor.oem.problem import Assembly, Signal, assemble
 from advisor.oem.solution import Solution
 
 WORTH_NAMING = 1.05
-"""Factor on an error from which on it is named."""
+"""Least factor on an error that is named."""
 
 
-def price(solution: Solution, output: str) -> FloatArray | None:
-    """(8,) error of each parameter without ``output`` over that with it, order of ``PARAMETERS``.
-
-    Parameters
-    ----------
-    output : ``a_z`` or ``theta``, not measured in any record of the solution.
+def price(solution: Solution) -> FloatArray | None:
+    """(8,) error of each parameter without a_z over that with it, order of ``PARAMETERS``.
 
     Returns
     -------
     array or None
-        None when it cannot be told: a_z takes an air speed, and both take an input that tells something.
+        None when it cannot be told: a_z takes an air speed, and an input that tells something.
     """
-    records = solution.problem.records
-    if output == "a_z" and any(record.airspeed is None for record in records):
+    records, output = solution.problem.records, "a_z"
+    if any(record.airspeed is None for record in records):
         return None
     imagined = tuple(
         replace(record, outputs={**record.outputs, output: Signal(t, np.zeros(len(t)))})

@@ -1,11 +1,13 @@
 """What the user must know about the numbers, one sentence each."""
 
+from collections.abc import Sequence
+
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.oem.identifiability import HIGH_CORRELATION, SUPPOSED_LAG_S, correlated
+from advisor.oem.instruments import Told
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
-from advisor.oem.servo_lag import Lag
 from advisor.oem.solution import Solution
 
 N = len(PARAMETERS)
@@ -17,7 +19,7 @@ def notes(
     solution: Solution,
     prepared: Prepared,
     aircraft: Aircraft,
-    lag: Lag | None,
+    told: Sequence[Told],
     lagged: FloatArray | None,
     *,
     best: Solution,
@@ -27,13 +29,16 @@ def notes(
 
     Parameters
     ----------
-    lag : result of the search for a servo lag, when one was made.
+    told : instrument parameters that the data tell.
     lagged : (8,) the estimate under ``SUPPOSED_LAG_S`` of servo lag, when the servo is unknown.
-    best : the solution the values are taken from, ``solution`` or the efficient one.
+    best : the solution the values are taken from, ``solution``, the efficient one or filter error's.
     priced : say in numbers what missing channels cost.
     """
     sentences = [
-        _servo(solution, lag, lagged),
+        _outputs(solution, prepared),
+        *(_instrument(x, solution) for x in told),
+        _servo(solution, lagged),
+        _found_lag(aircraft),
         _airspeed(prepared),
         _scale(solution),
         _held(prepared),
@@ -42,17 +47,46 @@ def notes(
         _vane(aircraft),
         _weighed(solution, best),
         _correlated(solution),
-        *_missing(solution, prepared, priced),
+        _missing(solution, prepared, priced),
     ]
     return tuple(sentence for sentence in sentences if sentence)
 
 
-def _servo(solution: Solution, lag: Lag | None, lagged: FloatArray | None) -> str:
-    if lag is not None and lag.lag_s > 0.0:
-        return (
-            f"Servo dynamics unknown (elevator.lag_s not set): a lag of {lag.lag_s:.3f} ± {lag.std_s:.3f} s"
-            " was estimated together with the derivatives and applied; a pure delay would look much the same."
-        )
+def _outputs(solution: Solution, prepared: Prepared) -> str:
+    if not prepared.alpha_left_out:
+        return ""
+    why = prepared.alpha_left_out[0].upper() + prepared.alpha_left_out[1:]
+    return (
+        f"{why}. Estimated from {' and '.join(solution.assembly.rows[0])}, with alpha as an unmeasured state."
+    )
+
+
+def _instrument(told: Told, solution: Solution) -> str:
+    """What was found of one instrument, and the line that puts the value into the aircraft file."""
+    value, half = told.value, 1.96 * told.std
+    match told.instrument.name:
+        case "servo_lag_s":
+            return (
+                f"The servo's lag is estimated and used: {value:.3f} ± {half:.3f} s; a pure delay would look"
+                f" much the same. For the aircraft file: elevator: {{lag_s: {value:.3f}}}"
+            )
+        case "vane_arm_m":
+            speed = solution.problem.reference_airspeed_m_s or float(solution.assembly.grid.airspeed.mean())
+            return (
+                f"alpha reads as a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity does"
+                f" ({value / speed:.3f} s of pitch rate); this is allowed for."
+                f" For the aircraft file: alpha: {{vane_arm_m: {value:.2f}}}"
+            )
+        case "alpha_delay_s":
+            return f"alpha is {1e3 * value:.0f} ± {1e3 * half:.0f} ms late against the motion; allowed for."
+        case "accelerometer_arm_m":
+            return (
+                f"The accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity;"
+                f" allowed for. For the aircraft file: accelerometer: {{arm_m: {value:.2f}}}"
+            )
+
+
+def _servo(solution: Solution, lagged: FloatArray | None) -> str:
     if lagged is None:
         return ""
     changes = []
@@ -64,6 +98,13 @@ def _servo(solution: Solution, lag: Lag | None, lagged: FloatArray | None) -> st
         f"Servo dynamics unknown (elevator.lag_s is not set): a lag of {SUPPOSED_LAG_S:g} s, if there is one,"
         f" changes {' and '.join(changes)}."
     )
+
+
+def _found_lag(aircraft: Aircraft) -> str:
+    elevator = aircraft.elevator
+    if elevator.lag_s is not None or elevator.lag_found_s is None:
+        return ""
+    return f"The servo's lag of {elevator.lag_found_s:.3f} s, as all manoeuvres together tell it, is used."
 
 
 def _airspeed(prepared: Prepared) -> str:
@@ -120,7 +161,9 @@ def _vane(aircraft: Aircraft) -> str:
 
 
 def _weighed(solution: Solution, best: Solution) -> str:
-    if best is solution:
+    if best.theta is solution.theta or all(
+        colour.memory == 0.0 for colour in solution.noise.colours.values()
+    ):
         return ""
     memories = ", ".join(
         f"{output} {colour.memory:.2f}" for output, colour in solution.noise.colours.items() if colour.memory
@@ -141,17 +184,11 @@ def _correlated(solution: Solution) -> str:
     )
 
 
-def _missing(solution: Solution, prepared: Prepared, priced: bool) -> list[str]:
-    sentences = []
-    if "a_z" in prepared.missing:
-        sentences.append(
-            "No vertical acceleration was used (it takes a_z and air speed): Z_alpha, Z_q and Z_delta_e rest"
-            " on angle of attack alone, and a late or scaled angle of attack goes into them unseen."
-            + in_words(price(solution, "a_z") if priced else None)
-        )
-    if "theta" in prepared.missing:
-        sentences.append(
-            "No pitch attitude was used: a bias of the pitch rate cannot be told from Z_0 and M_0."
-            + in_words(price(solution, "theta") if priced else None)
-        )
-    return sentences
+def _missing(solution: Solution, prepared: Prepared, priced: bool) -> str:
+    if "a_z" not in prepared.missing:
+        return ""
+    return (
+        "No vertical acceleration was used (it takes a_z and air speed): Z_alpha, Z_q and Z_delta_e rest"
+        " on angle of attack alone, and a late or scaled angle of attack goes into them unseen."
+        + in_words(price(solution) if priced else None)
+    )

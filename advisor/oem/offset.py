@@ -42,7 +42,10 @@ class Shifted(NamedTuple):
 
 
 def with_offset(plain: Solution) -> Solution:
-    """The solution with the reading and offset of the input that the data clearly prefer, else ``plain``."""
+    """The solution with the reading and offset of the input that the data clearly prefer, else ``plain``.
+
+    Columns of instruments in ``plain.extra`` are kept; that of the offset is not.
+    """
     records = plain.problem.records
     if all(large_steps(record.elevator).interval for record in records):
         return plain
@@ -58,7 +61,9 @@ def with_offset(plain: Solution) -> Solution:
     best = min(usable, key=lambda shifted: shifted.misfit)
     if weighing.misfit(plain.residual, plain.sensitivities) - best.misfit < CLEARLY:
         return plain
-    final = evaluate(best.problem, best.assembly, best.optimum, best.slope, kept=0)
+    own = np.empty((len(plain.residual), 0)) if plain.extra is None else plain.extra
+    columns = np.column_stack([own, best.slope])
+    final = evaluate(best.problem, best.assembly, best.optimum, columns, kept=own.shape[1])
     return final if isinstance(final, Solution) else plain
 
 

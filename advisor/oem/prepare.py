@@ -5,19 +5,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft import Aircraft, Elevator
 from advisor.flight.maneuver import Maneuver
-from advisor.flight.motion import integrated
+from advisor.flight.motion import bank_at, gravity_in_plane, integrated
 from advisor.flight.record import Channel
 from advisor.flight.renewal import renewed
 from advisor.gravity import GRAVITY_M_S2
-from advisor.oem.airspeed import airspeed
+from advisor.oem.airspeed import Airspeed, airspeed
+from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking, why_left_out
+from advisor.oem.alpha_use import has as _has
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lost_input import restored
 from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.surface import Servo
 
-FEWEST_SAMPLES = 20
+OUTPUTS = ("alpha", "q", "a_z")
+"""Outputs that count. The attitude is the pitch rate's integral: its residual remembers every error of
+model and air, so that as an output the attitude outweighs the others and moves M_α by 5 to 10 % on real
+flights."""
 SPEED_CHANGE = 0.03
 """Beyond this relative change of air speed the derivatives are scaled with it ..."""
 SMOOTH_SPEED_CHANGE = 0.01
@@ -30,9 +35,11 @@ class Prepared:
 
     problem: Problem
     renewed_hz: float
-    """Rate at which angle of attack really changes, the slowest of the manoeuvres."""
+    """Rate at which angle of attack really changes, the slowest of the manoeuvres; NaN where none counts."""
     alpha_held: bool
     """Angle of attack arrives under fresh stamps without being renewed."""
+    alpha_left_out: str
+    """Why no measured angle of attack counts, in words; empty where one does."""
     missing: tuple[str, ...]
     """Outputs that no manoeuvre has: a_z, theta."""
     airspeed_lag_s: float
@@ -42,52 +49,101 @@ class Prepared:
 
 
 def prepare(
-    maneuvers: Sequence[Maneuver], aircraft: Aircraft, outputs: Sequence[str] = ("alpha", "q", "a_z", "theta")
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, outputs: Sequence[str] = OUTPUTS
 ) -> Prepared | NoEstimate:
     """Collect what the estimator needs, or say why it cannot begin.
 
     Parameters
     ----------
-    outputs : the outputs to use when measured; alpha and q always are.
+    outputs : the outputs to use when measured; q always is, and alpha unless the motion contradicts it.
     """
     for maneuver in maneuvers:
         missing = _missing(maneuver)
         if missing is not None:
             return missing
-    usable = [name for name in outputs if all(_has(m.channels, name) for m in maneuvers)]
+    alpha_left_out = why_left_out(maneuvers, aircraft)
+    if alpha_left_out and not all(can_do_without(m, aircraft) for m in maneuvers):
+        if not all(_has(m.channels, "alpha") for m in maneuvers):
+            return _no_alpha(maneuvers, aircraft, alpha_left_out)
+        alpha_left_out = ""
+    if alpha_left_out:
+        return _without_alpha(maneuvers, aircraft, alpha_left_out)
+    usable = [name for name in outputs if name != "alpha" and all(_has(m.channels, name) for m in maneuvers)]
     speeds = [airspeed(m.channels) for m in maneuvers]
     if any(speed is None for speed in speeds) and aircraft.airspeed_m_s is None:
         usable = [name for name in usable if name != "a_z"]
+    alphas = [_renewed(_signal(m.channels["alpha"])) for m in maneuvers]
+    return _prepared(
+        maneuvers,
+        aircraft,
+        speeds,
+        [alpha for alpha, _ in alphas],
+        ["alpha", *usable],
+        renewed_hz=min((len(alpha.t) - 1) / float(alpha.t[-1] - alpha.t[0]) for alpha, _ in alphas),
+        alpha_held=any(held for _, held in alphas),
+        missing=tuple(name for name in outputs if name not in ("alpha", *usable)),
+    )
+
+
+def _without_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> Prepared:
+    """The angle of attack as a state that nobody measures: q and a_z are the outputs."""
+    inferred = [infer(m, aircraft) for m in maneuvers]
+    known = [{**m.channels, "alpha": alpha} for m, alpha in zip(maneuvers, inferred, strict=True)]
+    return _prepared(
+        maneuvers,
+        aircraft,
+        [airspeed(channels) for channels in known],
+        [_signal(alpha) for alpha in inferred],
+        ["q", "a_z"],
+        alpha_left_out=why,
+    )
+
+
+def _prepared(
+    maneuvers: Sequence[Maneuver],
+    aircraft: Aircraft,
+    speeds: Sequence[Airspeed | None],
+    alphas: Sequence[Signal],
+    usable: Sequence[str],
+    *,
+    renewed_hz: float = float("nan"),
+    alpha_held: bool = False,
+    alpha_left_out: str = "",
+    missing: tuple[str, ...] = (),
+) -> Prepared:
     measured = [speed for speed in speeds if speed is not None]
     together = len(measured) == len(maneuvers)
     signals = [
         speed.signal if speed is not None and together else _constant(maneuver, aircraft.airspeed_m_s)
         for maneuver, speed in zip(maneuvers, speeds, strict=True)
     ]
-    alphas = [_renewed(_signal(m.channels["alpha"])) for m in maneuvers]
-    records = tuple(
-        _record(maneuver, signal, alpha, usable)
-        for maneuver, signal, (alpha, _) in zip(maneuvers, signals, alphas, strict=True)
-    )
     known = [signal for signal in signals if signal is not None]
-    return Prepared(
-        problem=restored(
-            Problem(
-                records=records,
-                reference_airspeed_m_s=_reference(known, aircraft, all(v.smooth for v in measured))
-                if together
-                else None,
-                servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
-                vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
-                accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
-            )
+    problem = Problem(
+        records=tuple(
+            _record(maneuver, signal, alpha, usable)
+            for maneuver, signal, alpha in zip(maneuvers, signals, alphas, strict=True)
         ),
-        renewed_hz=min((len(alpha.t) - 1) / float(alpha.t[-1] - alpha.t[0]) for alpha, _ in alphas),
-        alpha_held=any(held for _, held in alphas),
-        missing=tuple(name for name in outputs if name not in usable),
+        reference_airspeed_m_s=_reference(known, aircraft, all(v.smooth for v in measured))
+        if together
+        else None,
+        servo=_servo(aircraft.elevator),
+        vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
+        accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+    )
+    return Prepared(
+        problem=restored(problem),
+        renewed_hz=renewed_hz,
+        alpha_held=alpha_held,
+        alpha_left_out=alpha_left_out,
+        missing=missing,
         airspeed_lag_s=float(np.mean([speed.lag_s for speed in measured])) if measured else 0.0,
         airspeed_m_s=float(np.mean([signal.y.mean() for signal in known])) if known else None,
     )
+
+
+def _servo(elevator: Elevator) -> Servo:
+    lag_s = elevator.lag_found_s if elevator.lag_s is None else elevator.lag_s
+    return Servo(lag_s or 0.0, elevator.delay_s or 0.0)
 
 
 def _renewed(signal: Signal) -> tuple[Signal, bool]:
@@ -99,12 +155,8 @@ def _renewed(signal: Signal) -> tuple[Signal, bool]:
     return Signal(t, y), len(t) < len(signal.t)
 
 
-def _has(channels: Mapping[str, Channel], name: str) -> bool:
-    return name in channels and int(np.count_nonzero(np.isfinite(channels[name].y))) >= FEWEST_SAMPLES
-
-
 def _missing(maneuver: Maneuver) -> NoEstimate | None:
-    for name, spoken in (("elevator", "the elevator"), ("alpha", "angle of attack"), ("q", "pitch rate")):
+    for name, spoken in (("elevator", "the elevator"), ("q", "pitch rate")):
         samples = len(maneuver.channels[name]) if name in maneuver.channels else 0
         if not _has(maneuver.channels, name):
             text = (
@@ -118,23 +170,27 @@ def _missing(maneuver: Maneuver) -> NoEstimate | None:
 
 def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Sequence[str]) -> Record:
     channels = maneuver.channels
-    outputs = {"alpha": alpha, "q": _signal(channels["q"])}
-    path = gravity = None
+    outputs = {"q": _signal(channels["q"])}
+    if "alpha" in usable:
+        outputs = {"alpha": alpha, **outputs}
+    normal = gravity = None
     if "a_z" in usable:
         outputs["a_z"] = _signal(channels["a_z"])
     if "theta" in usable:
         outputs["theta"] = _level(channels)
     if _has(channels, "theta"):
         theta = _signal(channels["theta"])
-        cosine = np.cos(_signal(channels["bank"]).at(theta.t)) if _has(channels, "bank") else 1.0
-        path = Signal(theta.t, theta.y - alpha.at(theta.t))
-        gravity = Signal(theta.t, GRAVITY_M_S2 * np.cos(theta.y) * cosine)
+        bank = bank_at(theta.t, channels)
+        up, size = gravity_in_plane(theta.y, bank)
+        normal = Signal(theta.t, size / GRAVITY_M_S2 * np.cos(up - alpha.at(theta.t)))
+        gravity = Signal(theta.t, GRAVITY_M_S2 * np.cos(theta.y) * np.cos(bank))
     return Record(
         elevator=_signal(channels["elevator"]),
         outputs=outputs,
         airspeed=speed,
-        path=path,
+        normal_gravity=normal,
         gravity_z=gravity,
+        inferred_alpha=None if "alpha" in usable else alpha,
     )
 
 
@@ -148,6 +204,13 @@ def _level(channels: Mapping[str, Channel]) -> Signal:
     if _has(channels, "r"):
         rate = rate - np.sin(bank) * _signal(channels["r"]).at(theta.t)
     return Signal(theta.t, theta.y - integrated(theta.t, rate))
+
+
+def _no_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> NoEstimate:
+    """Neither an angle of attack nor what stands in for one."""
+    absent = sorted({name for m in maneuvers for name in lacking(m, aircraft)})
+    text = f"{why}, and the motion cannot stand in for it: no {', no '.join(absent)} in the record."
+    return NoEstimate("no_alpha", text[0].upper() + text[1:])
 
 
 def _constant(maneuver: Maneuver, speed: float | None) -> Signal | None:

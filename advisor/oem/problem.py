@@ -35,15 +35,31 @@ class Record:
     elevator: Signal
     """The command in rad, linear between its stamps; it passes through the servo of the problem."""
     outputs: Mapping[str, Signal]
-    """Measured outputs, keys out of ``OUTPUTS``; at least alpha and q. NaN samples are no samples."""
+    """Measured outputs, keys out of ``OUTPUTS``: q, and alpha or a_z. NaN samples are no samples."""
     airspeed: Signal | None = None
     """V in m/s; None: taken as constant, as Eqs. (1)-(2) do."""
-    path: Signal | None = None
-    """Flight path angle γ in rad, for gravity's part in α̇; None: constant."""
+    normal_gravity: Signal | None = None
+    """Gravity across the flight path in the plane of symmetry, over g; None: 1, level flight."""
     gravity_z: Signal | None = None
     """g·cos θ·cos φ in m/s², needed by a_z; None: 9.80665."""
     held: bool = False
     """The input is held between its stamps instead of linear."""
+    inferred_alpha: Signal | None = None
+    """α in rad from the motion, where none is measured: the search starts from it, no residual uses it."""
+
+    @property
+    def alpha(self) -> Signal:
+        """Angle of attack, measured or inferred from the motion.
+
+        Raises
+        ------
+        ValueError
+            If the record has neither.
+        """
+        signal = self.outputs.get("alpha", self.inferred_alpha)
+        if signal is None:
+            raise ValueError("a record needs an angle of attack, measured or inferred from the motion")
+        return signal
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +72,8 @@ class Problem:
     servo: Servo = field(default_factory=Servo)
     vane_arm_m: float = 0.0
     accelerometer_arm_m: float = 0.0
+    alpha_delay_s: float = 0.0
+    """How late the angle of attack is stamped."""
     airspeed_may_be_off: bool = True
     """Estimate a scale error of the air speed in a_z (equivalent, ratiometric, or derived speeds are
     off by some per cent, which would otherwise pull Z_alpha and M_alpha along)."""
@@ -91,7 +109,7 @@ def assemble(problem: Problem) -> Assembly:
     Raises
     ------
     ValueError
-        If a record lacks alpha, q or the input, or has fewer than two stamps of one.
+        If a record lacks q, the input, or both alpha and a_z, or has fewer than two stamps of one.
     """
     pieces = [_Piece.of(record, problem) for record in problem.records]
     measured = {name for piece in pieces for name in piece.outputs}
@@ -138,7 +156,7 @@ def assemble(problem: Problem) -> Assembly:
         rows=tuple(rows),
         channel=np.repeat([OUTPUTS.index(name) for _, name, _ in signals], sizes),
         owner=np.repeat([m for m, _, _ in signals], sizes),
-        free=_free(measured, problem.airspeed_may_be_off and "a_z" in measured),
+        free=_free(measured, problem.airspeed_may_be_off and {"alpha", "a_z"} <= measured),
     )
 
 
@@ -154,8 +172,12 @@ def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
 
 
 def _free(measured: set[str], scaled: bool) -> Index:
-    """Which of the 14 parameters the measured outputs give a meaning to."""
-    local = ["Z_0", "M_0", "alpha_initial", "q_initial"]
+    """Which of the 14 parameters the measured outputs give a meaning to.
+
+    Without alpha no output tells the level of the angle of attack: Z_0 and M_0 take up any. Its initial
+    value then stays where the search starts.
+    """
+    local = ["Z_0", "M_0", *(["alpha_initial"] if "alpha" in measured else []), "q_initial"]
     if "theta" in measured:
         local += ["theta_initial", "q_bias"]
     if "a_z" in measured:
@@ -185,9 +207,11 @@ class _Piece:
     @classmethod
     def of(cls, record: Record, problem: Problem) -> "_Piece":
         outputs = {name: _finite(record.outputs[name]) for name in OUTPUTS if name in record.outputs}
-        for name in ("alpha", "q"):
+        for name in ("q", "alpha" if "alpha" in outputs else "a_z"):
             if name not in outputs or len(outputs[name].t) < 2:
                 raise ValueError(f"a record needs at least two samples of {name}")
+        if "alpha" in outputs:
+            outputs["alpha"] = Signal(outputs["alpha"].t - problem.alpha_delay_s, outputs["alpha"].y)
         if len(record.elevator.t) < 2:
             raise ValueError("a record needs at least two samples of the elevator")
         stamps = [signal.t for signal in outputs.values()]
@@ -211,8 +235,8 @@ class _Piece:
                 GRAVITY_M_S2 / record.airspeed.at(middle)
                 - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
             )
-        if record.airspeed is not None and record.path is not None:
-            known += GRAVITY_M_S2 / record.airspeed.at(middle) * (np.cos(record.path.at(middle)) - 1.0)
+        if record.airspeed is not None and record.normal_gravity is not None:
+            known += GRAVITY_M_S2 / record.airspeed.at(middle) * (record.normal_gravity.at(middle) - 1.0)
         gravity = np.full(len(t), GRAVITY_M_S2) if record.gravity_z is None else record.gravity_z.at(t)
         return cls(
             t=t,

@@ -20,6 +20,7 @@ from advisor.oem.covariance import (
 )
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend
+from advisor.oem.prior import precision
 from advisor.oem.problem import Assembly, Problem, assemble
 from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
@@ -46,6 +47,9 @@ class Solution:
     """(8 + k, 8 + k) corrected for coloured residuals."""
     noise: Coloured
     """Colour of each output's noise."""
+    contributions: FloatArray
+    """(m, 8 + k) how far each manoeuvre's residuals pull each parameter; over the manoeuvres they sum to
+    zero."""
     extra: FloatArray | None = None
     """(N, e) derivatives by parameters estimated besides, such as the times of edges; e >= k."""
 
@@ -66,8 +70,10 @@ class Solution:
 
     @property
     def cost(self) -> float:
-        """J = σ_α²·σ_q², Eq. (7)."""
-        return float(np.prod(self.optimum.noise[:2] ** 2))
+        """J = σ_α²·σ_q², Eq. (7); σ_q²·σ_az² where no angle of attack counts."""
+        noise = dict(zip(OUTPUTS, self.optimum.noise, strict=True))
+        other = "alpha" if noise["alpha"] > 0.0 else "a_z"
+        return float((noise["q"] * noise[other]) ** 2)
 
 
 def solve(
@@ -118,7 +124,7 @@ def search(
     def from_(shared: FloatArray, local: FloatArray) -> Optimum:
         if method == "nelder-mead":
             return descend_by_simplex(*data, shared, local)
-        return descend(*data, shared, local, flat)
+        return descend(*data, precision(problem, shared), shared, local, flat)
 
     optimum = from_(*(start(problem) if begin is None else begin))
     if begin is None and (optimum.status != CONVERGED or optimum.iterations > HEALTHY_ITERATIONS):
@@ -144,7 +150,7 @@ def evaluate(
     kept : how many of the extra parameters shall have errors of their own, the first ones; default all.
     """
     g = optimum.sensitivities
-    effect = influence(assembly, g, optimum.noise, extra)
+    effect = influence(assembly, g, optimum.noise, extra, precision(problem, optimum.shared))
     if effect is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
     if kept is not None:
@@ -161,8 +167,15 @@ def evaluate(
         covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise),
         covariance=coloured(assembly, effect.rows, noise),
         noise=noise,
+        contributions=contributions_of(assembly, effect.rows, assembly.z - optimum.fitted),
         extra=extra,
     )
+
+
+def contributions_of(assembly: Assembly, rows: FloatArray, residual: FloatArray) -> FloatArray:
+    """(m, 8 + k) share of each manoeuvre in the influence ``rows`` (N, 8 + k) of a ``residual`` (N,)."""
+    pull = rows * residual[:, None]
+    return np.array([pull[assembly.owner == m].sum(axis=0) for m in range(assembly.maneuvers)])
 
 
 def reported(shared: FloatArray, local: FloatArray) -> FloatArray:

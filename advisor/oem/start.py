@@ -30,13 +30,15 @@ def start(problem: Problem, *, lift_from_alpha_only: bool = False) -> tuple[Floa
 
     Always returns finite numbers; a record that teaches nothing yields a least-norm solution.
     """
+    if any("alpha" not in record.outputs for record in problem.records):
+        return _from_force(problem)
     local = np.zeros((len(problem.records), N_LOCAL))
     shared = np.zeros(N_SHARED)
     for output, first in (("alpha", 0), ("q", 1)):
         moment = output == "q"
         stacks, sides, own = [], [], []
         for record in problem.records:
-            side = _usable(record.outputs[output])
+            side = _usable(record.outputs["q"] if moment else record.alpha)
             common, constants = _regressors(record, problem, side.t, moment)
             known = np.zeros(len(side.t))
             if lift_from_alpha_only and not moment:
@@ -62,17 +64,66 @@ def start(problem: Problem, *, lift_from_alpha_only: bool = False) -> tuple[Floa
     return shared, local
 
 
+def _from_force(problem: Problem) -> tuple[FloatArray, FloatArray]:
+    """The start where no angle of attack is measured, with Z_q = Z_δe = 0.
+
+    Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) n stands for α, with the factor
+    M_α/Z_α, so that moving air, which the inferred α does not show, does no harm. The slope of n over the
+    inferred α is Z_α; a parabola in time takes up its drift."""
+    shared, local = np.zeros(N_SHARED), np.zeros((len(problem.records), N_LOCAL))
+    moments, rates, slopes, forces, own = [], [], [], [], []
+    for record in problem.records:
+        q, force = _usable(record.outputs["q"]), _usable(record.outputs["a_z"])
+        surface, ratio = _surface(record, problem.servo), _ratio(record, problem, q.t)
+        begin = float(q.t[0])
+        n = Signal(force.t, force.y / _speed(record, force.t))
+        columns = [
+            _integral(Signal(x.t, x.y * ratio.at(x.t) ** power), begin, q.t)
+            for x, power in ((n, 1), (q, 1), (surface, 2))
+        ]
+        common = np.column_stack(columns)
+        constants = np.column_stack([np.ones(len(q.t)), _integral(Signal(ratio.t, ratio.y**2), begin, q.t)])
+        gain = np.linalg.pinv(constants)
+        moments.append(common - constants @ (gain @ common))
+        rates.append(q.y - constants @ (gain @ q.y))
+        alpha, lift = record.alpha.at(n.t), n.y / ratio.at(n.t)
+        drift = np.vander((n.t - n.t.mean()) / max(float(np.ptp(n.t)), 1e-9), 3)
+        free = np.linalg.pinv(drift)
+        slopes.append(alpha - drift @ (free @ alpha))
+        forces.append(lift - drift @ (free @ lift))
+        own.append((gain, common, q.y, float(np.mean(lift)), float(np.mean(alpha)), float(alpha[0])))
+    stiffness, damping, control = np.linalg.lstsq(
+        np.concatenate(moments), np.concatenate(rates), rcond=1e-12
+    )[0]
+    moved, lifted = np.concatenate(slopes), np.concatenate(forces)
+    z_alpha = min(float(moved @ lifted) / max(float(moved @ moved), 1e-300), 0.0)
+    shared[[0, 3, 4, 5]] = z_alpha, stiffness * z_alpha, damping, control
+    for m, (gain, common, q_m, lift_mean, alpha_mean, alpha_first) in enumerate(own):
+        initial, constant = gain @ (q_m - common @ np.array([stiffness, damping, control]))
+        z_0 = lift_mean - z_alpha * alpha_mean
+        local[m, :4] = z_0, constant + stiffness * z_0, alpha_first, initial
+    return shared, local
+
+
+def _ratio(record: Record, problem: Problem, t: FloatArray) -> Signal:
+    """Air speed over the reference; 1 where the derivatives are not scaled with it."""
+    if record.airspeed is None or problem.reference_airspeed_m_s is None:
+        return Signal(t, np.ones(len(t)))
+    return Signal(record.airspeed.t, record.airspeed.y / problem.reference_airspeed_m_s)
+
+
+def _speed(record: Record, t: FloatArray) -> FloatArray:
+    return np.ones(len(t)) if record.airspeed is None else record.airspeed.at(t)
+
+
 def _regressors(
     record: Record, problem: Problem, t: FloatArray, moment: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Integrals of α, q, δe from the record's first stamp to ``t``: (n, 3); and of 1 and s: (n, 2)."""
-    alpha, q = _usable(record.outputs["alpha"]), _usable(record.outputs["q"])
+    alpha, q = _usable(record.alpha), _usable(record.outputs["q"])
     surface = _surface(record, problem.servo)
     begin = min(signal.t[0] for signal in record.outputs.values())
-    if record.airspeed is None or problem.reference_airspeed_m_s is None:
-        ratio = Signal(t, np.ones(len(t)))
-    else:
-        ratio = Signal(record.airspeed.t, record.airspeed.y / problem.reference_airspeed_m_s)
+    ratio = _ratio(record, problem, t)
     powers = (2, 1, 2, 2) if moment else (1, 0, 1, 1)
     columns = [
         _integral(Signal(x.t, x.y * ratio.at(x.t) ** power), begin, t)

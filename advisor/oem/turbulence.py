@@ -4,15 +4,15 @@ A gust enters the vane, the lift and the moment together, an instrument's noise 
 likelihoods of the two tell them apart (the filter: ``innovations``).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.oem import innovations
-from advisor.oem.estimate import ChannelFit, Estimate
-from advisor.oem.innovations import ALPHA, CHANNELS, AirModel
+from advisor.oem.innovations import A_Z, ALPHA, AirModel
+from advisor.oem.kalman import DIFFUSE
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,14 @@ class Rows:
     speed: float
 
 
-def cost_of(rows: Sequence[Rows], system: FloatArray, air: AirModel) -> float:
+def cost_of(
+    rows: Sequence[Rows], system: FloatArray, air: AirModel, start_variance: float = DIFFUSE
+) -> float:
     """-2 log likelihood of residuals under an air model, summed over manoeuvres."""
-    return sum(innovations.cost_of(r.t, r.channel, r.left, np.append(system, r.speed), air) for r in rows)
+    return sum(
+        innovations.cost_of(r.t, r.channel, r.left, np.append(system, r.speed), air, start_variance)
+        for r in rows
+    )
 
 
 _STEPS = (0.7, 0.35, 0.15)
@@ -57,7 +62,11 @@ class Turbulence:
 
 
 def find_turbulence(
-    rows: Sequence[Rows], system: FloatArray, white: FloatArray, seen_by_alpha: bool
+    rows: Sequence[Rows],
+    system: FloatArray,
+    white: FloatArray,
+    seen_by_alpha: bool,
+    start_variance: float = DIFFUSE,
 ) -> Turbulence:
     """Fit noise with and without moving air to residuals and compare.
 
@@ -69,24 +78,38 @@ def find_turbulence(
         Z_α, Z_q, M_α, M_q.
     white
         Shape (4,): first guess of the white noise, SI.
+    start_variance
+        Of α, q and θ at the start of a record; 0 for residuals of a fit with initial states of its own.
     """
+
+    def descend(start: AirModel, moving: bool, steps: Sequence[float] = _STEPS) -> tuple[AirModel, float]:
+        return _descend(rows, system, start, moving, steps, start_variance)
+
     rms = np.array([_rms(rows, c) for c in range(4)])
     white = np.clip(white, 1e-3 * rms + 1e-9, rms + 1e-9)
     colour = np.sqrt(np.maximum(rms**2 - white**2, (0.1 * rms) ** 2))
-    still = _descend(rows, system, AirModel(white, colour, 0.3, 0.0, 1.0, float(seen_by_alpha)), False)
+    still = descend(AirModel(white, colour, 0.3, 0.0, 1.0, float(seen_by_alpha)), False)
     plain = AirModel(rms, np.full(4, 1e-12), 0.3, 0.0, 1.0, float(seen_by_alpha))
-    if 0.5 * (cost_of(rows, system, plain) - still[1]) < _MEMORY_GAIN:
+    if 0.5 * (cost_of(rows, system, plain, start_variance) - still[1]) < _MEMORY_GAIN:
         # Air that moves has a memory; where no channel shows any, there is nothing to tell apart.
         return Turbulence(0.0, 0.0, still[0])
     quieter = replace(still[0], coloured=0.3 * still[0].coloured, gust_memory_s=1.0)
+    angle = _residual_angle(rows, system, rms)
     begun = [
-        _descend(rows, system, replace(quieter, gust=max(share * rms[ALPHA], 1e-4)), True, _STEPS[:1])
-        for share in (0.7, 0.2)
+        descend(replace(quieter, gust=max(share * angle, 1e-4)), True, _STEPS[:1]) for share in (0.7, 0.2)
     ]
     nearest = min(begun, key=lambda found: found[1])[0]
-    moving = _descend(rows, system, nearest, True, _STEPS[1:])
+    moving = descend(nearest, True, _STEPS[1:])
     gain = 0.5 * (still[1] - moving[1])
     return Turbulence(gain, moving[0].gust if gain > 0.0 else 0.0, moving[0] if gain > 0.0 else still[0])
+
+
+def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -> float:
+    """Root mean square of what is left in the angle of attack, rad; without a channel, by its lift."""
+    if any(np.any(r.channel == ALPHA) for r in rows):
+        return float(rms[ALPHA])
+    speed = float(np.mean([r.speed for r in rows]))
+    return float(rms[A_Z] / max(speed * abs(system[0]), 1e-6))
 
 
 def _rms(rows: Sequence[Rows], channel: int) -> float:
@@ -99,7 +122,8 @@ def _descend(
     system: FloatArray,
     start: AirModel,
     moving: bool,
-    steps: Sequence[float] = _STEPS,
+    steps: Sequence[float],
+    start_variance: float,
 ) -> tuple[AirModel, float]:
     """Coordinate search in the logarithms of the noise figures, by ever smaller steps."""
     figures = [*start.white, *start.coloured, start.memory_s, start.gust, start.gust_memory_s]
@@ -113,7 +137,7 @@ def _descend(
         return AirModel(v[:4], v[4:8], float(np.clip(v[8], 0.02, 5.0)), float(v[9]) if moving else 0.0,
                         float(np.clip(v[10], 0.05, 20.0)), start.seen_by_alpha)  # fmt: skip
 
-    best = cost_of(rows, system, model(x))
+    best = cost_of(rows, system, model(x), start_variance)
     for step in steps:
         for i in free:
             for direction in (step, -step):
@@ -121,7 +145,7 @@ def _descend(
                 while True:
                     moved = x.copy()
                     moved[i] += direction
-                    cost = cost_of(rows, system, model(moved))
+                    cost = cost_of(rows, system, model(moved), start_variance)
                     if not cost < best - 0.5:
                         break
                     best, x = cost, moved
@@ -129,36 +153,3 @@ def _descend(
                     # The other way leads back to where it came from.
                     break
     return model(x), best
-
-
-def rows_of(fits: Mapping[str, ChannelFit], speed: float) -> Rows:
-    """Residuals of one manoeuvre's fit, merged in order of time; each channel's mean taken out."""
-    t, channel, left = [], [], []
-    for c, name in enumerate(CHANNELS):
-        if name in fits:
-            fit = fits[name]
-            t.append(fit.t)
-            channel.append(np.full(len(fit.t), c))
-            left.append(fit.residual - np.mean(fit.residual))
-    times = np.concatenate(t)
-    order = np.argsort(times, kind="stable")
-    return Rows(times[order], np.concatenate(channel)[order], np.concatenate(left)[order], speed)
-
-
-def turbulence_in(estimated: Estimate, seen_by_alpha: bool = True) -> Turbulence:
-    """Is a fitted manoeuvre's residual the mark of moving air? For the verdict on each manoeuvre."""
-    speed = estimated.airspeed_m_s or 20.0
-    rows = [rows_of(fits, speed) for fits in estimated.fits]
-    white = np.array([_white(estimated, name) for name in CHANNELS])
-    return find_turbulence(rows, system_of(estimated), white, seen_by_alpha)
-
-
-def system_of(estimated: Estimate) -> FloatArray:
-    """Z_α, Z_q, M_α, M_q of an estimate, as ``gains_of`` takes them before the speed."""
-    return np.array([estimated.value(name) for name in ("Z_alpha", "Z_q", "M_alpha", "M_q")])
-
-
-def _white(estimated: Estimate, name: str) -> float:
-    """White part of a channel's residual, from its differences."""
-    pieces = [np.diff(fits[name].residual) for fits in estimated.fits if name in fits]
-    return float(np.median(np.abs(np.concatenate(pieces))) / 0.6745 / np.sqrt(2.0)) if pieces else 1.0

@@ -94,13 +94,20 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
         ],
         "cautions": list(verdict.cautions),
         "excluded_because": judged.excluded_because,
+        "notes": list(judged.notes),
+        "closed_by": span.closed_by,
         "cost": number(estimate.cost) if estimate else None,
         "fit": {
             name: {"rms": number(fit.rms), "tic": number(fit.tic), "r2": number(fit.r2)}
             for name, fit in (estimate.fits[0].items() if estimate else ())
         },
         "estimates": parameters(judged.estimate),
-        "second_opinion": parameters(judged.second_opinion),
+        "outputs": list(estimate.outputs) if estimate else [],
+        "filter_error": estimate.filtered if estimate else False,
+        "instruments": instruments(estimate),
+        "prediction_percent": {
+            name: number(100.0 * share) for name, share in (estimate.prediction.items() if estimate else ())
+        },
         "not_identifiable": dict(estimate.not_identifiable) if estimate else {},
         "identifiability": identifiability(estimate),
         "rules": {name: _rule(result) for name, result in verdict.rules.items()},
@@ -123,6 +130,12 @@ def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
             PARAMETERS, estimate.theta, estimate.std, estimate.std_cr, strict=True
         )
     }
+
+
+def instruments(estimate: Estimate | None) -> dict[str, Any]:
+    """Parameters of the instruments that were estimated with the derivatives, by name."""
+    found = estimate.instruments if estimate else ()
+    return {x.name: {"value": number(x.value), "std": number(x.std)} for x in found}
 
 
 def identifiability(estimate: Estimate | None) -> dict[str, Any] | None:
@@ -190,6 +203,7 @@ def _model(model: Estimate | None) -> dict[str, Any] | None:
         document[name] = {**entry, "ci95": ci95}
     document["reference_airspeed_m_s"] = number(model.airspeed_m_s)
     document["identifiability"] = identifiability(model)
+    document["instruments"] = instruments(model)
     document["notes"] = list(model.notes)
     return document
 

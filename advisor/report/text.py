@@ -86,10 +86,14 @@ class AnalysisText:
         vehicle = self.state.vehicle
         yield Text(f"{self.file}: {vehicle if vehicle else 'no vehicle'}", style="bold")
         yield self._channels()
-        yield from (Text(f"note: {note}", style="yellow") for note in self.state.elevator_notes)
+        yield from (
+            Text(f"note: {note}", style="yellow")
+            for note in (*self.state.elevator_notes, *self.state.mark_notes)
+        )
         yield Text()
         for judged in self.state.maneuvers:
             yield Text(maneuver_line(judged), style="green" if judged.verdict.accepted else "red")
+            yield from (Text(f"    note: {note}") for note in judged.notes)
         yield Text()
         yield from (Text(line, style="dim") for line in caution_lines(self.state.maneuvers))
         yield Text()

@@ -18,10 +18,7 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.estimator import estimate
-from advisor.oem.prepare import prepare
-from advisor.oem.servo_lag import find_lag
-from advisor.oem.solution import solve
+from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.surface import Servo
 from advisor.study.campaigns import RULES
 from advisor.study.estimating import Advance, estimate_copies
@@ -176,11 +173,11 @@ def _measure(flight: Flight, disturbance: FloatArray) -> Maneuver:
 
 def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
     """The lag of the joint estimate; 0 where the data do not tell it from none."""
-    prepared = prepare(maneuvers, Aircraft())
-    solution = prepared if isinstance(prepared, NoEstimate) else solve(prepared.problem)
-    if isinstance(solution, NoEstimate):
-        raise ArithmeticError(solution.text)
-    return find_lag(solution.problem, solution).lag_s
+    model = estimate_jointly(maneuvers, Aircraft())
+    if isinstance(model, NoEstimate):
+        raise ArithmeticError(model.text)
+    lag = model.instrument("servo_lag_s")
+    return lag.value if lag is not None else 0.0
 
 
 def _coloured(flight: Flight, correlation_s: float, rng: np.random.Generator) -> FloatArray:

@@ -159,8 +159,8 @@ def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
 def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
     """False stops of the rule ``information``, and manoeuvres needed beside those of the paper's rules."""
     lines = [
-        f"Stops of the rule information, {campaigns} campaigns of seven manoeuvres each. A stop is false",
-        "where the predicted response is wrong by more than the tolerance. Needed: median (never).",
+        "Stops of the rule information. False: the predicted response is wrong by more than the",
+        f"tolerance. Needed by {campaigns} campaigns of seven manoeuvres: median (share without stop).",
         f"{'case':<26}{'noise':>6}{'tolerance':>10}{'false':>8}{'error, 95 %':>13}"
         f"{'information':>14}{'continuous':>14}{'separate':>14}",
     ]

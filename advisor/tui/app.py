@@ -21,7 +21,7 @@ from advisor.tui import keys, replay_actions
 from advisor.tui.conducting import Conducting, Report
 from advisor.tui.explaining import explanation, keys_at_hand
 from advisor.tui.garbage import Garbage
-from advisor.tui.hand import HandDecision
+from advisor.tui.hand_actions import HandActions
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.face import Face
@@ -41,7 +41,7 @@ _ANSWER_S = 0.03
 """Reports wait so long behind a key, so that its answer is painted before all that they change."""
 
 
-class AdvisorApp(replay_actions.ReplayActions, App[None]):
+class AdvisorApp(replay_actions.ReplayActions, HandActions, App[None]):
     """Shows what a campaign says of a link, a log or a demonstration, until the user leaves.
 
     Parameters
@@ -220,14 +220,6 @@ class AdvisorApp(replay_actions.ReplayActions, App[None]):
     def action_explain(self) -> None:
         """Help for what has the focus."""
         self.push_screen(Explain(explanation(self)))
-
-    def action_mark(self) -> None:
-        """Mark this moment in the event log."""
-        if isinstance(self.screen, Face):
-            self.screen.ask("Mark this moment as:", self._mark)
-
-    def _mark(self, text: str) -> None:
-        self.conductor.decide(HandDecision("mark", text))
 
     def action_leave(self) -> None:
         """Quit; on a live link only when asked twice."""

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Protocol
 
+from advisor.by_hand import ByHand
 from advisor.campaign_state import CampaignState
 from advisor.flight.messages import Columns
 from advisor.problems import Problem
@@ -10,6 +11,10 @@ from advisor.problems import Problem
 
 class CampaignLike(Protocol):
     """The part of `advisor.campaign.Campaign` that is used here."""
+
+    @property
+    def by_hand(self) -> ByHand:
+        """Everything that has been decided by hand."""
 
     @property
     def state(self) -> CampaignState:
@@ -33,6 +38,12 @@ class CampaignLike(Protocol):
 
     def mark(self, text: str) -> None:
         """Set a mark at the present moment."""
+
+    def begin_maneuver(self) -> None:
+        """Mark a manoeuvre from the present moment on."""
+
+    def end_maneuver(self) -> None:
+        """End the mark of a manoeuvre at the present moment."""
 
     def note(self, number: int, text: str) -> None:
         """Add a note to a manoeuvre."""

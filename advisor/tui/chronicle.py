@@ -12,6 +12,7 @@ class Chronicle:
     def __init__(self) -> None:
         self._lines: deque[str] = deque(maxlen=KEPT)
         self._followed = 0
+        self._noted = ""
         self.lines: tuple[str, ...] = ()
         """Oldest first; the same object until something is added."""
 
@@ -23,6 +24,12 @@ class Chronicle:
     def hear(self, sentences: Iterable[str]) -> None:
         """Take what the link reports."""
         self._add([f"link: {sentence}" for sentence in sentences])
+
+    def note(self, sentence: str) -> None:
+        """Take a sentence, unless it was the last one to be noted."""
+        if sentence != self._noted:
+            self._noted = sentence
+            self._add([sentence])
 
     def start_again(self) -> None:
         """A new campaign begins: its notices start at the first."""

@@ -42,7 +42,7 @@ class Conducting(Protocol):
         """End ``run`` at the next opportunity."""
 
     def decide(self, decision: HandDecision) -> None:
-        """Exclude, include, note or mark."""
+        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
 
     def jump(self, number: int) -> None:
         """Play on, or from the beginning, to just before a manoeuvre."""

@@ -5,12 +5,12 @@ below only leaves a request, and hears through ``tell``.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 from math import inf
 from queue import Empty, SimpleQueue
 from threading import Event
 from time import monotonic
 
+from advisor.by_hand import NOTHING, ByHand
 from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.chronicle import Chronicle
 from advisor.tui.conducting import Report, Tell
@@ -30,15 +30,20 @@ class Conductor:
     source : Source
         Where the data come from.
     make_campaign : callable
-        Makes an empty campaign; called by ``run``, and again for a rewind.
+        Makes a campaign from what was decided by hand; called by ``run``, and again for a rewind.
+    by_hand : ByHand
+        What was decided by hand before.
     """
 
-    def __init__(self, source: Source, make_campaign: Callable[[], CampaignLike]) -> None:
+    def __init__(
+        self, source: Source, make_campaign: Callable[[ByHand], CampaignLike], by_hand: ByHand = NOTHING
+    ) -> None:
         self._source = source
         self._make_campaign = make_campaign
         self._tell: Tell = lambda report: None
         self._requests: SimpleQueue[Callable[[CampaignLike], None]] = SimpleQueue()
-        self._by_hand: list[HandDecision] = []
+        self._by_hand = by_hand
+        self._where_kept = ""
         self._pending: list[HandDecision] = []
         self._goal: Goal | None = None
         self._chronicle = Chronicle()
@@ -64,7 +69,7 @@ class Conductor:
             while not self._stopped.is_set():
                 self._rewound = False
                 self._chronicle.start_again()
-                self._play(self._make_campaign())
+                self._play(self._make_campaign(self._by_hand))
         finally:
             self._source.close()
 
@@ -73,7 +78,7 @@ class Conductor:
         self._stopped.set()
 
     def decide(self, decision: HandDecision) -> None:
-        """Exclude, include, note or mark."""
+        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
         self._requests.put(lambda campaign: self._decide(campaign, decision))
 
     def jump(self, number: int) -> None:
@@ -104,11 +109,12 @@ class Conductor:
             if batch is None:
                 ended = True
                 campaign.finish()
+                self._keep(campaign)
                 self._arrive()
             elif batch:
                 campaign.feed(batch)
             if self._pending:
-                self._repeat_decisions(campaign)
+                self._decide_what_is_due(campaign)
             if self._goal and self._goal.reached(campaign.state):
                 self._arrive()
             if ended or monotonic() - self._told_s >= REPORT_EVERY_S:
@@ -125,6 +131,7 @@ class Conductor:
     def _report(self, campaign: CampaignLike) -> None:
         state = campaign.state
         self._chronicle.follow(state.notices)
+        self._chronicle.note(self._where_kept)
         self._chronicle.hear(self._source.take_notices())
         playback = self._source.playback() if isinstance(self._source, Playable) else None
         problems = () if state.maneuvers else tuple(campaign.problems)
@@ -133,20 +140,21 @@ class Conductor:
 
     def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:
         """Now, or after a jump back as soon as the manoeuvre it is about has been flown again."""
-        state = campaign.state
-        stamped = replace(decision, at_s=state.now_s)
-        self._by_hand.append(stamped)
-        if stamped.due(state):
-            stamped.apply(campaign)
-        else:
-            self._pending.append(stamped)
+        self._pending.append(decision)
+        self._decide_what_is_due(campaign)
 
-    def _repeat_decisions(self, campaign: CampaignLike) -> None:
-        """After a rewind: the decisions by hand whose moment has come again, in their order."""
+    def _decide_what_is_due(self, campaign: CampaignLike) -> None:
         state = campaign.state
         for decision in [d for d in self._pending if d.due(state)]:
             decision.apply(campaign)
             self._pending.remove(decision)
+            self._keep(campaign)
+
+    def _keep(self, campaign: CampaignLike) -> None:
+        """Remember for a rewind what was decided by hand, and keep it with the data."""
+        if campaign.by_hand != self._by_hand:
+            self._by_hand = campaign.by_hand
+            self._where_kept = self._source.keep(self._by_hand)
 
     def _jump(self, campaign: CampaignLike, number: int) -> None:
         if not isinstance(self._source, Playable):
@@ -155,7 +163,6 @@ class Conductor:
         self._goal = Goal(number, known.span.start_s if known else None)
         if known:
             self._source.rewind()
-            self._pending = list(self._by_hand)
             self._rewound = True
         self._source.hurry(True)
 

@@ -29,6 +29,8 @@ REPLAY: list[BindingType] = [
 SELDOM: list[BindingType] = [
     _key("t", "next_theme", "Theme", id="theme", show=True),
     _key("m", "mark", "Mark", id="mark", show=True),
+    _key("b", "begin_maneuver", "Begin manoeuvre", id="begin_maneuver", show=True),
+    _key("f", "end_maneuver", "Finish manoeuvre", id="end_maneuver", show=True),
 ]
 
 PANES = ("manoeuvres", "verdict", "parameters", "fit", "live", "criterion", "channels and link", "log")

@@ -4,7 +4,9 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
+from advisor.by_hand import ByHand
 from advisor.flight.messages import Columns
+from advisor.marks_file import keep_by_hand
 from advisor.mavlink.health import LinkStatistics
 from advisor.tui.source import Condition, LinkHealth
 
@@ -59,6 +61,13 @@ class LinkSource:
     def take_notices(self) -> Sequence[str]:
         """What the link has to report since the last call."""
         return [notice.text for notice in self._link.take_notices()] if self._link is not None else ()
+
+    def keep(self, by_hand: ByHand) -> str:
+        """Keep the decisions beside the recording."""
+        recording = self._link.statistics.recording if self._link is not None else None
+        if recording is None:
+            return "decisions by hand are not kept, for nothing is recorded: they hold until you quit"
+        return keep_by_hand(recording, by_hand)
 
     def close(self) -> None:
         """Stop listening; the recording is whole afterwards."""

@@ -81,7 +81,7 @@ async def picture(log: Path, aircraft_file: Path | None, face: Face, after: int,
         return [columns for batch in open_log(log) for columns in batch]
 
     player = LogPlayer(log.name, load, inf)
-    conductor = Conductor(player, lambda: Campaign(aircraft, settle=True))
+    conductor = Conductor(player, lambda by_hand: Campaign(aircraft, settle=True, by_hand=by_hand))
     app = AdvisorApp(conductor, aircraft, log.name, Tempo(speed=inf), Settings(theme, face))
     async with app.run_test(size=SIZES[face]) as pilot:
         app.conductor.jump(after + 1)

@@ -10,6 +10,7 @@ from subprocess import DEVNULL, PIPE, Popen
 from threading import Thread
 from typing import IO
 
+from advisor.by_hand import NOTHING, ByHand
 from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.changes import Changes
 from advisor.tui.conducting import Report, Tell
@@ -22,10 +23,12 @@ Request = tuple[str, tuple[object, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """What to conduct; both are called in the other process, so both must be picklable."""
+    """What to conduct; used in the other process, so all of it must be picklable."""
 
     open_source: Callable[[], Source]
-    make_campaign: Callable[[], CampaignLike]
+    make_campaign: Callable[[ByHand], CampaignLike]
+    by_hand: ByHand = NOTHING
+    """What was decided by hand before."""
 
 
 class RemoteConductor:
@@ -66,7 +69,7 @@ class RemoteConductor:
         self._requests.put(("stop", ()))
 
     def decide(self, decision: HandDecision) -> None:
-        """Exclude, include, note or mark."""
+        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
         self._requests.put(("decide", (decision,)))
 
     def jump(self, number: int) -> None:

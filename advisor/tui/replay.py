@@ -2,9 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from math import inf
+from pathlib import Path
 from threading import Event
 
+from advisor.by_hand import ByHand
 from advisor.flight.messages import Columns
+from advisor.marks_file import keep_by_hand
 from advisor.tui.source import LinkHealth, Playback, Tempo
 from advisor.tui.timeline import Timeline
 
@@ -29,6 +32,8 @@ class LogPlayer:
         Multiple of real time; infinite: as fast as it can.
     wait : callable
         ``wait(event, seconds)`` waits until the event is set or the time is over; tests have their own clock.
+    keep_beside : Path, optional
+        The log beside which decisions by hand are kept; None: they are not.
     """
 
     def __init__(
@@ -37,10 +42,12 @@ class LogPlayer:
         load: Callable[[], Sequence[Columns]],
         speed: float = 1.0,
         wait: Callable[[Event, float], None] = _wait,
+        keep_beside: Path | None = None,
     ) -> None:
         self._title = title
         self._load = load
         self._wait = wait
+        self._keep_beside = keep_beside
         self._tempo = Tempo(speed=speed)
         self._hurrying = False
         self._steps = 0
@@ -114,6 +121,12 @@ class LogPlayer:
     def take_notices(self) -> Sequence[str]:
         """Nothing happens on the way from a file."""
         return ()
+
+    def keep(self, by_hand: ByHand) -> str:
+        """Keep the decisions beside the log."""
+        if self._keep_beside is None:
+            return "decisions by hand are not kept: they hold until you quit"
+        return keep_by_hand(self._keep_beside, by_hand)
 
     def close(self) -> None:
         """A log holds nothing open."""

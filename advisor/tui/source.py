@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol, runtime_checkable
 
+from advisor.by_hand import ByHand
 from advisor.flight.messages import Columns
 
 Condition = Literal["good", "poor", "waiting", "lost", "ended"]
@@ -37,6 +38,9 @@ class Source(Protocol):
 
     def take_notices(self) -> Sequence[str]:
         """What happened on the way since the last call: reconnected, rates granted, a second vehicle."""
+
+    def keep(self, by_hand: ByHand) -> str:
+        """Keep what was decided by hand with the data; a sentence says where, or why not."""
 
     def close(self) -> None:
         """Release sockets and files."""

@@ -59,7 +59,7 @@ def main() -> None:
         reporter = Reporter(reports)
         try:
             task = pickle.load(sys.stdin.buffer)
-            conductor = Conductor(task.open_source(), task.make_campaign)
+            conductor = Conductor(task.open_source(), task.make_campaign, task.by_hand)
             Thread(target=serve, args=(conductor, sys.stdin.buffer)).start()
             conductor.run(reporter.tell)
         except Exception as failure:

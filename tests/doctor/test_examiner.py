@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft import Aircraft, Elevator, ElevatorOutput
 from advisor.doctor.document import doctor_document
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.examiner import Examiner
@@ -155,6 +155,16 @@ def test_the_resolution_of_the_command_is_its_smallest_step_in_degrees() -> None
     assert {"calibration", "servo_unknown"} <= limits(from_parameters).keys()
     coarse = Elevator(calibration=((1490.0, 25.0), (1510.0, -25.0)), lag_s=0.0)
     assert "2.50 deg" in limits(examined(flight(), Aircraft(elevator=coarse)))["resolution"].text
+
+
+def test_outputs_of_the_file_are_listed_and_the_coarsest_decides_the_resolution() -> None:
+    fine, coarse = ((1000.0, -5.0), (2000.0, 5.0)), ((1000.0, 25.0), (2000.0, -25.0))
+    outputs = (ElevatorOutput(2, coarse, 3.0), ElevatorOutput(1, fine))
+    found = examined(flight(setup={}), Aircraft(elevator=Elevator(outputs=outputs, lag_s=0.05)))
+    assert found.elevator is not None
+    assert found.elevator.outputs == (1, 2)
+    assert found.elevator.calibrated
+    assert found.elevator.resolution_deg == pytest.approx(0.75 * 0.05)
 
 
 def test_without_parameters_the_output_is_asked_for() -> None:

@@ -130,3 +130,14 @@ def fly(
         aoa(wire, now + 1e-4, boot, 2.0 + sense, **sender)
         servo(wire, now + 2e-4, boot, {1: 1500, 2: 1500 + 20 * sense, 3: 1600, 4: 1500}, **sender)
         hud(wire, now + 3e-4, **sender)
+
+
+def switch(wire: Wire, at_s: float, boot_s: float, pulse_us: int, channel: int = 9) -> None:
+    """An RC_CHANNELS in which one channel is a switch."""
+    pulses = {f"chan{n}_raw": pulse_us if n == channel else 1500 for n in range(1, 19)}
+    wire.send("RC_CHANNELS", at_s, time_boot_ms=round(boot_s * 1000) % 2**32, chancount=18, **pulses)
+
+
+def text(wire: Wire, at_s: float, said: str, **sender: int) -> None:
+    """A STATUSTEXT."""
+    wire.send("STATUSTEXT", at_s, **sender, severity=6, text=said.encode())

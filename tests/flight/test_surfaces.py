@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import Elevator
-from advisor.flight.surfaces import AILERON, RUDDER, Surface, driven, find_elevator, find_surface
+from advisor.aircraft import Elevator, ElevatorOutput
+from advisor.flight.elevator_outputs import find_elevator
+from advisor.flight.surfaces import AILERON, RUDDER, Surface, driven, find_surface
 from advisor.problems import Problem
 
 PLANE = {"SERVO1_FUNCTION": 4.0, "SERVO2_FUNCTION": 19.0, "SERVO4_FUNCTION": 21.0}
@@ -83,23 +84,78 @@ def test_one_half_of_a_mixed_pair_is_read_as_the_aircraft_file_calibrates_it_and
     assert "one half of a mixed elevon pair" in surface.said
 
 
-def test_one_calibration_for_two_outputs_is_refused():
-    elevator = Elevator(calibration=((1000, -25.0), (2000, 25.0)))
-    problem = find_elevator(elevator, {"SERVO1_FUNCTION": 77.0, "SERVO2_FUNCTION": 78.0})
-    assert isinstance(problem, Problem)
-    assert "calibration" in problem.text
+PAIR = {"SERVO1_FUNCTION": 77.0, "SERVO2_FUNCTION": 78.0, "SERVO1_REVERSED": 1.0, "SERVO2_REVERSED": 0.0}
+ONE_WAY = ((1000.0, -25.0), (1500.0, 0.0), (2000.0, 25.0))
+"""More pulse is trailing edge down."""
 
 
-def test_outputs_in_two_banks_are_refused():
-    problem = find_elevator(Elevator(), {"SERVO16_FUNCTION": 19.0, "SERVO17_FUNCTION": 19.0})
+def test_one_calibration_of_an_elevon_pair_counts_for_both_halves_each_in_its_own_sense():
+    surface = find_elevator(Elevator(calibration=ONE_WAY), PAIR | {"SERVO2_TRIM": 1520.0})
+    assert isinstance(surface, Surface)
+    assert surface.calibrated
+    both_down, only_roll = [1700, 1320], [1700, 1720]
+    assert degrees(surface, both_down, only_roll) == pytest.approx([10, 0])
+    assert "taken for output 1 and carried over to 2" in surface.said
+    assert "the other way round for 2 (SERVOn_REVERSED)" in surface.said
+
+
+def test_one_calibration_of_an_elevon_pair_needs_to_know_what_is_reversed():
+    problem = find_elevator(
+        Elevator(calibration=ONE_WAY), {n: v for n, v in PAIR.items() if n != "SERVO2_REVERSED"}
+    )
     assert isinstance(problem, Problem)
-    assert "banks" in problem.text
+    assert "SERVO2_REVERSED" in problem.text
+    assert "elevator.outputs" in problem.fix
+
+
+def test_several_elevons_on_one_side_weigh_as_much_as_the_one_on_the_other():
+    surface = find_elevator(
+        Elevator(), {"SERVO1_FUNCTION": 77.0, "SERVO2_FUNCTION": 78.0, "SERVO3_FUNCTION": 78.0}
+    )
+    assert isinstance(surface, Surface)
+    assert degrees(surface, [1700, 1300, 1300]) == pytest.approx([0])
+
+
+def test_elevons_and_a_plain_elevator_are_read_together():
+    surface = find_elevator(Elevator(), PAIR | {"SERVO5_FUNCTION": 19.0, "SERVO5_REVERSED": 0.0})
+    assert isinstance(surface, Surface)
+    assert surface.outputs == (1, 2, 5)
+    assert degrees(surface, [1500, 1500, 1900]) == pytest.approx([-12.5])
+    assert degrees(surface, [1700, 1700, 1500]) == pytest.approx([0])
+
+
+def test_listed_outputs_are_the_weighted_mean_of_their_own_calibrations_and_said_so():
+    outputs = (
+        ElevatorOutput(6, ((1000.0, -10.0), (2000.0, 10.0))),
+        ElevatorOutput(20, ((1000.0, 40.0), (2000.0, -40.0)), 0.25),
+    )
+    surface = find_elevator(Elevator(outputs=outputs), PLANE)
+    assert isinstance(surface, Surface)
+    assert surface.outputs == (6, 20)
+    assert surface.ports == (0, 1)
+    assert degrees(surface, [1750, 1250]) == pytest.approx([(5 + 0.25 * 20) / 1.25])
+    assert "80 % of output 6 and 20 % of output 20" in surface.said
+    assert not surface.unsure
+
+
+def test_a_list_of_one_side_of_a_pair_says_that_its_other_axis_counts():
+    outputs = (ElevatorOutput(2, ONE_WAY), ElevatorOutput(3, ONE_WAY))
+    surface = find_elevator(Elevator(outputs=outputs), PAIR)
+    assert isinstance(surface, Surface)
+    assert "Only one side of the elevon pair" in surface.said
+
+
+def test_the_sense_of_an_output_is_told_by_a_calibration_or_by_its_function_and_reversed():
+    listed = Elevator(outputs=(ElevatorOutput(1), ElevatorOutput(2), ElevatorOutput(3)))
+    surface = find_elevator(listed, PAIR | {"SERVO3_FUNCTION": 24.0, "SERVO3_REVERSED": 0.0})
+    assert isinstance(surface, Surface)
+    assert surface.unsure == (3,)
 
 
 def test_outputs_beyond_16_are_in_the_second_bank():
     surface = find_elevator(Elevator(output=18), {})
     assert isinstance(surface, Surface)
-    assert surface.port == 1
+    assert surface.ports == (1,)
 
 
 def test_aileron_and_rudder_are_found_where_the_parameters_say():

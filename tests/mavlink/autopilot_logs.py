@@ -20,6 +20,7 @@ FORMATS = {
     "VER": (13, "QBHBBBBIZHBB", "TimeUS,BT,BST,Maj,Min,Pat,FWT,GH,FWS,APJ,BU,FV"),
     "GPS": (14, "QBBIHBcLLeffffB", "TimeUS,I,Status,GMS,GWk,NSats,HDop,Lat,Lng,Alt,Spd,GCrs,VZ,Yaw,U"),
     "POS": (15, "QLLfff", "TimeUS,Lat,Lng,Alt,RelHomeAlt,RelOriginAlt"),
+    "RCIN": (16, "QHHHHHHHHHHHHHH", "TimeUS,C1,C2,C3,C4,C5,C6,C7,C8,C9,C10,C11,C12,C13,C14"),
 }
 _STRUCT = {
     "B": "B", "M": "B", "h": "h", "H": "H", "i": "i", "I": "I", "Q": "Q", "f": "f",
@@ -60,9 +61,10 @@ TOPICS = {
     "vehicle_thrust_setpoint": "uint64_t timestamp;float[3] xyz;",
     "vehicle_status": "uint64_t timestamp;uint8_t nav_state;uint8_t vehicle_type;",
     "vehicle_gps_position": "uint64_t timestamp;uint64_t time_utc_usec;",
+    "input_rc": "uint64_t timestamp;uint16_t[18] values;",
     "debug_key_value": "uint64_t timestamp;char[10] key;float value;",
 }
-_SIZES = {"uint64_t": "Q", "uint32_t": "I", "uint8_t": "B", "float": "f", "char": "s"}
+_SIZES = {"uint64_t": "Q", "uint32_t": "I", "uint16_t": "H", "uint8_t": "B", "float": "f", "char": "s"}
 
 
 def _ulog_message(kind: str, payload: bytes) -> bytes:

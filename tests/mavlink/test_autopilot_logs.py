@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink import DFReader
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft import Aircraft, Elevator, Markers
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
@@ -50,7 +50,9 @@ def motion(t: float) -> tuple[float, float]:
     return 0.05 + 0.01 * math.sin(t), 0.01 * math.cos(t)
 
 
-def dataflash_flight(seconds: float = FLIGHT_S, changes: Mapping[float, int] | None = None) -> bytes:
+def dataflash_flight(
+    seconds: float = FLIGHT_S, changes: Mapping[float, int] | None = None, switched: bool = False
+) -> bytes:
     """A flight; ``changes`` has the modes that it is put into, by the time in s."""
     log = [dataflash_head()]
     log.append(dataflash_record("VER", 900, 0, 0, 4, 5, 6, 255, 0, b"ArduPlane V4.5.6", 0, 3, 0))
@@ -79,12 +81,19 @@ def dataflash_flight(seconds: float = FLIGHT_S, changes: Mapping[float, int] | N
             log.append(dataflash_record("CTUN", us + 1000, 0.0, 0.0, 0.0, 0.0, 45.0, 0.0, 0.0, 24.5))
             log.append(dataflash_record("ARSP", us + 1100, 0, 25.0))
             log.append(dataflash_record("POS", us + 1200, 47.1, 8.5, 500.0, 100.25))
+            if switched:
+                log.append(dataflash_record("RCIN", us + 1250, *[1500] * 8, switch_us(t)))
         if i % 50 == 0:
             log.append(dataflash_record("GPS", us + 1300, 0, 3, 100_000_000 + 1000 * (i // 50), 2300))
     return b"".join(log)
 
 
-def px4_flight(seconds: float = FLIGHT_S, **parameters: float) -> bytes:
+def switch_us(t: float) -> int:
+    """A pilot's switch on channel 9, on around the manoeuvre."""
+    return 1900 if FIRST_STEP_S - 1.0 <= t < FIRST_STEP_S + 6.0 else 1100
+
+
+def px4_flight(seconds: float = FLIGHT_S, switched: bool = False, **parameters: float) -> bytes:
     definitions = [ulog_parameter(name, value) for name, value in parameters.items()]
     log = [ulog_head(ulog_release(0x010F02FF), *definitions)]
     log.append(ulog_text(900_000, 6, "[logger] start"))
@@ -106,6 +115,8 @@ def px4_flight(seconds: float = FLIGHT_S, **parameters: float) -> bytes:
             log.append(ulog_data("vehicle_thrust_setpoint", us + 900, (0.45, 0.0, 0.0)))
             log.append(ulog_data("airspeed_validated", us + 1000, 25.0))
             log.append(ulog_data("debug_key_value", us + 1100, b"vane", 3.5))
+            if switched:
+                log.append(ulog_data("input_rc", us + 1150, [*[1500] * 8, switch_us(t), *[0] * 9]))
         if i % 50 == 0:
             log.append(ulog_data("vehicle_status", us + 1200, 0 if i < 500 else 3, 2))
             log.append(ulog_data("vehicle_gps_position", us + 1300, 1_770_000_000_000_000 + us + 1300))
@@ -215,6 +226,21 @@ class TestArduPilot:
         assert banks[0].fields["servo16_raw"][-1] == 1516
         assert banks[1].fields["servo2_raw"][-1] == 1518
         assert not set(banks[0].order.tolist()) & set(banks[1].order.tolist())
+
+    def test_outputs_beyond_14_are_those_of_the_same_loop(self, tmp_path: Path) -> None:
+        log = dataflash_flight() + b"".join(
+            record
+            for i in range(10)
+            for record in (
+                dataflash_record("RCOU", 50_000_000 + 20_000 * i, 1500 + i, 1502),
+                dataflash_record("RCO2", 50_000_030 + 20_000 * i, 1600 + i, 1516, 1517, 1518),
+            )
+        )
+        path = tmp_path / "flight.bin"
+        path.write_bytes(log)
+        (first, _) = [c for batch in open_log(path, ["SERVO_OUTPUT_RAW"]) for c in batch]
+        apart = first.fields["servo15_raw"] - first.fields["servo1_raw"]
+        assert apart[-10:].tolist() == [100] * 10
 
     def test_damage_costs_the_records_it_hits(self, tmp_path: Path) -> None:
         content = bytearray(dataflash_flight())
@@ -376,3 +402,15 @@ def test_damage_never_crashes_a_reader(
         with contextlib.suppress(UnusableInputError):
             for batch in open_log(path):
                 assert all(len(c) == len(values) for c in batch for values in c.fields.values())
+
+
+@pytest.mark.parametrize("name", ["flight.bin", "flight.ulg"])
+def test_a_pilots_switch_in_the_autopilots_own_log_marks_the_manoeuvre(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    path.write_bytes(dataflash_flight(switched=True) if name.endswith("bin") else px4_flight(switched=True))
+    elevator = Elevator(output=2, calibration=((1000, 25), (2000, -25)))
+    stream = FlightStream(Aircraft(elevator=elevator, markers=Markers(rc=9)))
+    events = [event for batch in open_log(path) for event in stream.feed(batch)] + stream.finish()
+    (maneuver,) = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+    assert maneuver.span.closed_by == "marked by a switch"
+    assert maneuver.span.end_s == pytest.approx(FIRST_STEP_S + 6.0, abs=0.11)

@@ -1,12 +1,14 @@
 """What the log's instruments do to the estimate, and what the estimator does about it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from advisor.aircraft import Accelerometer, Aircraft, Alpha, Elevator
 from advisor.flight.record import Channel
 from advisor.oem.airspeed import airspeed
-from advisor.oem.estimate import Estimate
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.problem import Signal
 from advisor.oem.surface import Servo
@@ -62,10 +64,10 @@ def aircraft(**parts):
     return Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=0.0, delay_s=0.0), **parts)
 
 
-def test_acceleration_and_attitude_serve_as_outputs_with_arm_and_bias():
+def test_acceleration_serves_as_an_output_with_arm_and_bias():
     found = estimate(equipped(imu_m=0.3, bias=0.4), aircraft(accelerometer=Accelerometer(arm_m=0.3)))
     assert isinstance(found, Estimate)
-    assert set(found.fits[0]) == {"alpha", "q", "theta", "a_z"}
+    assert set(found.outputs) == {"alpha", "q", "a_z"}
     # γ is constant in Eqs. (1)-(2); that α̇ neglects its cosine is all that is left here.
     np.testing.assert_allclose(found.theta[[1, 5, 6, 7]], UAV[[1, 5, 6, 7]], rtol=0.02)
 
@@ -119,9 +121,62 @@ def test_an_unknown_servo_lag_is_found_from_all_manoeuvres_together():
     flights = [equipped(number=i, sign=(-1.0) ** i, lag_s=0.1, noise=0.02, seed=i) for i in range(3)]
     found = estimate_jointly(flights, Aircraft(airspeed_m_s=SPEED))
     assert found.value("M_delta_e") == pytest.approx(UAV[7], rel=0.04)
-    assert any("a lag of 0.10" in note or "a lag of 0.09" in note for note in found.notes)
-    alone = estimate(flights[0], Aircraft(airspeed_m_s=SPEED))
-    assert any(note.startswith("Servo dynamics unknown") for note in alone.notes)
+    lag = found.instrument("servo_lag_s")
+    assert abs(lag.value - 0.1) < 3.0 * lag.std + 0.005
+    assert any("The servo's lag is estimated and used" in note for note in found.notes)
+
+
+def test_one_rich_manoeuvre_tells_the_servo_lag_too():
+    alone = estimate(equipped(lag_s=0.1, noise=0.02), Aircraft(airspeed_m_s=SPEED))
+    lag = alone.instrument("servo_lag_s")
+    assert abs(lag.value - 0.1) < 3.0 * lag.std + 0.005
+    assert alone.value("M_delta_e") == pytest.approx(UAV[7], rel=0.1)
+
+
+def test_a_vane_of_unknown_place_is_found_from_a_z_and_the_pitch_rate():
+    flights = [equipped(number=i, sign=(-1.0) ** i, vane_m=2.0, noise=0.02, seed=i) for i in range(2)]
+    found = estimate_jointly(flights, aircraft(accelerometer=Accelerometer(arm_m=0.0)))
+    arm = found.instrument("vane_arm_m")
+    assert abs(arm.value - 2.0) < 3.0 * arm.std
+    assert abs(found.value("Z_delta_e") - UAV[3]) < 3.0 * found.std[3] + 0.1
+
+
+def test_a_vane_whose_place_the_crew_gives_is_not_sought():
+    found = estimate(equipped(vane_m=2.0, noise=0.02), aircraft(alpha=Alpha(vane_arm_m=2.0)))
+    assert found.instrument("vane_arm_m") is None
+
+
+def test_a_late_angle_of_attack_is_found_and_allowed_for():
+    flights = []
+    for i in range(2):
+        flight = equipped(number=i, sign=(-1.0) ** i, noise=0.02, seed=i)
+        alpha = flight.channels["alpha"]
+        late = replace(alpha, t=alpha.t + 0.06)
+        flights.append(replace(flight, channels={**flight.channels, "alpha": late}))
+    found = estimate_jointly(flights, aircraft(accelerometer=Accelerometer(arm_m=0.0)))
+    delay = found.instrument("alpha_delay_s")
+    assert abs(delay.value - 0.06) < 3.0 * delay.std + 0.003
+    assert np.all(
+        np.abs(found.theta - UAV)[[1, 5, 6, 7]]
+        < 4.0 * found.std[[1, 5, 6, 7]] + 0.02 * np.abs(UAV)[[1, 5, 6, 7]]
+    )
+
+
+def test_without_an_angle_of_attack_the_derivatives_come_from_pitch_rate_and_a_z():
+    flights = [equipped(number=i, sign=(-1.0) ** i, noise=0.02, seed=i) for i in range(2)]
+    found = estimate_jointly(flights, aircraft(alpha=Alpha(source="none")))
+    assert found.outputs == ("q", "a_z")
+    shared = [1, 5, 6, 7]
+    assert np.all(np.abs(found.theta - UAV)[shared] < 4.0 * found.std[shared] + 0.03 * np.abs(UAV)[shared])
+    assert set(found.not_identifiable) == {"Z_0", "M_0"}
+
+
+def test_without_an_angle_of_attack_and_without_its_stand_in_there_is_no_estimate():
+    flight = equipped(noise=0.02)
+    channels = {name: c for name, c in flight.channels.items() if name not in ("alpha", "a_z")}
+    found = estimate(replace(flight, channels=channels), aircraft())
+    assert isinstance(found, NoEstimate)
+    assert "a_z" in found.text
 
 
 def test_no_lag_is_invented_where_there_is_none():

@@ -45,7 +45,7 @@ def test_a_long_step_is_divided_and_an_absurd_one_refused():
 
 
 def problem_with_everything():
-    """Two records with all outputs, speed, path, irregular stamps, gaps, servo, vane and accelerometer."""
+    """Two records with all outputs, speed, gravity, irregular stamps, gaps, servo, vane and accelerometer."""
     rng = np.random.default_rng(3)
     records = []
     for k in range(2):
@@ -58,7 +58,7 @@ def problem_with_everything():
                 elevator=Signal(t, u),
                 outputs={n: Signal(s, np.zeros(len(s))) for n, s in stamps.items()},
                 airspeed=Signal(t, 25 + 3 * np.sin(0.8 * t)),
-                path=Signal(t, 0.2 * np.sin(0.5 * t)),
+                normal_gravity=Signal(t, np.cos(0.2 * np.sin(0.5 * t))),
             )
         )
     return Problem(tuple(records), reference_airspeed_m_s=26.0, vane_arm_m=0.4, accelerometer_arm_m=0.1)

@@ -56,6 +56,12 @@ def test_flying_a_log_again_through_the_same_aircraft_gives_the_same_manoeuvres(
             )
 
 
+def test_several_elevator_outputs_are_refused_with_what_to_give(tmp_path):
+    path = aircraft_file(tmp_path / "elevons.yaml", elevator={"outputs": [{"output": 1}, {"output": 2}]})
+    with pytest.raises(ScenarioError, match="has one elevator output"):
+        modelled_flight(QUIET, path)
+
+
 def test_an_effect_in_the_aircraft_file_changes_the_flight(tmp_path):
     plain = aircraft_file(tmp_path / "plain.yaml")
     late = aircraft_file(tmp_path / "late.yaml", effects={"transport_delay": {"delay_s": 0.1}})

@@ -7,6 +7,7 @@ from math import inf
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
+from advisor.by_hand import NOTHING, ByHand
 from advisor.campaign import Campaign
 from advisor.flight.messages import Columns
 from advisor.mavlink.logs import open_log
@@ -34,17 +35,17 @@ def _until(piece: Columns, end_s: float) -> Columns:
     return replace(piece, order=piece.order[:end], arrival_s=piece.arrival_s[:end], fields=fields)
 
 
-def campaign() -> Campaign:
+def campaign(by_hand: ByHand = NOTHING) -> Campaign:
     """A real one."""
-    return Campaign(Aircraft(), settle=True)
+    return Campaign(Aircraft(), settle=True, by_hand=by_hand)
 
 
-def staged() -> StagedCampaign:
+def staged(by_hand: ByHand) -> StagedCampaign:
     """Three manoeuvres flown."""
-    return StagedCampaign([flights.state(3)])
+    return StagedCampaign([flights.state(3)], by_hand=by_hand)
 
 
-def busy() -> StagedCampaign:
+def busy(by_hand: ByHand) -> StagedCampaign:
     """Estimates for seconds when it is fed."""
     return StagedCampaign([flights.state(3)], on_feed=_estimate)
 
@@ -55,7 +56,7 @@ def _estimate() -> None:
         sum(k * k for k in range(1000))
 
 
-def ending() -> StagedCampaign:
+def ending(by_hand: ByHand) -> StagedCampaign:
     """Takes its process with it when it is fed."""
     return StagedCampaign([flights.state(0)], on_feed=lambda: os._exit(9))
 

@@ -84,7 +84,7 @@ async def stage(
     source = source or HandFedSource()
     tempo = Tempo() if isinstance(source, Playable) else None
     app = AdvisorApp(
-        Conductor(source, lambda: campaign), flights.AIRCRAFT, "udpin:127.0.0.1:0", tempo, settings
+        Conductor(source, lambda by_hand: campaign), flights.AIRCRAFT, "udpin:127.0.0.1:0", tempo, settings
     )
     async with app.run_test(size=size) as pilot:
         here = Stage(app, pilot, campaign, source)

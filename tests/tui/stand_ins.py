@@ -6,7 +6,10 @@ from queue import Empty, SimpleQueue
 
 import numpy as np
 
+from advisor.by_hand import NOTHING, ByHand, Remark
 from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.marks import Mark
 from advisor.flight.messages import Columns
 from advisor.problems import Problem
 from advisor.tui.source import LinkHealth
@@ -22,7 +25,12 @@ def columns(order: Sequence[int], arrival_s: Sequence[float], name: str = "ATTIT
 class StagedCampaign:
     """Shows the states it was given, one more for each batch it is fed; records what it is asked."""
 
-    def __init__(self, states: Sequence[CampaignState], on_feed: Callable[[], None] = lambda: None) -> None:
+    def __init__(
+        self,
+        states: Sequence[CampaignState],
+        on_feed: Callable[[], None] = lambda: None,
+        by_hand: ByHand = NOTHING,
+    ) -> None:
         self._states = states
         self._on_feed = on_feed
         self._stage = 0
@@ -30,20 +38,21 @@ class StagedCampaign:
         self.feeding = False
         self.calls: list[tuple[object, ...]] = []
         self.problems: list[Problem] = []
-        self._excluded: dict[int, str] = {}
+        self.by_hand = by_hand
+        self._marking_since_s: float | None = None
         self._known: dict[object, tuple[JudgedManeuver, ...]] = {}
 
     @property
     def state(self) -> CampaignState:
         # As with the real campaign, what did not change stays the same object.
         now = self._states[min(self._stage, len(self._states) - 1)]
-        return replace(now, maneuvers=self._maneuvers(now))
+        return replace(now, maneuvers=self._maneuvers(now), marking_since_s=self._marking_since_s)
 
     def _maneuvers(self, now: CampaignState) -> tuple[JudgedManeuver, ...]:
-        key = (id(now), tuple(self._excluded.items()))
+        key = (id(now), self.by_hand)
         if key not in self._known:
             self._known[key] = tuple(
-                replace(j, excluded_because=self._excluded.get(j.maneuver.number)) for j in now.maneuvers
+                replace(j, excluded_because=self.by_hand.excluded_because(j.maneuver)) for j in now.maneuvers
             )
         return self._known[key]
 
@@ -61,17 +70,30 @@ class StagedCampaign:
 
     def exclude(self, number: int, because: str) -> None:
         self.calls.append(("exclude", number, because))
-        self._excluded[number] = because
+        self.by_hand = self.by_hand.excluding(self._flown(number), because)
 
     def include(self, number: int) -> None:
         self.calls.append(("include", number))
-        self._excluded.pop(number, None)
+        self.by_hand = self.by_hand.excluding(self._flown(number), None)
 
     def mark(self, text: str) -> None:
         self.calls.append(("mark", text))
+        self.by_hand = self.by_hand.remarking(Remark(self.state.now_s, text))
+
+    def begin_maneuver(self) -> None:
+        self._marking_since_s = self.state.now_s
+
+    def end_maneuver(self) -> None:
+        assert self._marking_since_s is not None
+        self.by_hand = self.by_hand.marking(Mark(self._marking_since_s, self.state.now_s))
+        self._marking_since_s = None
 
     def note(self, number: int, text: str) -> None:
         self.calls.append(("note", number, text))
+        self.by_hand = self.by_hand.noting(self._flown(number), text)
+
+    def _flown(self, number: int) -> Maneuver:
+        return next(j.maneuver for j in self.state.maneuvers if j.maneuver.number == number)
 
 
 class HandFedSource:
@@ -83,6 +105,7 @@ class HandFedSource:
             "good", "412 messages/s, none lost.", (("messages", "412 /s"), ("lost", "0.0 %"))
         )
         self.notices: list[str] = []
+        self.kept: list[ByHand] = []
         self.closed = False
 
     def deliver(self, count: int = 1) -> None:
@@ -106,10 +129,14 @@ class HandFedSource:
         taken, self.notices = self.notices, []
         return taken
 
+    def keep(self, by_hand: ByHand) -> str:
+        self.kept.append(by_hand)
+        return "decisions by hand are kept"
+
     def close(self) -> None:
         self.closed = True
 
 
-def staged(*states: CampaignState) -> StagedCampaign:
-    """A campaign that is in the last of these states after as many batches."""
-    return StagedCampaign(states or (flights.state(),))
+def staged(by_hand: ByHand = NOTHING) -> StagedCampaign:
+    """A campaign of seven manoeuvres."""
+    return StagedCampaign((flights.state(),), by_hand=by_hand)

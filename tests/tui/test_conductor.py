@@ -8,6 +8,7 @@ from math import inf
 import numpy as np
 import pytest
 
+from advisor.by_hand import ByHand
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.flight.messages import Columns
 from advisor.problems import UnusableInputError
@@ -32,8 +33,8 @@ def log(maneuvers: int = 4) -> list[Columns]:
 class CountingCampaign(StagedCampaign):
     """Judges a manoeuvre at every five-hundredth message."""
 
-    def __init__(self) -> None:
-        super().__init__([flights.state(0)])
+    def __init__(self, by_hand: ByHand) -> None:
+        super().__init__([flights.state(0)], by_hand=by_hand)
 
     @property
     def state(self) -> CampaignState:
@@ -45,8 +46,9 @@ class CountingCampaign(StagedCampaign):
     def _judged(self, number: int) -> JudgedManeuver:
         whole = one(number)
         start_s = (number * A_MANEUVER - 100) / 50.0
-        maneuver = replace(whole.maneuver, span=replace(whole.maneuver.span, start_s=start_s))
-        return replace(whole, maneuver=maneuver, excluded_because=self._excluded.get(number))
+        maneuver = whole.maneuver.later(start_s - whole.maneuver.span.start_s)
+        excluded, notes = self.by_hand.excluded_because(maneuver), self.by_hand.notes_on(maneuver)
+        return replace(whole, maneuver=maneuver, excluded_because=excluded, notes=notes)
 
 
 class Flown:
@@ -59,8 +61,8 @@ class Flown:
         self.script: list[tuple[Callable[[Report], bool], Callable[[], None]]] = []
         self.conductor = Conductor(self.player, self._make)
 
-    def _make(self) -> CountingCampaign:
-        self.campaigns.append(CountingCampaign())
+    def _make(self, by_hand: ByHand) -> CountingCampaign:
+        self.campaigns.append(CountingCampaign(by_hand))
         return self.campaigns[-1]
 
     def _tell(self, report: Report) -> None:
@@ -134,10 +136,9 @@ def test_decisions_by_hand_survive_a_jump_back():
     flight.when(always, lambda: flight.conductor.decide(HandDecision("note", "look again", 3)))
     flight.when(always, lambda: flight.conductor.jump(1))
     flight.run(campaigns=2)
-    _, second = flight.campaigns
-    assert ("exclude", 2, "gust") in second.calls
-    assert ("note", 3, "look again") in second.calls
-    assert flight.reports[-1].state.maneuvers[1].excluded_because == "gust"
+    _, second, third = flight.reports[-1].state.maneuvers[:3]
+    assert second.excluded_because == "gust"
+    assert third.notes == ("look again",)
 
 
 def test_including_again_records_its_reason_as_a_note():
@@ -146,14 +147,35 @@ def test_including_again_records_its_reason_as_a_note():
     assert campaign.calls == [("include", 2), ("note", 2, "included again: the gust was harmless")]
 
 
-def test_a_mark_comes_back_at_its_own_moment():
+def test_a_moment_and_a_manoeuvre_that_were_marked_are_known_from_the_start_after_a_jump_back():
     flight = Flown()
-    flight.when(
-        lambda r: r.state.now_s >= 3.0, lambda: flight.conductor.decide(HandDecision("mark", "flaps"))
-    )
+    decide = flight.conductor.decide
+    flight.when(lambda r: r.state.now_s >= 3.0, lambda: decide(HandDecision("mark", "flaps")))
+    flight.when(always, lambda: decide(HandDecision("begin")))
+    flight.when(lambda r: r.state.now_s >= 5.0, lambda: decide(HandDecision("end")))
     flight.when(over, lambda: flight.conductor.jump(1))
     flight.run(campaigns=2)
-    assert ("mark", "flaps") in flight.campaigns[1].calls
+    first, second = flight.campaigns
+    assert second.by_hand == first.by_hand
+    assert [remark.text for remark in second.by_hand.remarks] == ["flaps"]
+    assert 5.0 <= second.by_hand.marks[0].end_s <= 6.5
+
+
+def test_every_decision_by_hand_is_kept_with_its_source_and_said():
+    source = HandFedSource()
+    source.deliver()
+    reports: list[Report] = []
+    conductor = Conductor(source, staged)
+
+    def tell(report: Report) -> None:
+        reports.append(report)
+        if source.kept:
+            conductor.stop()
+
+    conductor.decide(HandDecision("exclude", "gust", 2))
+    conductor.run(tell)
+    assert [remark.text for remark in source.kept[-1].excluded] == ["gust"]
+    assert "decisions by hand are kept" in reports[-1].log
 
 
 def test_a_decision_on_a_manoeuvre_still_to_come_waits_for_it():
@@ -175,8 +197,8 @@ def test_unusable_input_ends_the_thread_and_closes_the_source():
 def test_the_campaign_is_made_in_the_working_thread_only():
     made: list[StagedCampaign] = []
 
-    def make() -> StagedCampaign:
-        made.append(staged())
+    def make(by_hand: ByHand) -> StagedCampaign:
+        made.append(staged(by_hand))
         return made[-1]
 
     conductor = Conductor(HandFedSource(), make)

@@ -1,6 +1,7 @@
 """The application on a real link: the bundled aircraft flies as a process of its own, over UDP."""
 
 from advisor.aircraft import Aircraft
+from advisor.by_hand import ByHand
 from advisor.campaign import Campaign
 from advisor.demo import Demonstration
 from advisor.tui.app import AdvisorApp
@@ -16,8 +17,8 @@ async def test_a_flight_over_a_real_link_is_followed_to_the_stop():
     source = LinkSource(flight, flight.over)
     campaigns: list[Campaign] = []
 
-    def make() -> Campaign:
-        campaigns.append(Campaign(Aircraft(), settle=True))
+    def make(by_hand: ByHand) -> Campaign:
+        campaigns.append(Campaign(Aircraft(), settle=True, by_hand=by_hand))
         return campaigns[-1]
 
     app = AdvisorApp(Conductor(source, make), Aircraft(), "demonstration", None, Settings(screen="engineer"))

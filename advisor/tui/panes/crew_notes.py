@@ -17,7 +17,9 @@ def alpha_in_words(view: View) -> str:
 
 def flying_in_words(view: View) -> str:
     """What is in the air now and how its estimate settles."""
-    flying, settling = view.state.flying, view.state.settling
+    flying, settling, marked_s = view.state.flying, view.state.settling, view.state.marking_since_s
+    if marked_s is not None:
+        return f"marked by hand for {view.state.now_s - marked_s:.0f} s"
     if flying is None:
         return "between manoeuvres"
     seconds = view.state.now_s - flying.span.start_s

@@ -1,0 +1,74 @@
+"""What an engineer decides by hand on one flight: marks, exclusions, notes, remarks.
+
+Each decision is bound to vehicle time and not to a manoeuvre's number: numbers move when a mark is added.
+"""
+
+from dataclasses import dataclass, replace
+
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.marks import Mark
+from advisor.flight.segmentation import LEAD_IN_S
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """A sentence on one moment of the flight."""
+
+    at_s: float
+    """Vehicle time, s since boot."""
+    text: str
+    boot: int = 0
+    """Which power-on, 0 for the first in the log."""
+
+    def concerns(self, maneuver: Maneuver) -> bool:
+        """Whether the moment lies in a manoeuvre, its lead-in included."""
+        span = maneuver.span
+        return self.boot == maneuver.boot and span.start_s - LEAD_IN_S <= self.at_s < span.end_s
+
+
+@dataclass(frozen=True, slots=True)
+class ByHand:
+    """All decisions by hand on one flight, in the order in which they were made."""
+
+    marks: tuple[Mark, ...] = ()
+    """Stretches that the engineer calls manoeuvres."""
+    excluded: tuple[Remark, ...] = ()
+    """Manoeuvres taken out of every decision, each with the reason."""
+    notes: tuple[Remark, ...] = ()
+    """What was written beside manoeuvres."""
+    remarks: tuple[Remark, ...] = ()
+    """Moments marked in the event log."""
+
+    def excluded_because(self, maneuver: Maneuver) -> str | None:
+        """The reason for which a manoeuvre is taken out; None for one that counts."""
+        return next((r.text for r in self.excluded if r.concerns(maneuver)), None)
+
+    def notes_on(self, maneuver: Maneuver) -> tuple[str, ...]:
+        """What was written beside a manoeuvre."""
+        return tuple(r.text for r in self.notes if r.concerns(maneuver))
+
+    def excluding(self, maneuver: Maneuver, because: str | None) -> "ByHand":
+        """The decisions with a manoeuvre taken out for a reason, or with None taken in again."""
+        others = tuple(r for r in self.excluded if not r.concerns(maneuver))
+        added = () if because is None else (_on(maneuver, because),)
+        return replace(self, excluded=(*others, *added))
+
+    def noting(self, maneuver: Maneuver, text: str) -> "ByHand":
+        """The decisions with a further note on a manoeuvre."""
+        return replace(self, notes=(*self.notes, _on(maneuver, text)))
+
+    def remarking(self, remark: Remark) -> "ByHand":
+        """The decisions with a further moment marked in the event log."""
+        return replace(self, remarks=(*self.remarks, remark))
+
+    def marking(self, mark: Mark) -> "ByHand":
+        """The decisions with a further mark."""
+        return replace(self, marks=(*self.marks, mark))
+
+
+NOTHING = ByHand()
+"""No decision by hand."""
+
+
+def _on(maneuver: Maneuver, text: str) -> Remark:
+    return Remark(round(maneuver.span.start_s, 3), text, maneuver.boot)

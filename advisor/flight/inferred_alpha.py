@@ -1,0 +1,73 @@
+"""Angle of attack inferred from the motion alone, for aircraft without a vane.
+
+Pitch rate, specific force, attitude and air speed give the rate of the angle of attack,
+
+    α̇ = q + (a_z·cos α − a_x·sin α + g·cos γ)/V
+
+(Klein & Morelli, *Aircraft System Identification*, chapter 10). Its integral has the shape of the angle of
+attack; biases of the instruments make it drift. The climb rate tells level and drift where there is one.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.flight.motion import bank_at, gravity_in_plane, integrated
+from advisor.flight.record import Channel
+from advisor.gravity import GRAVITY_M_S2
+
+NEEDED = ("q", "theta", "a_z")
+_PASSES = 2
+_DRIFT = 2
+"""Degree of the polynomial that biases of rate and force, and their change with the attitude, make of α."""
+
+
+def alpha_rate(
+    t: FloatArray, alpha: FloatArray, speed: FloatArray, channels: Mapping[str, Channel], arm_m: float = 0.0
+) -> FloatArray:
+    """Rate of the angle of attack that the motion shows, rad/s, at times ``t`` of the pitch rate.
+
+    Parameters
+    ----------
+    t, alpha, speed
+        Shape (n,): the stamps of the channel ``q`` (s), angle of attack (rad) and air speed (m/s) there.
+    channels
+        ``q``, ``theta`` and ``a_z``; ``a_x`` and ``bank`` are used when present.
+    arm_m
+        Distance of the accelerometer ahead of the centre of gravity.
+    """
+
+    def at(name: str) -> FloatArray:
+        return np.interp(t, channels[name].t, channels[name].y)
+
+    q, theta, a_z = channels["q"].y, at("theta"), at("a_z")
+    if arm_m:
+        a_z = a_z + arm_m * np.gradient(q, t)
+    has_a_x = "a_x" in channels and len(channels["a_x"]) > 1
+    a_x = at("a_x") if has_a_x else GRAVITY_M_S2 * np.sin(theta)
+    up, size = gravity_in_plane(theta, bank_at(t, channels))
+    return np.asarray(q + (a_z * np.cos(alpha) - a_x * np.sin(alpha) + size * np.cos(up - alpha)) / speed)
+
+
+def inferred_alpha(channels: Mapping[str, Channel], speed: FloatArray) -> Channel | None:
+    """Angle of attack as the motion shows it; None where pitch rate, attitude or a_z is missing.
+
+    Parameters
+    ----------
+    channels
+        A manoeuvre's channels. An ``alpha`` among them, such as one from climb rate, sets level and drift.
+    speed
+        Shape (n,), air speed at the stamps of the channel ``q``, m/s.
+    """
+    if any(name not in channels or len(channels[name]) < 2 for name in NEEDED) or np.min(speed) <= 0.0:
+        return None
+    t = channels["q"].t
+    level = channels.get("alpha")
+    anchor = np.interp(t, level.t, level.y) if level is not None and len(level) > 1 else np.zeros(len(t))
+    drift = np.vander((t - t.mean()) / max(float(np.ptp(t)), 1e-9), _DRIFT + 1)
+    alpha = anchor
+    for _ in range(_PASSES):
+        shape = integrated(t, alpha_rate(t, alpha, speed, channels))
+        alpha = shape + drift @ np.linalg.lstsq(drift, anchor - shape, rcond=None)[0]
+    return Channel("alpha", t, alpha, "q, a_z, theta, airspeed", "inferred")

@@ -1,0 +1,228 @@
+"""Stretches of flight that somebody marks as manoeuvres: by hand, by a switch, by a text of the vehicle.
+
+A mark takes the place of whatever the finder finds in its stretch. A mark that an engineer makes while the
+stream runs gives the manoeuvre that the same mark gives when it is known before the stream begins.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from advisor.flight.events import Notice
+from advisor.flight.maneuver import Span
+from advisor.problems import Problem
+
+Marker = Literal["hand", "switch", "text"]
+
+LONGEST_S = 100.0
+"""Longest mark, s: with its lead-in a mark must fit into the two minutes of channels that a stream keeps."""
+MARK_NOTICES = frozenset({"mark_length", "marked_already", "mark_dropped"})
+"""Codes of the notices that tell of a mark that cannot be used."""
+EDGE_S = 2.0
+"""A mark may reach so far beyond the log, s: a power cut robs a recording of its last second."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A stretch of flight that somebody calls a manoeuvre."""
+
+    start_s: float
+    """Where the stretch begins, s since boot."""
+    end_s: float
+    """Where the stretch ends, s since boot."""
+    boot: int | None = None
+    """Which power-on, 0 for the first in the log; None: the first that holds the stretch."""
+    from_log_start: bool = False
+    """Whether the times count from the first sample of the log instead of from the boot."""
+    by: Marker = "hand"
+    """Who or what set the mark."""
+    name: str = "A mark"
+    """What a sentence about the mark begins with."""
+
+    def overlaps(self, start_s: float, end_s: float) -> bool:
+        """Whether the mark shares time with a stretch of the same power-on."""
+        return self.start_s < end_s and start_s < self.end_s
+
+
+@dataclass(frozen=True, slots=True)
+class Switched:
+    """A switch or a text of the vehicle that begins or ends a mark."""
+
+    order: int
+    """Order of arrival among all messages."""
+    at_s: float
+    """Vehicle time, s since boot."""
+    by: Marker
+    on: bool
+    """Whether a mark begins; else it ends."""
+
+
+@dataclass(frozen=True, slots=True)
+class Due:
+    """What the marks of a stream have made known."""
+
+    marks: tuple[Mark, ...] = ()
+    """Complete marks in seconds since boot, the one that ended first before the others."""
+    spans: tuple[tuple[Span, int | None], ...] = ()
+    """Spans of the finder that an open mark held back and none has taken, each with its order of arrival."""
+    notices: tuple[Notice, ...] = ()
+    """Sentences on marks that cannot be used."""
+
+
+class Marks:
+    """The marks of one stream: which of them are complete, and which spans of the finder give way.
+
+    Parameters
+    ----------
+    given
+        Marks that are known before the stream begins.
+    """
+
+    def __init__(self, given: Sequence[Mark] = ()) -> None:
+        self._given = list(given)
+        self._heard: list[tuple[float, float]] = []
+        self.start_boot(0, 0.0)
+
+    def start_boot(self, boot: int, earlier_s: float) -> None:
+        """Another power-on begins, after ``earlier_s`` seconds of the log."""
+        self._boot, self._earlier_s = boot, earlier_s
+        self._first_s = np.nan
+        self._switched: list[Switched] = []
+        self._open: dict[Marker, float] = {}
+        self._waiting: dict[Mark, Mark | None] = {}
+        self._closed: list[Mark] = []
+        self._held: list[tuple[Span, int | None]] = []
+        self._notices: list[Notice] = []
+
+    def start_clock(self, first_s: float) -> None:
+        """The vehicle's clock showed ``first_s``, s since boot, when this power-on was first heard."""
+        self._first_s = first_s
+        for mark in tuple(self._given):
+            by_s = first_s - self._earlier_s if mark.from_log_start else 0.0
+            start_s, end_s = mark.start_s + by_s, mark.end_s + by_s
+            if mark.boot not in (None, self._boot) or start_s < first_s - EDGE_S or end_s <= first_s:
+                continue
+            here = replace(mark, start_s=max(start_s, first_s), end_s=end_s, from_log_start=False)
+            refused = self._refused(here)
+            if refused is not None:
+                self._given.remove(mark)
+                self._notices.append(refused)
+            else:
+                self._waiting[here] = mark
+
+    def hear(self, switched: Iterable[Switched]) -> None:
+        """Take what a switch or the texts of the vehicle say, messages of one type in order of arrival."""
+        self._switched = sorted([*self._switched, *switched], key=lambda one: one.order)
+
+    def begin_by_hand(self, at_s: float) -> None:
+        """Begin a mark; a mark that is open already is dropped."""
+        self._open["hand"] = at_s
+
+    def end_by_hand(self, at_s: float) -> Mark | Notice:
+        """End the open mark; a notice says why that is not possible."""
+        if "hand" not in self._open:
+            return Notice("no_mark", "No mark is open: begin one first.")
+        mark = Mark(self._open.pop("hand"), at_s, self._boot)
+        refused = self._refused(mark)
+        if refused is None:
+            self._waiting[mark] = None
+        return refused or mark
+
+    @property
+    def by_hand_since_s(self) -> float | None:
+        """When the mark began that a hand has still to end, s since boot; None without one."""
+        return self._open.get("hand")
+
+    def since_s(self, now_s: float) -> float | None:
+        """When the mark that is being flown at ``now_s`` began, s since boot; None between marks."""
+        begun = [m.start_s for m in self._waiting if m.start_s <= now_s <= m.end_s]
+        return min([*begun, *self._open.values()], default=None)
+
+    def advance(self, order: int) -> None:
+        """Everything that arrived before ``order`` has been heard."""
+        while self._switched and self._switched[0].order <= order:
+            switched = self._switched.pop(0)
+            if switched.on:
+                self._open.setdefault(switched.by, switched.at_s)
+            elif switched.by in self._open:
+                self._close(switched.by, switched.at_s)
+
+    def hides(self, span: Span, order: int | None) -> bool:
+        """Whether a span of the finder gives way to a mark, or waits for the end of an open one."""
+        if any(m.overlaps(span.start_s, span.end_s) for m in (*self._waiting, *self._closed)):
+            return True
+        waits = any(since_s < span.end_s for since_s in self._open.values())
+        if waits:
+            self._held.append((span, order))
+        return waits
+
+    def due(self, arrived_s: float) -> Due:
+        """What is complete when every channel has arrived up to ``arrived_s``, s since boot."""
+        ready = [m for m in self._waiting if m.end_s <= arrived_s]
+        return self._due(ready) if ready or self._held or self._notices else Due()
+
+    def finish(self, last_s: float) -> Due:
+        """The power-on ends at ``last_s``, s since boot: a switch that is on ends its mark there.
+
+        What a hand has begun and not ended is dropped.
+        """
+        self.advance(self._switched[-1].order if self._switched else 0)
+        begun_s = self._open.pop("hand", None)
+        if begun_s is not None:
+            said = "is dropped: the vehicle's clock began anew before its end."
+            self._notices.append(Notice("mark_dropped", f"The mark begun at {begun_s:.1f} s {said}"))
+        for by in tuple(self._open):
+            self._close(by, last_s)
+        self._heard.append((self._first_s, last_s))
+        within = [m for m in self._waiting if m.start_s < last_s and m.end_s <= last_s + EDGE_S]
+        return self._due(within, last_s)
+
+    def _due(self, complete: Sequence[Mark], last_s: float = np.inf) -> Due:
+        ready = sorted(complete, key=lambda m: (m.end_s, m.start_s))
+        for mark in ready:
+            given = self._waiting.pop(mark)
+            if given is not None:
+                self._given.remove(given)
+        self._closed += ready
+        held, self._held = self._held, []
+        released = tuple((span, order) for span, order in held if not self.hides(span, order))
+        notices, self._notices = tuple(self._notices), []
+        return Due(tuple(replace(m, end_s=min(m.end_s, last_s)) for m in ready), released, notices)
+
+    def _close(self, by: Marker, at_s: float) -> None:
+        mark = Mark(self._open.pop(by), at_s, self._boot, by=by)
+        refused = self._refused(mark)
+        if refused is None:
+            self._waiting[mark] = None
+        else:
+            self._notices.append(refused)
+
+    def _refused(self, mark: Mark) -> Notice | None:
+        """Why a mark that has just ended cannot be used; None when it can."""
+        length_s = mark.end_s - mark.start_s
+        where = f"The mark from {mark.start_s:.1f} to {mark.end_s:.1f} s"
+        if not 0.0 < length_s <= LONGEST_S:
+            most = f"is {length_s:.1f} s long: a mark lasts more than 0 and at most {LONGEST_S:.0f} s."
+            return Notice("mark_length", f"{where} {most}")
+        others = [m.start_s for m in (*self._closed, *self._waiting) if m.overlaps(mark.start_s, mark.end_s)]
+        hand_s = self._open.get("hand", np.inf)
+        if hand_s < mark.end_s:
+            others.append(hand_s)
+        if others:
+            said = f"another mark begins at {min(others):.1f} s and shares time with it."
+            return Notice("marked_already", f"{where} is left out: {said}")
+        return None
+
+    def problems(self) -> list[Problem]:
+        """Marks that no power-on of the whole stream holds."""
+        heard = " and ".join(f"{a:.1f} to {b:.1f} s" for a, b in self._heard if np.isfinite(a))
+        return [
+            Problem(
+                "mark_outside",
+                f"{mark.name} lies outside of the log, which holds {heard or 'no'} vehicle time.",
+                "Give a stretch within the log, in seconds since boot or with + from its start (+12:+24).",
+            )
+            for mark in self._given
+        ]

@@ -1,0 +1,161 @@
+"""The file beside a log that keeps what was decided by hand: ``flight.maneuvers.yaml`` for ``flight.tlog``.
+
+Times are seconds since boot. Every command that reads the log reads the file, too.
+"""
+
+import os
+from collections.abc import Sequence
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from advisor.by_hand import ByHand, Remark
+from advisor.flight.marks import LONGEST_S, Mark
+from advisor.problems import ConfigurationError
+
+SUFFIX = ".maneuvers.yaml"
+_TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}
+"""Sections of sentences, named as the fields of ``ByHand``, and the key that holds the sentence."""
+_SECTIONS = ("maneuvers", *_TEXT_KEYS)
+_HEADING = "# Decided by hand; times in vehicle seconds since boot. `advisor` reads this file with its log.\n"
+
+
+def path_beside(log: Path) -> Path:
+    """Where the decisions on a log are kept."""
+    return log.with_suffix(SUFFIX)
+
+
+def read_by_hand(log: Path) -> ByHand:
+    """Read what was decided by hand on a log; nothing where there is no file.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be read, is not YAML, or holds unknown keys or unusable values.
+    """
+    path = path_beside(log)
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return ByHand()
+    except OSError as error:
+        raise _mistake(path, f"cannot be read ({error.strerror})") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        where = f", line {mark.line + 1}" if (mark := getattr(error, "problem_mark", None)) else ""
+        raise _mistake(path, f"not a YAML file{where}") from None
+    if content is None:
+        return ByHand()
+    if not isinstance(content, dict):
+        raise _mistake(path, f"holds no sections; the sections are {', '.join(_SECTIONS)}")
+    for section in content:
+        if section not in _SECTIONS:
+            raise _mistake(path, f"{section}: unknown key, the sections are {', '.join(_SECTIONS)}")
+    marks = tuple(
+        _mark(path, f"maneuvers[{i}]", entry) for i, entry in enumerate(_entries(path, content, "maneuvers"))
+    )
+    remarks = {
+        section: tuple(
+            _remark(path, f"{section}[{i}]", entry, key)
+            for i, entry in enumerate(_entries(path, content, section))
+        )
+        for section, key in _TEXT_KEYS.items()
+    }
+    return ByHand(marks, **remarks)
+
+
+def write_by_hand(log: Path, by_hand: ByHand) -> None:
+    """Keep the decisions beside a log: the file is old or new and whole, whenever power fails.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    path = path_beside(log)
+    sections: dict[str, list[dict[str, Any]]] = {
+        "maneuvers": [
+            {"start_s": mark.start_s, "end_s": mark.end_s, **_boot(mark.boot)} for mark in by_hand.marks
+        ]
+    }
+    for section, key in _TEXT_KEYS.items():
+        remarks: Sequence[Remark] = getattr(by_hand, section)
+        sections[section] = [{"at_s": r.at_s, key: r.text, **_boot(r.boot)} for r in remarks]
+    filled = {name: entries for name, entries in sections.items() if entries}
+    text = _HEADING + (yaml.safe_dump(filled, sort_keys=False, allow_unicode=True) if filled else "")
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        with beside.open("w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        beside.replace(path)
+    except OSError:
+        beside.unlink(missing_ok=True)
+        raise
+
+
+def keep_by_hand(log: Path, by_hand: ByHand) -> str:
+    """Keep the decisions beside a log; a sentence says where, or why that is not possible."""
+    path = path_beside(log)
+    try:
+        write_by_hand(log, by_hand)
+    except OSError as error:
+        return (
+            f"decisions by hand cannot be kept in {path}: {error.strerror or error}; they hold until you quit"
+        )
+    return f"decisions by hand are kept in {path}"
+
+
+def _boot(boot: int | None) -> dict[str, int]:
+    return {"boot": boot} if boot else {}
+
+
+def _entries(path: Path, content: dict[str, Any], section: str) -> list[dict[str, Any]]:
+    entries = content.get(section) or []
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise _mistake(path, f"{section}: must be a list of entries with keys")
+    return entries
+
+
+def _mark(path: Path, where: str, entry: dict[str, Any]) -> Mark:
+    _refuse_unknown(path, where, entry, ("start_s", "end_s", "boot"))
+    start_s, end_s = (_number(path, where, entry, key) for key in ("start_s", "end_s"))
+    if not 0.0 < end_s - start_s <= LONGEST_S:
+        raise _mistake(path, f"{where}: end_s must lie after start_s, by at most {LONGEST_S:.0f} s")
+    name = f"{path.name}: the mark from {start_s:g} to {end_s:g} s"
+    # A hand that writes the file need not know of power-ons: the first that holds the stretch is meant.
+    return Mark(start_s, end_s, _power_on(path, where, entry) if "boot" in entry else None, name=name)
+
+
+def _remark(path: Path, where: str, entry: dict[str, Any], key: str) -> Remark:
+    _refuse_unknown(path, where, entry, ("at_s", key, "boot"))
+    at_s, text = _number(path, where, entry, "at_s"), entry.get(key)
+    if not isinstance(text, str) or not text:
+        raise _mistake(path, f"{where}.{key}: must be a text")
+    return Remark(at_s, text, _power_on(path, where, entry))
+
+
+def _refuse_unknown(path: Path, where: str, entry: dict[str, Any], known: Sequence[str]) -> None:
+    for key in entry:
+        if key not in known:
+            raise _mistake(path, f"{where}.{key}: unknown key, the keys are {', '.join(known)}")
+
+
+def _number(path: Path, where: str, entry: dict[str, Any], key: str) -> float:
+    value = entry.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+        raise _mistake(path, f"{where}.{key}: must be a number of seconds since boot")
+    return float(value)
+
+
+def _power_on(path: Path, where: str, entry: dict[str, Any]) -> int:
+    boot = entry.get("boot", 0)
+    if isinstance(boot, bool) or not isinstance(boot, int) or boot < 0:
+        raise _mistake(path, f"{where}.boot: must be the number of a power-on, 0 for the first")
+    return boot
+
+
+def _mistake(path: Path, what: str) -> ConfigurationError:
+    return ConfigurationError(f"{path}: {what}. Mend the file, move it away, or give --no-marks.")

@@ -1,0 +1,78 @@
+"""Whether a measured angle of attack counts, and what stands in for one that does not.
+
+Most small aircraft have no vane. With pitch rate, specific force, attitude and air speed the angle of
+attack is a state that nobody need measure. An angle of attack that the autopilot derives counts only as far
+as the kinematics support it (``advisor.flight.kinematics``)."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.channels import DERIVED_ALPHA
+from advisor.flight.inferred_alpha import NEEDED, inferred_alpha
+from advisor.flight.kinematics import check_alpha, combine
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.record import Channel
+
+FEWEST_SAMPLES = 20
+"""Fewest samples of a channel that counts in a manoeuvre."""
+
+
+def has(channels: Mapping[str, Channel], name: str) -> bool:
+    """Whether a channel has samples enough to be estimated from."""
+    return name in channels and int(np.count_nonzero(np.isfinite(channels[name].y))) >= FEWEST_SAMPLES
+
+
+def lacking(maneuver: Maneuver, aircraft: Aircraft) -> tuple[str, ...]:
+    """Channels whose absence keeps the motion from standing in for an angle of attack."""
+    absent = [name for name in NEEDED if not has(maneuver.channels, name)]
+    airspeed = maneuver.channels.get("airspeed")
+    measured = airspeed is not None and len(airspeed) > 1 and float(np.min(airspeed.y)) > 0.0
+    if not measured and aircraft.airspeed_m_s is None:
+        absent.append("airspeed")
+    return tuple(absent)
+
+
+def can_do_without(maneuver: Maneuver, aircraft: Aircraft) -> bool:
+    """Whether the motion can stand in for an angle of attack."""
+    return not lacking(maneuver, aircraft)
+
+
+def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
+    """Why no measured angle of attack counts in these manoeuvres, as half a sentence; empty where one
+    does."""
+    if aircraft.alpha.source == "none":
+        return "alpha is left out, as the aircraft file asks"
+    if not all(has(m.channels, "alpha") for m in maneuvers):
+        return "no alpha was measured"
+    if all(m.channels["alpha"].source == DERIVED_ALPHA for m in maneuvers):
+        return "alpha derived from the climb rate is left out: a_z and the pitch rate tell more"
+    check = combine(
+        [
+            check_alpha(m, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m)
+            for m in maneuvers
+        ]
+    )
+    if check.finding != "inconsistent":
+        return ""
+    return f"alpha is left out: the motion explains {100.0 * max(check.explained, 0.0):.0f} % of it"
+
+
+def infer(maneuver: Maneuver, aircraft: Aircraft) -> Channel:
+    """The angle of attack as the motion shows it, for a manoeuvre that can do without a measured one.
+
+    Raises
+    ------
+    ValueError
+        If the manoeuvre lacks a channel (``lacking``).
+    """
+    airspeed, t = maneuver.channels.get("airspeed"), maneuver.channels["q"].t
+    if airspeed is not None and len(airspeed) > 1:
+        speed = np.interp(t, airspeed.t, airspeed.y)
+    else:
+        speed = np.full(len(t), aircraft.airspeed_m_s or np.nan)
+    found = inferred_alpha(maneuver.channels, speed)
+    if found is None:
+        raise ValueError("the motion cannot stand in for an angle of attack")
+    return found

@@ -1,0 +1,56 @@
+"""How well an estimate predicts the response to its own inputs: the 95 % band, relative to the peak.
+
+The sensitivities of the outputs carry the errors of the derivatives, and of instruments estimated with them,
+to the response (delta method). Trim, initial states and biases are refitted in every manoeuvre, so that
+what they can take up is no error of the prediction. Errors that trade with each other, such as those of a
+servo's lag and of M_δe, cancel where they move no response.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from advisor.aircraft import PARAMETERS
+from advisor.flight.messages import FloatArray
+from advisor.model.response import N_SHARED, SHARED
+from advisor.oem.solution import Solution
+
+NORMAL_95 = 1.959963984540054
+_DERIVATIVES = tuple(name for name in SHARED if name in PARAMETERS)
+
+
+def prediction_band(solution: Solution) -> Mapping[str, float]:
+    """Output name to the largest half-width of the 95 % band over the peak of the response, all manoeuvres.
+
+    Parameters
+    ----------
+    solution : an optimum with the covariance of its parameters.
+    """
+    assembly, optimum = solution.assembly, solution.optimum
+    own = assembly.free[assembly.free >= N_SHARED]
+    columns = solution.sensitivities[:, [SHARED.index(name) for name in _DERIVATIVES]]
+    kept = solution.covariance.shape[0] - len(PARAMETERS)
+    if kept and solution.extra is not None:
+        columns = np.column_stack([columns, solution.extra[:, :kept]])
+    among = [PARAMETERS.index(name) for name in _DERIVATIVES]
+    among += range(len(PARAMETERS), len(PARAMETERS) + columns.shape[1] - len(_DERIVATIVES))
+    covariance = solution.covariance[np.ix_(among, among)]
+    weight = 1.0 / optimum.noise[assembly.channel]
+    widest: dict[str, float] = {}
+    for named in assembly.rows:
+        rows = np.concatenate([np.arange(s.start, s.stop) for s in named.values()])
+        left = _without(solution.sensitivities[rows][:, own], columns[rows], weight[rows])
+        half = NORMAL_95 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", left, covariance, left), 0.0))
+        first = 0
+        for name, s in named.items():
+            band = float(np.max(half[first : first + s.stop - s.start]))
+            first += s.stop - s.start
+            peak = float(np.max(np.abs(solution.fitted[s] - solution.fitted[s.start])))
+            widest[name] = max(widest.get(name, 0.0), band / peak if peak > 0.0 else np.inf)
+    return widest
+
+
+def _without(own: FloatArray, columns: FloatArray, weight: FloatArray) -> FloatArray:
+    """What a manoeuvre's own parameters cannot take up of ``columns`` (n, k)."""
+    taken = np.linalg.lstsq(own * weight[:, None], columns * weight[:, None], rcond=1e-10)[0]
+    return np.asarray(columns - own @ taken)

@@ -1,0 +1,43 @@
+"""What holds for any tail: beforehand knowledge of Z_q and Z_δe, where no angle of attack is measured.
+
+Without a vane, pitch rate and specific force leave Z_q and Z_δe to trade with Z_α on a well damped aircraft.
+Both are small on every aircraft, for one reason each:
+
+- Z_q = -ρ·S·c·C_Lq/(4·m) is the lift of the pitch rate relative to the turn of the path;
+- Z_δe/M_δe = k_y²/(l_t·V): the tail's lift turns the path by its force, the nose by its moment, with k_y the
+  radius of gyration and l_t the tail's lever.
+"""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.model.response import N_SHARED, SHARED
+from advisor.oem.problem import Problem
+
+Z_Q_STD = 0.1
+"""Standard deviation of Z_q, 1. C_Lq of 10 gives 0.03 to 0.1 for aircraft of 3 kg to 8 t."""
+LIFT_OVER_MOMENT_S = 0.02
+"""Standard deviation of Z_δe/M_δe, s. Published estimates give 0.008 (twin jet) and 0.010 (twin
+turboprop)."""
+
+
+def precision(problem: Problem, shared: FloatArray) -> FloatArray:
+    """Inverse variances with which the prior draws the shared parameters to zero.
+
+    Parameters
+    ----------
+    shared
+        Shape (7,), order of ``SHARED``; M_δe among them scales the prior of Z_δe.
+
+    Returns
+    -------
+    FloatArray
+        Shape (7,). Zero throughout where every record has an angle of attack.
+    """
+    weight = np.zeros(N_SHARED)
+    if all("alpha" in record.outputs for record in problem.records):
+        return weight
+    moment = max(abs(float(shared[SHARED.index("M_delta_e")])), 1e-6)
+    weight[SHARED.index("Z_q")] = Z_Q_STD**-2
+    weight[SHARED.index("Z_delta_e")] = (LIFT_OVER_MOMENT_S * moment) ** -2
+    return weight
