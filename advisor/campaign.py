@@ -13,6 +13,7 @@ from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.events import (
+    Activity,
     FlightEvent,
     ManeuverFlown,
     ModeChanged,
@@ -87,6 +88,7 @@ class Campaign:
         self._history: list[Flown] = []
         self._notices: list[str] = []
         self._mark_notes: list[str] = []
+        self._activity: list[Activity] = []
         self._judged: tuple[JudgedManeuver, ...] = ()
         self._flight_test = flight_test((), aircraft.campaign, aircraft)
         self._model: Estimate | None = None
@@ -131,6 +133,7 @@ class Campaign:
             elevator_notes=stream.elevator_notes,
             mark_notes=tuple(self._mark_notes),
             notices=tuple(self._notices),
+            activity=tuple(self._activity),
         )
 
     @property
@@ -191,6 +194,9 @@ class Campaign:
                     ended_s = maneuver.span.end_s
                     self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
                     self._log(self._flight_test.sentence, ended_s)
+                case Activity():
+                    joined = event.joined(self._activity[-1]) if self._activity else None
+                    self._activity[-1:] = [joined] if joined else [*self._activity[-1:], event]
                 case ModeChanged(mode, at_s):
                     self._log(f"mode {mode}", at_s)
                 case Notice(code, text):

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
+from advisor.flight.events import Activity
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
@@ -55,3 +56,5 @@ class CampaignState:
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()
     """Sentences for the event log, oldest first."""
+    activity: tuple[Activity, ...] = ()
+    """Movements of the elevator that were no test inputs, oldest first; alike neighbours are one."""

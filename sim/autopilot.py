@@ -4,16 +4,14 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
+from sim.hand import by_hand
 from sim.linear import ShortPeriod
 from sim.maneuvers import Input, elevator_input
 from sim.motion import Controls, Motion
-from sim.scenario import Maneuver, Scenario
+from sim.scenario import Augmentation, Maneuver, Scenario
 
-MANUAL, CRUISE = 0, 7
+MANUAL, FBWA, CRUISE = 0, 5, 7
 """ArduPlane's mode numbers, as HEARTBEAT.custom_mode gives them."""
-
-SETTLING_S = 2.0
-"""The mode changes to MANUAL so long before the first step."""
 
 
 class Demand(NamedTuple):
@@ -31,6 +29,8 @@ class Demand(NamedTuple):
 
 BANDWIDTH_RAD_S = 0.8
 """Of the attitude hold."""
+_PITCH_PER_STICK = 3.0
+"""Pitch angle that the stick asks for in FBWA, as a multiple of the deflection that it gives in MANUAL."""
 
 
 @dataclass(frozen=True)
@@ -48,12 +48,11 @@ def plan(scenario: Scenario, amplitude_deg: float, unit_s: float) -> tuple[Plann
     """Lay the scenario's manoeuvres out in time; amplitude and unit are the aircraft's usual ones."""
     planned = []
     now = scenario.lead_in_s
-    for maneuver in scenario.maneuvers:
-        amplitude = maneuver.amplitude_deg or scenario.amplitude_deg or amplitude_deg
-        stick = elevator_input(
-            maneuver.input, math.radians(amplitude), maneuver.unit_s or scenario.unit_s or unit_s
-        )
-        start = now + SETTLING_S
+    for number, maneuver in enumerate(scenario.maneuvers):
+        amplitude = math.radians(maneuver.amplitude_deg or scenario.amplitude_deg or amplitude_deg)
+        unit = maneuver.unit_s or scenario.unit_s or unit_s
+        stick = by_hand(maneuver, amplitude, unit, [scenario.seed, number])
+        start = now + (scenario.settling_s if maneuver.settling_s is None else maneuver.settling_s)
         end = start + stick.duration_s + (scenario.free_s if maneuver.free_s is None else maneuver.free_s)
         planned.append(Planned(maneuver, stick, now, start, end))
         now = end + (scenario.gap_s if maneuver.gap_s is None else maneuver.gap_s)
@@ -80,8 +79,14 @@ class Autopilot:
     """Attitude, height, speed and bank loops, and a pilot who flies the plan."""
 
     def __init__(
-        self, planned: tuple[Planned, ...], trim: Controls, start: Motion, model: ShortPeriod
+        self,
+        planned: tuple[Planned, ...],
+        trim: Controls,
+        start: Motion,
+        model: ShortPeriod,
+        augmentation: Augmentation | None = None,
     ) -> None:
+        self._augmentation = augmentation or Augmentation()
         self._planned = planned
         self._trim = trim
         self._start = start
@@ -103,7 +108,10 @@ class Autopilot:
 
     def mode(self, time_s: float) -> int:
         """Flight mode at ``time_s``."""
-        return MANUAL if self.current(time_s) else CRUISE
+        planned = self.current(time_s)
+        if planned is None:
+            return CRUISE
+        return FBWA if planned.maneuver.mode == "FBWA" else MANUAL
 
     def _next(self, time_s: float) -> Maneuver | None:
         """The manoeuvre whose speed, height and bank are to be reached."""
@@ -124,11 +132,17 @@ class Autopilot:
         if planned is None:
             return self._hold(motion, upcoming, aileron, period_s)
         maneuver, since = planned.maneuver, time_s - planned.start_s
+        if maneuver.mode == "FBWA":
+            asked = _PITCH_PER_STICK * planned.input.pull(since)
+            return self._hold(motion, upcoming, aileron, period_s, asked)._replace(mode=FBWA)
         # Aileron and rudder doublets last as long as one unit and begin with the elevator.
         swing = elevator_input("doublet", 1.0, planned.input.duration_s / 7.0).pull(since)
         throttle = self._settled_throttle + (maneuver.throttle_change if since >= -1e-9 else 0.0)
         return Demand(
-            self._settled_elevator - planned.input.pull(since) - math.radians(maneuver.trim_off_deg),
+            self._settled_elevator
+            - planned.input.pull(since)
+            - math.radians(maneuver.trim_off_deg)
+            + self._augmented(motion),
             min(max(throttle, 0.0), 1.0),
             min(max(aileron + maneuver.aileron * swing, -1.0), 1.0),
             maneuver.rudder * swing,
@@ -136,11 +150,18 @@ class Autopilot:
             maneuver.turbulence_m_s,
         )
 
-    def _hold(self, motion: Motion, upcoming: Maneuver | None, aileron: float, period_s: float) -> Demand:
+    def _augmented(self, motion: Motion) -> float:
+        """Elevator that the stability augmentation adds to the pilot's."""
+        off = motion.alpha - self._start.alpha
+        return self._augmentation.alpha * off + self._augmentation.pitch_rate * motion.q
+
+    def _hold(
+        self, motion: Motion, upcoming: Maneuver | None, aileron: float, period_s: float, asked: float = 0.0
+    ) -> Demand:
         airspeed = (upcoming.airspeed_m_s if upcoming else None) or self._start.airspeed
         height = self._start.height if upcoming is None or upcoming.height_m is None else upcoming.height_m
         climb = min(max(0.1 * (height - motion.height) / motion.airspeed, -0.05), 0.05)
-        off = motion.theta - self._start.theta - climb
+        off = motion.theta - self._start.theta - climb - asked
         self._integral = min(max(self._integral + 0.1 * off * period_s, -0.2), 0.2)
         elevator = self._trim.elevator + self._stiffness * (off + self._integral) + self._damping * motion.q
         slow = airspeed - motion.airspeed

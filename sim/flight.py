@@ -18,8 +18,6 @@ from sim.scenario import Maneuver, Noise, Scenario
 from sim.sensors import NOISY, ChannelNoise, Reading, ideal
 from sim.servo import Servo
 
-CLOSING_S = 5.0
-"""Attitude hold after the last manoeuvre."""
 _DEPARTED_RAD_S = 50.0
 """Pitch rate that no aircraft flies with: the motion grows without bound."""
 
@@ -85,12 +83,12 @@ class Flight:
         usual = hangar.habits(scenario)
         self.planned = plan(scenario, usual.amplitude_deg, usual.unit_s)
         planned_s = self.planned[-1].end_s if self.planned else scenario.lead_in_s
-        self.duration_s = planned_s + CLOSING_S if duration_s is None else duration_s
+        self.duration_s = planned_s + scenario.closing_s if duration_s is None else duration_s
         self.calibration = self.engine.calibration
         self._fittings = complete(scenario, fittings or Fittings())
         self._servo = Servo(tuple(self._fittings.mechanisms))
         self._pilot = pilot or Autopilot(
-            self.planned, self.engine.trim, self.engine.motion(), self.engine.truth
+            self.planned, self.engine.trim, self.engine.motion(), self.engine.truth, scenario.augmentation
         )
         self._noise = ChannelNoise(noise_sigma(scenario, fresh), scenario.noise.colour, scenario.seed)
         self._passing = DrydenTurbulence(0.0, 60.0, np.random.default_rng([scenario.seed, 7]))
@@ -218,7 +216,9 @@ def noise_sigma(
     }
     if noise.percent > 0.0 and scenario.maneuvers:
         first = scenario.maneuvers[0]
-        plain = Maneuver(first.input, first.amplitude_deg, first.unit_s, first.free_s)
+        plain = Maneuver(
+            first.input, amplitude_deg=first.amplitude_deg, unit_s=first.unit_s, free_s=first.free_s
+        )
         quiet = Scenario(
             aircraft=scenario.aircraft,
             engine=scenario.engine,
@@ -229,6 +229,7 @@ def noise_sigma(
             unit_s=scenario.unit_s,
             free_s=scenario.free_s,
             speed=scenario.speed,
+            augmentation=scenario.augmentation,
             lead_in_s=1.0,
             maneuvers=(plain,),
             noise=Noise(),

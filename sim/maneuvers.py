@@ -11,6 +11,8 @@ STEPS: Mapping[str, tuple[tuple[float, float], ...]] = {
     "doublet": ((1.0, 1.0), (1.0, -1.0)),
     "pulse": ((1.0, 1.0),),
     "121": ((1.0, 1.0), (2.0, -1.0), (1.0, 1.0)),
+    "multistep": ((2.0, 0.7), (1.0, -1.0), (1.0, 0.5), (2.0, -0.6), (1.0, 1.0), (1.5, -0.4), (1.5, 0.2)),
+    "long": ((16.0, 1.0),),
 }
 """Inputs made of steps. Positive pulls: the first step of ``3211`` raises the nose."""
 
@@ -29,6 +31,8 @@ class Input:
     duration_s: float
     pull: Callable[[float], float]
     """Deflection trailing edge **up** in rad, at a time in seconds after the onset."""
+    corners_s: tuple[float, ...] = ()
+    """Ends of the steps in s after the onset; empty for an input without steps."""
 
 
 def elevator_input(name: str, amplitude_rad: float, unit_s: float) -> Input:
@@ -37,7 +41,11 @@ def elevator_input(name: str, amplitude_rad: float, unit_s: float) -> Input:
         return Input(NONE_UNITS * unit_s, lambda _: 0.0)
     if name == "multisine":
         return _multisine(amplitude_rad, unit_s)
-    steps = STEPS[name]
+    return stepped(STEPS[name], amplitude_rad, unit_s)
+
+
+def stepped(steps: tuple[tuple[float, float], ...], amplitude_rad: float, unit_s: float) -> Input:
+    """Return the input made of steps (duration in units, share of the amplitude)."""
 
     def pull(time_s: float) -> float:
         # A hair of tolerance keeps a step on its tick whatever rounding made of the tick's time.
@@ -48,7 +56,8 @@ def elevator_input(name: str, amplitude_rad: float, unit_s: float) -> Input:
             left -= units * unit_s
         return 0.0
 
-    return Input(sum(units for units, _ in steps) * unit_s, pull)
+    ends = [sum(units for units, _ in steps[: k + 1]) * unit_s for k in range(len(steps))]
+    return Input(ends[-1], pull, tuple(ends))
 
 
 def _multisine(amplitude_rad: float, unit_s: float) -> Input:

@@ -10,7 +10,7 @@ from sim.autopilot import Autopilot, plan
 from sim.effects.kit import Kit
 from sim.effects.terms import fit_terms
 from sim.fittings import Fittings
-from sim.flight import CLOSING_S, Flight
+from sim.flight import Flight
 from sim.hangar import LINEAR_HABITS, unit_for
 from sim.linear_aircraft import LinearAircraft
 from sim.replay import RecordedAirspeed, RecordedPilot, Recording, read_recording
@@ -41,7 +41,7 @@ def modelled_flight(scenario: Scenario, path: Path, replayed: Path | None = None
         scenario = replace(scenario, clock=clock, noise=replace(scenario.noise, percent=0.0), maneuvers=())
     engine = _engine(aircraft, scenario, recording)
     planned = plan(scenario, LINEAR_HABITS.amplitude_deg, LINEAR_HABITS.unit_s)
-    duration = (planned[-1].end_s if planned else scenario.lead_in_s) + CLOSING_S
+    duration = (planned[-1].end_s if planned else scenario.lead_in_s) + scenario.closing_s
     if recording is not None:
         duration = float(recording.time_s[-1] - recording.time_s[0])
     kit = Kit(

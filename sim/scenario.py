@@ -17,6 +17,8 @@ class Maneuver:
     """One manoeuvre and what goes wrong with it."""
 
     input: str = "3211"
+    mode: Literal["MANUAL", "FBWA"] = "MANUAL"
+    """FBWA: the pilot's input asks for a pitch angle, and the attitude hold moves the elevator."""
     amplitude_deg: float | None = None
     """Elevator amplitude; None: the scenario's ``amplitude_deg``."""
     unit_s: float | None = None
@@ -25,6 +27,18 @@ class Maneuver:
     """Free response after the last step; None: the scenario's."""
     gap_s: float | None = None
     """Attitude hold before the next manoeuvre; None: the scenario's."""
+    settling_s: float | None = None
+    """Between the change of the mode and the first step; None: the scenario's."""
+    slew_s: float = 0.0
+    """Each step is drawn out into a slope of so long, as a hand does."""
+    uneven: float = 0.0
+    """Durations and amplitudes of the steps differ by up to this share."""
+    corrected: float = 0.0
+    """The pilot corrects with this share of the amplitude half a second before the first step."""
+    stick: float = 0.0
+    """The stick moves meanwhile: standard deviation as a share of the amplitude."""
+    trim_after: float = 0.0
+    """The elevator comes to rest off its trim by this share of the amplitude."""
     bank_deg: float = 0.0
     """Flown in a turn with this bank."""
     airspeed_m_s: float | None = None
@@ -117,6 +131,16 @@ class Link:
 
 
 @dataclass(frozen=True)
+class Augmentation:
+    """Feedback to the elevator while the pilot flies in MANUAL: an unstable aircraft is flown with it."""
+
+    alpha: float = 0.0
+    """Elevator, rad, for each rad of angle of attack off trim."""
+    pitch_rate: float = 0.0
+    """Elevator, rad, for each rad/s of pitch rate."""
+
+
+@dataclass(frozen=True)
 class Instruments:
     """Where and how the accelerometer sits."""
 
@@ -163,14 +187,19 @@ class Scenario:
     """Elevator amplitude; None: what suits the aircraft."""
     unit_s: float | None = None
     """One unit of the inputs' time; None: what suits the aircraft's short period."""
+    settling_s: float = 2.0
+    """The mode changes to that of the manoeuvre so long before the first step."""
     free_s: float = 4.0
     gap_s: float = 8.0
+    closing_s: float = 5.0
+    """Attitude hold after the last manoeuvre."""
     maneuvers: tuple[Maneuver, ...] = field(default_factory=_paper_campaign)
     input: Literal["linear", "held"] = "linear"
     """How the command moves between two ticks of the loop: in a straight line, or held and then jumping."""
     speed: Literal["free", "held"] = "free"
     """Airspeed moves as forces have it, or an ideal engine holds it."""
     servo: Servo = field(default_factory=Servo)
+    augmentation: Augmentation = field(default_factory=Augmentation)
     noise: Noise = field(default_factory=lambda: Noise(percent=1.0))
     alpha: AlphaSensor = field(default_factory=AlphaSensor)
     instruments: Instruments = field(default_factory=Instruments)

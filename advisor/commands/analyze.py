@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     show_default=True,
     help="Search for each manoeuvre's optimum; nelder-mead is the paper's, slower by far.",
 )
+@click.option(
+    "--all", "every_movement", is_flag=True, help="List also what moved the elevator and was no test input."
+)
 @json_option
 def command(
     log: Path,
@@ -49,6 +52,7 @@ def command(
     marks: "tuple[Mark, ...]",
     no_marks: bool,
     method: Literal["gauss-newton", "nelder-mead"],
+    every_movement: bool,
     as_json: bool,
 ) -> int:
     """Every manoeuvre's verdict, the estimates, stop or continue: as text, or as one JSON document.
@@ -76,7 +80,14 @@ def command(
 
         from advisor.report.text import AnalysisText
 
-        Console(highlight=False, soft_wrap=True).print(AnalysisText(state, log.name, aircraft))
+        Console(highlight=False, soft_wrap=True).print(
+            AnalysisText(state, log.name, aircraft, every_movement)
+        )
+    elif state is not None and every_movement:
+        from advisor.report.text import activity_line
+
+        for activity in state.activity:
+            click.echo(activity_line(activity))
     for problem in problems:
         click.echo(problem.about(log.name), err=True)
     return UNUSABLE if problems else 0

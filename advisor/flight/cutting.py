@@ -1,20 +1,19 @@
-"""From spans of elevator samples to manoeuvres: the channels cut out, and what is none left aside."""
+"""From movements of the elevator to manoeuvres with their channels, or to activities with their reasons."""
 
 from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.channels import SLOWEST_FLIGHT_M_S
-from advisor.flight.events import FlightEvent, ManeuverFlown, Notice
+from advisor.flight.events import Activity, FlightEvent, ManeuverFlown
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.marked_input import marked_span
 from advisor.flight.marks import Mark
+from advisor.flight.purpose import not_an_input
 from advisor.flight.record import UNITS
 from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.sense import Sense, turned
-from advisor.flight.shape import is_3211
 from advisor.flight.track import Tracks
 from advisor.flight.vehicle import closes_pitch_loop
 
@@ -34,10 +33,11 @@ class Cutting:
         self._tracks, self._who = tracks, who
         self._sense = None if calibrated else Sense()
         self._modes = [(-np.inf, who.mode)]
+        self._released = (0, -np.inf)
         self.maneuvers = 0
         """How many manoeuvres have been found."""
-        self.autopilots: Counter[str] = Counter()
-        """Inputs that were the autopilot's own, by flight mode."""
+        self.activities: Counter[str] = Counter()
+        """Movements that were no test inputs, by what they were in words."""
 
     @property
     def is_backwards(self) -> bool:
@@ -58,16 +58,13 @@ class Cutting:
         return turned(maneuver) if self.is_backwards else maneuver
 
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """What a span that has ended was: a manoeuvre, an input on the ground, an autopilot's own."""
+        """What a movement that has ended was: a manoeuvre, or an activity with its reason."""
         maneuver = self._cut(span, boot, up_to_order)
-        airspeed = maneuver.channels.get("airspeed")
-        if airspeed is not None and 0.0 < float(np.median(airspeed.y)) < SLOWEST_FLIGHT_M_S:
-            said = f"Elevator input at {span.start_s:.1f} s ignored: the aircraft does not fly."
-            return [Notice("on_ground", said)]
-        if closes_pitch_loop(maneuver.mode) and not is_3211(span.kind):
-            # In such a mode steps are the autopilot's own, unless their timing shows a test input.
-            self.autopilots[maneuver.mode] += 1
-            return []
+        because = not_an_input(maneuver)
+        if because is not None:
+            self.activities[because.what] += 1
+            stay_s, _ = self._stay(_middle_s(span))
+            return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
         return self._counted(maneuver)
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
@@ -77,12 +74,25 @@ class Cutting:
 
     def _counted(self, maneuver: Maneuver) -> list[FlightEvent]:
         self.maneuvers += 1
+        self._released = (maneuver.boot, maneuver.span.end_s)
         if self._sense is None or "elevator" not in maneuver.channels:
             return [ManeuverFlown(maneuver)]
         maneuver, found = self._sense.right(maneuver)
         return [*found, ManeuverFlown(maneuver)]
 
+    def pilot_flies(self, at_s: float) -> bool:
+        """Whether the pilot moves the elevator at this time, as far as the flight mode tells."""
+        return not closes_pitch_loop(self._stay(at_s)[1])
+
+    def _stay(self, at_s: float) -> tuple[float, str]:
+        """Since when the vehicle was in the flight mode that it had at this time, and the mode."""
+        return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
+
     def _cut(self, span: Span, boot: int, up_to_order: int | None) -> Maneuver:
+        earlier_boot, earlier_s = self._released
+        if earlier_boot == boot and earlier_s > span.record_from_s:
+            # The lead-in does not reach into the record of another manoeuvre.
+            span = replace(span, record_from_s=min(earlier_s, span.start_s))
         channels = {}
         for name in UNITS:
             channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
@@ -90,5 +100,9 @@ class Cutting:
                 channels[name] = replace(
                     channel, provenance=self._who.provenance(channel.source, channel.provenance)
                 )
-        mode = next(mode for since, mode in reversed(self._modes) if since <= span.start_s)
-        return Maneuver(self.maneuvers + 1, boot, span, channels, mode)
+        return Maneuver(self.maneuvers + 1, boot, span, channels, self._stay(_middle_s(span))[1])
+
+
+def _middle_s(span: Span) -> float:
+    """Middle of the movement: a heartbeat tells of a new flight mode only up to two seconds later."""
+    return 0.5 * (span.start_s + span.end_s)

@@ -58,8 +58,7 @@ class ElevatorWatch:
         """No more samples will come: everything that is complete enough."""
         while self._waiting:
             self._release()
-        last = self._segmenter.finish()
-        spans = [*self._ended, *([last] if last else [])]
+        spans = [*self._ended, *self._segmenter.finish()]
         self._ended.clear()
         return spans
 
@@ -70,12 +69,11 @@ class ElevatorWatch:
             ended = self._segmenter.mode_changed(t)
         else:
             ended = self._segmenter.push(t, elevator)
-        if ended is not None:
-            self._ended.append(ended)
+        self._ended += ended
 
 
 def _cut(span: Span, t: float) -> Span:
-    """A manoeuvre whose free response had ended before it became known that the mode changed at ``t``."""
-    if span.end_s <= t:
+    """A movement that had ended before it became known that the mode changed at ``t``."""
+    if span.end_s <= t or span.start_s >= t:
         return span
     return replace(span, end_s=max(t, span.last_step_s), closed_by="mode change")

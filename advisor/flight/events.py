@@ -1,9 +1,12 @@
 """What the stream of messages tells the flight test, in the order in which it became known."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from advisor.flight.maneuver import InputKind, Maneuver
 from advisor.flight.vehicle import Vehicle
+
+_SOON_S = 30.0
+"""Alike movements at most this far apart, s, are listed as one: a list of single corrections is not read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +49,33 @@ class ManeuverFlown:
 
 
 @dataclass(frozen=True, slots=True)
+class Activity:
+    """The elevator moved, and it was no test input."""
+
+    start_s: float
+    """s since boot."""
+    end_s: float
+    reason: str
+    """``autopilot``, ``ground``, ``small``, ``no_information`` or ``unsettled``."""
+    text: str
+    """A sentence for people."""
+    stay_s: float
+    """Since when the vehicle had been in its flight mode, s since boot; it tells one stay from the next."""
+    boot: int = 0
+    """Which power-on of the vehicle."""
+
+    def joined(self, earlier: "Activity") -> "Activity | None":
+        """Return one activity for this and the one before; None where reason, boot or mode differ."""
+        if (self.reason, self.boot, self.stay_s) != (earlier.reason, earlier.boot, earlier.stay_s):
+            return None
+        if self.reason != "autopilot" and (
+            self.text != earlier.text or self.start_s > earlier.end_s + _SOON_S
+        ):
+            return None
+        return replace(earlier, end_s=max(self.end_s, earlier.end_s))
+
+
+@dataclass(frozen=True, slots=True)
 class Notice:
     """A sentence for the event log."""
 
@@ -53,4 +83,4 @@ class Notice:
     text: str
 
 
-FlightEvent = VehicleFound | Rebooted | ModeChanged | ManeuverStarted | ManeuverFlown | Notice
+FlightEvent = VehicleFound | Rebooted | ModeChanged | ManeuverStarted | ManeuverFlown | Activity | Notice

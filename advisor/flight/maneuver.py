@@ -25,7 +25,7 @@ class Span:
     steps: tuple[tuple[float, float], ...]
     """The input as told apart: (onset s, level in rad from trim), one a step."""
     closed_by: str
-    """Why it ended: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``;
+    """Why it ended: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``no rest``;
     or who marked it: ``marked by hand``, ``marked by a switch``, ``marked by a text of the vehicle``."""
 
 

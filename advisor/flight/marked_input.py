@@ -1,26 +1,18 @@
-"""The input within a marked stretch: its kind and its steps, as far as it has a known shape."""
+"""The input within a marked stretch: its kind and its steps, as the finder describes them."""
 
-from typing import NamedTuple
-
-import numpy as np
-
-from advisor.flight.input_shape import SMALLEST_RAD
-from advisor.flight.maneuver import InputKind, Span
+from advisor.flight.maneuver import Span
 from advisor.flight.marks import Mark
+from advisor.flight.movement import Movement, describe
 from advisor.flight.record import Channel
-from advisor.flight.segmentation import LEAD_IN_S, Segmenter
-from advisor.flight.shape import BAND, Shape
-from advisor.flight.stretch import RESTING_S
+from advisor.flight.rest import SMALLEST_RAD, is_still, median, without_spikes
+from advisor.flight.segmentation import LEAD_IN_S
 
 MARKED = {"hand": "marked by hand", "switch": "marked by a switch", "text": "marked by a text of the vehicle"}
 """Why the span of a marked stretch ended, by who or what marked it."""
-
-
-class _Input(NamedTuple):
-    kind: InputKind
-    start_s: float
-    last_step_s: float
-    steps: tuple[tuple[float, float], ...]
+_RESTING_S = 0.5
+"""The end of a mark counts as rest over this time, s."""
+_BEFORE_S = 0.3
+"""The level before the input is that of so much before the mark, s."""
 
 
 def marked_span(mark: Mark, elevator: Channel | None) -> Span:
@@ -36,43 +28,34 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
     Returns
     -------
     Span
-        Its record begins up to one lead-in before the mark, where the elevator was heard by then.
+        Its record begins up to one lead-in before the mark, where the elevator was heard by then. An elevator
+        that keeps still has no step: what such a mark lacks is an input, not a free response.
     """
     if elevator is None:
         return Span(mark.start_s, mark.start_s, mark.end_s, mark.end_s, "other", (), MARKED[mark.by])
-    found = _recognised(mark, elevator) or _unnamed(mark, elevator)
     record_from_s = min(max(mark.start_s - LEAD_IN_S, float(elevator.t[0])), mark.start_s)
+    found = _input(mark, elevator)
+    if found is None:
+        return Span(record_from_s, mark.start_s, mark.start_s, mark.end_s, "other", (), MARKED[mark.by])
     return Span(
-        record_from_s, found.start_s, found.last_step_s, mark.end_s, found.kind, found.steps, MARKED[mark.by]
+        record_from_s,
+        found.start_s,
+        min(found.last_step_s, mark.end_s),
+        mark.end_s,
+        found.kind,
+        found.steps,
+        MARKED[mark.by],
     )
 
 
-def _recognised(mark: Mark, elevator: Channel) -> _Input | None:
-    """The input of the stretch as the finder knows it, where it is the only one."""
-    finder = Segmenter()
-    found: list[Span | Shape] = []
-    for t, u in zip(elevator.t.tolist(), elevator.y.tolist(), strict=True):
-        if (span := finder.push(t, u)) is not None:
-            found.append(span)
-    last = finder.recognised or finder.finish()
-    if last is not None:
-        found.append(last)
-    if len(found) != 1 or found[0].start_s < mark.start_s - LEAD_IN_S:
-        return None
-    return _Input(found[0].kind, found[0].start_s, found[0].last_step_s, found[0].steps)
-
-
-def _unnamed(mark: Mark, elevator: Channel) -> _Input:
-    """From the beginning of the mark to where the elevator leaves for the level of its end.
-
-    An elevator that keeps still leaves at once: what such a mark lacks is an input, not a free response.
-    """
+def _input(mark: Mark, elevator: Channel) -> Movement | None:
+    """What the elevator does within the mark; None where it keeps still."""
     within = elevator.cut(mark.start_s, mark.end_s)
-    if len(within) < 2:
-        return _Input("other", mark.start_s, mark.end_s, ())
-    level = float(np.median(within.cut(within.t[-1] - RESTING_S, within.t[-1]).y))
-    away = np.abs(within.y - level)
-    if np.max(away) < SMALLEST_RAD:
-        return _Input("other", mark.start_s, mark.start_s, ())
-    last = np.flatnonzero(away > BAND * np.max(away))[-1]
-    return _Input("other", mark.start_s, float(within.t[last]), ())
+    if len(within) < 3:
+        return None
+    before = elevator.cut(mark.start_s - _BEFORE_S, mark.start_s).y
+    level = median(before) if len(before) else float(within.y[0])
+    rest = within.cut(float(within.t[-1]) - _RESTING_S, float(within.t[-1])).y
+    moved = float(abs(without_spikes(within.y) - level).max())
+    found = describe(within.t, within.y, level, rest if is_still(rest, moved) else None)
+    return found if found is not None and found.amplitude >= SMALLEST_RAD else None

@@ -1,190 +1,331 @@
-"""The segmenter: finds manoeuvres in the stream of elevator samples, as they end.
+"""The segmenter: finds every movement of the elevator in the stream of its samples, as it ends.
 
-A derivative parser marks every fast edge and has to tell a test input from all other work of
-the elevator; a wavelet parser needs the time unit beforehand. This one waits until the
-elevator has come to rest and then asks of the stretch behind it, on the stretch's own scale,
-whether it was an input (`input_shape`). What follows is the free response, until it has
-lasted long enough or something ends it. The work per sample is bounded, and a result depends
-on the samples alone, not on how they were delivered.
+A movement begins where the elevator leaves its rest and ends where it rests again: at the level before, or
+elsewhere for long. What counts as rest is measured against the movement itself (`rest`). So one rule serves
+steps, slewed edges, pulses and multisines, of fast aircraft and slow ones. The free response follows until it
+has lasted long enough or something ends it. What a movement was is decided where the other channels are at
+hand (`purpose`). The work per sample is bounded. A result depends on the samples alone, not on how they
+were delivered.
 """
+
+from itertools import pairwise
 
 import numpy as np
 
-from advisor.flight.input_shape import SMALLEST_RAD, recognise
 from advisor.flight.maneuver import Span
 from advisor.flight.messages import FloatArray
-from advisor.flight.shape import Shape
-from advisor.flight.stretch import RESTING_S, median, range_of
+from advisor.flight.movement import Movement, describe
+from advisor.flight.rest import SMALLEST_RAD, is_still, median, without_spikes
+from advisor.flight.samples import Samples
 
 LEAD_IN_S = 1.0
 """How much of the flight before the first step belongs to the record."""
-_REACH_S = 30.0
-"""How far back the segmenter looks: two of the longest inputs."""
+_REACH_S = 60.0
+"""Longest movement. One that goes on for longer is told piece by piece."""
+_OVERLAP_S = 10.0
+"""Such a piece ends so long ago: an input that has begun since is whole in the next."""
 _CHECK_S = 0.1
-"""How often it looks."""
+"""How often rest is looked for."""
+_RESTING_S = 0.5
+"""How long the elevator rests before a movement counts as over."""
+_FIRST_LEVEL_S = 0.1
+"""A stream that has just begun counts as at rest over this time."""
 _FREE_S = (3.0, 8.0)
 """Free response: as long as the input, but within these."""
-_LEAST_FREE_S = 2.5
-"""A multisine whose free response is cut short counts from so much on: slow wandering seldom rests so."""
+_PARTING_S = (0.5, 0.6)
+"""A rest parts two movements if it lasts for three quarters of the longest step, but within these. The next
+input may come one second later."""
+_SURELY_S = 2.5
+"""A rest this long parts two movements however it wavers."""
+_BACK = 0.2
+"""After a shorter rest within this share of the amplitude from the level before, the next input may come."""
+_WAVERING = 0.25
+"""A shorter rest after a movement without levels must be still against this share of its amplitude: a
+multisine has gentle parts of its own."""
+_NEAR = 0.4
+"""The elevator has returned if it rests within this share of the amplitude from the level before."""
+_HOLD_S = (8.0, 20.0)
+"""A rest at another level ends a movement after the first time. It ends a single step after the second, so
+that a long pulse is one input."""
+_LONGER = 1.2
+"""... or after the longest earlier rest at another level and so much more: a slow input has long steps."""
+_LEAVES = (0.2, 0.35)
+"""A free response ends where the elevator moves by five standard deviations of its rest, but
+within these shares of the amplitude."""
+_LEAST_REST_S = 0.3
+"""A rest before the movement is at least so long, if anything else moved before."""
+_KEEP_S = _REACH_S + 30.0
+"""Samples are kept for so long: a movement and its free response."""
+_LEAVING_S = (1.0, 0.15)
+"""The part of a rest that is asked whether it is still, s before the elevator leaves: the last
+moment may be its setting out."""
 _GAP_S = 1.0
-"""A longer gap ends a free response."""
+"""A longer gap ends a free response, ..."""
+_MANY_INTERVALS = 5.0
+"""... if so many samples are missing."""
 _LONGEST_GAP_S = 3.0
 """A longer one ends everything; over a shorter one an input is recognised, to be refused for the gap."""
-_STEP_S = 0.12
-"""A movement most of which happens within this time is a step."""
 
 
 class Segmenter:
     """Takes elevator samples in the order of their stamps; gives spans as they end."""
 
     def __init__(self) -> None:
-        self._t = np.empty(4096)
-        self._u = np.empty(4096)
-        self._size = 0
-        self._from = 0
+        self._samples = Samples(_KEEP_S)
+        self._ended: list[Span] = []
+        self._begin_anew(-np.inf)
+
+    def _begin_anew(self, from_s: float) -> None:
+        """Nothing is known of the elevator's rest since ``from_s``."""
+        self._new_from_s = from_s
+        self._base: float | None = None
+        self._leaving = 0.5 * SMALLEST_RAD
+        self._pending: Movement | None = None
+        self._set_out(None, 0.0)
         self._next_check_s = -np.inf
-        self._pending: Shape | None = None
+
+    def _set_out(self, from_s: float | None, amplitude: float) -> None:
+        """The elevator rests, or moves since the sample at ``from_s``."""
+        self._moved_from_s, self._amplitude = from_s, amplitude
         self._away: list[float] = []
-        self._released_s = -np.inf
-        self._level: float | None = None
-        self._onset_s: float | None = None
-        self._mode_changed_s = -np.inf
+        self._held_since_s: float | None = None
+        self._held_rad = 0.0
+        self._longest_hold_s = 0.0
 
     @property
     def onset_s(self) -> float | None:
-        """Since when the elevator has been away from rest, or the manoeuvre's start in its free response."""
-        return self._pending.start_s if self._pending else self._onset_s
+        """Since when the elevator has been moving, or the manoeuvre's start in its free response."""
+        if self._pending:
+            return self._pending.start_s
+        return self._moved_from_s if self._amplitude >= SMALLEST_RAD else None
 
     @property
-    def recognised(self) -> Shape | None:
-        """The input whose free response is being awaited."""
+    def recognised(self) -> Movement | None:
+        """The movement whose free response is being awaited."""
         return self._pending
 
-    def push(self, t: float, u: float) -> Span | None:
-        """Take one sample: stamp (s, rising) and elevator (rad)."""
-        span = None
-        if self._size > self._from:
-            last = float(self._t[self._size - 1])
+    def push(self, t: float, u: float) -> list[Span]:
+        """Take one sample, stamp (s, rising) and elevator (rad); the spans that have ended by it."""
+        if self._samples.size:
+            last = float(self._samples.t[-1])
             if t <= last:
-                return None
-            if t - last > _GAP_S and t - last > self._longest_gap_s():
-                span = self._end("gap", last)
-                if t - last > _LONGEST_GAP_S:
-                    self._forget_all()
-        self._store(t, u)
+                return []
+            if t - last > _GAP_S and t - last > _MANY_INTERVALS * self._samples.interval_s():
+                self._interrupt(last, whole=t - last > _LONGEST_GAP_S)
+        self._samples.append(t, u)
+        self._advance(self._samples.size - 1)
+        return self._drain()
+
+    def mode_changed(self, t: float) -> list[Span]:
+        """The flight mode changed, at ``t`` at the earliest: what moved before ends there."""
         if self._pending is not None:
-            return span or self._follow(self._pending, t, u)
+            pending = self._pending
+            if pending.start_s >= t:
+                return []
+            self._end(pending, "mode change", max(t, pending.last_step_s))
+            t = max(t, pending.over_s)
+        elif self._moved_from_s is not None and self._moved_from_s < t:
+            self._cut_off("mode change", t)
+        self._restart(t)
+        return self._drain()
+
+    def finish(self) -> list[Span]:
+        """No more samples will come."""
+        if self._samples.size:
+            last = float(self._samples.t[-1])
+            if self._pending is not None:
+                self._end(self._pending, "end of log", last)
+            else:
+                self._cut_off("end of log", last)
+        self._forget_all()
+        return self._drain()
+
+    def _drain(self) -> list[Span]:
+        ended, self._ended = self._ended, []
+        return ended
+
+    def _restart(self, from_s: float) -> None:
+        """Follow the stored samples since ``from_s`` once more, as if the stream began there."""
+        self._begin_anew(from_s)
+        for i in range(self._samples.index(from_s), self._samples.size):
+            self._advance(i)
+
+    def _interrupt(self, last_s: float, whole: bool) -> None:
+        """The link was silent after ``last_s``, for long or, ``whole``, for very long."""
+        if self._pending is not None:
+            self._end(self._pending, "gap", last_s)
+            self._begin_anew(last_s)
+        elif whole:
+            self._cut_off("gap", last_s)
+        if whole:
+            self._forget_all()
+
+    def _advance(self, i: int) -> None:
+        """Take the stored sample ``i`` into account."""
+        samples = self._samples
+        t, u = float(samples.t[i]), float(samples.y[i])
+        if self._base is None:
+            begun = samples.index(self._new_from_s)
+            if i - begun >= 2 and t - samples.t[begun] >= _FIRST_LEVEL_S:
+                self._base = median(samples.y[begun : i + 1])
+            return
+        if self._pending is not None:
+            self._follow(self._pending, t, u)
+            return
+        # One sample alone is no movement.
+        deviation = min(abs(u - self._base), abs(float(samples.y[i - 1]) - self._base))
+        if self._moved_from_s is not None:
+            self._amplitude = max(self._amplitude, deviation)
+        elif deviation > self._leaving:
+            self._set_out(float(samples.t[max(i - 2, 0)]), deviation)
         if t >= self._next_check_s:
             self._next_check_s = t + _CHECK_S
-            self._look(t)
-            if self._pending is not None and self._pending.start_s < self._mode_changed_s:
-                return span or self._end_with_mode()
-        return span
-
-    def mode_changed(self, t: float) -> Span | None:
-        """The flight mode changed, at ``t`` at the earliest: a free response ends there."""
-        self._level, self._onset_s, self._mode_changed_s = None, None, t
-        return self._end_with_mode()
-
-    def finish(self) -> Span | None:
-        """No more samples will come."""
-        if self._size == self._from:
-            return None
-        last = float(self._t[self._size - 1])
-        if self._pending is None:
-            self._look(last)
-        span = self._end("end of log", last)
-        self._forget_all()
-        return span
-
-    def _look(self, t: float) -> None:
-        window = slice(self._from, self._size)
-        times, u = self._t[window], self._u[window]
-        resting = u[times.searchsorted(t - RESTING_S) :]
-        rest_range, moved = range_of(resting), range_of(u)
-        self._watch_onset(times, resting, rest_range)
-        if moved < SMALLEST_RAD or rest_range > 0.5 * moved:
-            return
-        self._pending = recognise(times, u)
-        self._away.clear()
-
-    def _watch_onset(self, times: FloatArray, resting: FloatArray, rest_range: float) -> None:
-        """Keep track of rest, and of when the elevator left it with a step."""
-        steady = len(resting) > 2 and rest_range <= SMALLEST_RAD
-        if steady and (self._level is None or abs(float(resting[-1]) - self._level) <= SMALLEST_RAD):
-            self._level, self._onset_s = median(resting), None
-        elif self._level is not None and self._onset_s is None:
-            away = np.abs(resting - self._level)
-            gone = np.flatnonzero(away > SMALLEST_RAD)
-            if len(gone) and times[-1] - times[len(times) - len(resting) + gone[0]] >= 0.8 * _STEP_S:
-                recent = times[len(times) - len(resting) :]
-                before = np.interp(recent - _STEP_S, recent, resting)
-                stepped = np.max(np.abs(resting - before)) >= 0.7 * np.max(away)
-                self._level, self._onset_s = (
-                    (self._level, float(recent[gone[0]])) if stepped else (None, None)
-                )
-        elif self._onset_s is not None and times[-1] - self._onset_s > 0.5 * _REACH_S:
-            self._level, self._onset_s = None, None
-
-    def _follow(self, shape: Shape, t: float, u: float) -> Span | None:
-        """The free response: ends with time, or when the elevator leaves trim again."""
-        if abs(u - shape.trim) > shape.band:
-            self._away.append(t)
-            if len(self._away) == 2:
-                return self._end("next input", self._away[0])
-        else:
-            self._away.clear()
-        duration = shape.last_step_s - shape.start_s
-        end_s = shape.last_step_s + min(max(duration, _FREE_S[0]), _FREE_S[1])
-        return self._end("quiet", end_s) if t >= end_s else None
-
-    def _end_with_mode(self) -> Span | None:
-        """A response ends with the flight mode; what moved the elevator since is the autopilot's own."""
-        last_step_s = self._pending.last_step_s if self._pending else -np.inf
-        return self._end("mode change", max(self._mode_changed_s, last_step_s))
-
-    def _end(self, why: str, at_s: float) -> Span | None:
-        shape, self._pending = self._pending, None
-        if shape is None or (why != "quiet" and at_s - shape.over_s < _least_free_s(shape)):
-            return None
-        times = self._t[self._from : self._size]
-        end_s = float(
-            times[np.searchsorted(times, at_s, side="right" if why != "next input" else "left") - 1]
-        )
-        record_from_s = max(shape.start_s - LEAD_IN_S, self._released_s, float(times[0]))
-        self._released_s = end_s
-        self._from += int(np.searchsorted(times, shape.over_s))
-        self._level, self._onset_s = shape.trim, None
-        return Span(record_from_s, shape.start_s, shape.last_step_s, end_s, shape.kind, shape.steps, why)
-
-    def _longest_gap_s(self) -> float:
-        recent = self._t[max(self._from, self._size - 20) : self._size]
-        return 5.0 * float(np.median(np.diff(recent))) if len(recent) > 2 else np.inf
-
-    def _store(self, t: float, u: float) -> None:
-        if self._size == len(self._t):
-            first = max(self._from, int(np.searchsorted(self._t, t - _REACH_S)))
-            kept = slice(first, self._size)
-            n = self._size - first
-            if n > len(self._t) // 2:
-                self._t = np.concatenate((self._t[kept], np.empty(n)))
-                self._u = np.concatenate((self._u[kept], np.empty(n)))
+            if self._moved_from_s is None:
+                if abs(u - self._base) <= self._leaving:
+                    self._watch_rest(i, t)
             else:
-                self._t[:n], self._u[:n] = self._t[kept].copy(), self._u[kept].copy()
-            self._from, self._size = 0, n
-        self._t[self._size], self._u[self._size] = t, u
-        self._size += 1
-        while self._t[self._from] < t - _REACH_S:
-            self._from += 1
+                self._look(i, t, self._moved_from_s, self._base)
+
+    def _watch_rest(self, i: int, t: float) -> None:
+        """The level of the rest moves slowly, and tells how far the elevator moves at rest."""
+        recent = self._samples.since(max(t - LEAD_IN_S, self._new_from_s), i + 1)
+        if len(recent) > 2:
+            self._base = median(recent)
+            self._leaving = min(max(4.0 * float(recent.std()), 0.5 * SMALLEST_RAD), 2.0 * SMALLEST_RAD)
+
+    def _look(self, i: int, t: float, from_s: float, base: float) -> None:
+        """The elevator moves: has it come to rest, at the level before or elsewhere for long?"""
+        if t - from_s > _REACH_S:
+            self._cut_off("no rest", t - _OVERLAP_S)
+            self._restart(t - _OVERLAP_S)
+            return
+        rest = self._samples.since(t - _RESTING_S, i + 1)
+        if t - from_s < _RESTING_S or not is_still(rest, self._amplitude):
+            self._let_go(t)
+            return
+        level = median(rest)
+        if abs(level - base) <= _NEAR * self._amplitude:
+            self._pending = self._described(i + 1, rest)
+            if self._pending is None:
+                self._base = level
+                self._set_out(None, 0.0)
+        elif self._held_since_s is None or abs(level - self._held_rad) > _NEAR * self._amplitude:
+            self._let_go(t)
+            self._held_since_s, self._held_rad = t - _RESTING_S, level
+        elif t - self._held_since_s >= self._longest_hold(from_s, base):
+            held = self._described(i + 1, rest)
+            self._base = level
+            if held is not None:
+                self._end(held, "quiet", t)
+            self._set_out(None, 0.0)
+
+    def _let_go(self, t: float) -> None:
+        """The level at which the elevator rested, away from trim, has been left."""
+        if self._held_since_s is not None:
+            self._longest_hold_s = max(self._longest_hold_s, t - self._held_since_s)
+            self._held_since_s = None
+
+    def _longest_hold(self, from_s: float, base: float) -> float:
+        """How long the elevator may rest away from trim within a movement, s."""
+        u = without_spikes(self._samples.since(from_s))
+        low, high = min(base, self._held_rad), max(base, self._held_rad)
+        beyond = max(low - float(u.min()), float(u.max()) - high)
+        single = beyond <= _NEAR * self._amplitude and self._longest_hold_s == 0.0
+        return _HOLD_S[1] if single else max(_HOLD_S[0], _LONGER * self._longest_hold_s)
+
+    def _follow(self, movement: Movement, t: float, u: float) -> None:
+        """The free response: ends with time, or when the elevator leaves trim again."""
+        least, most = (share * movement.amplitude for share in _LEAVES)
+        if abs(u - movement.trim) > min(max(5.0 * movement.quiet, least), most):
+            self._away.append(t)
+            if len(self._away) < 2:
+                return
+            left_s, deviation = self._away[0], abs(u - movement.trim)
+            self._away = []
+            if not self._parts(movement, left_s):
+                self._pending = None
+                return
+            self._end(movement, "next input", left_s)
+            self._pending, self._base = None, movement.trim
+            before = max(self._samples.index(left_s) - 1, 0)
+            self._set_out(float(self._samples.t[before]), deviation)
+            return
+        self._away = []
+        duration_s = movement.last_step_s - movement.start_s
+        end_s = movement.last_step_s + min(max(duration_s, _FREE_S[0]), _FREE_S[1])
+        if t >= end_s:
+            self._end(movement, "quiet", end_s)
+            self._pending, self._base = None, movement.trim
+            self._set_out(None, 0.0)
+
+    def _parts(self, movement: Movement, left_s: float) -> bool:
+        """Whether the rest until ``left_s`` makes another movement of what follows."""
+        rested_s = left_s - movement.over_s
+        if rested_s < _parting_s(movement):
+            return False
+        if rested_s >= _SURELY_S:
+            return True
+        if self._base is not None and abs(movement.trim - self._base) > _BACK * movement.amplitude:
+            return False
+        from_s = left_s - min(rested_s, _LEAVING_S[0])
+        rest = self._samples.since(from_s, self._samples.index(left_s - _LEAVING_S[1]))
+        return is_still(rest, (1.0 if movement.is_stepped else _WAVERING) * movement.amplitude)
+
+    def _cut_off(self, why: str, at_s: float) -> None:
+        """Something ends a movement before the elevator has come to rest."""
+        if self._moved_from_s is None or self._base is None:
+            return
+        until = self._samples.index(float(np.nextafter(at_s, np.inf)))
+        rest = self._samples.since(at_s - _RESTING_S, until)
+        movement = self._described(until, rest if is_still(rest, self._amplitude) else None)
+        if movement is not None:
+            self._end(movement, why, max(at_s, movement.last_step_s))
+
+    def _described(self, until: int, rest: FloatArray | None) -> Movement | None:
+        """The movement up to the sample ``until``; None where it is smaller than any input."""
+        begin, base = self._rest_before(until)
+        if until - begin < 3:
+            return None
+        t, u = self._samples.t[begin:until], self._samples.y[begin:until]
+        movement = describe(t, u, base, rest)
+        return movement if movement is not None and movement.amplitude >= SMALLEST_RAD else None
+
+    def _rest_before(self, until: int) -> tuple[int, float]:
+        """Where the elevator last rested before it went far, and its level there."""
+        samples, base = self._samples, self._base or 0.0
+        begin = samples.index(self._moved_from_s or 0.0)
+        far = np.flatnonzero(np.abs(samples.y[begin:until] - base) > _NEAR * self._amplitude)
+        end = float(samples.t[begin + int(far[0]) if len(far) else begin])
+        while (i := samples.index(end - _LEAST_REST_S)) > begin:
+            window = samples.y[i : samples.index(end) + 1]
+            if is_still(window, 0.5 * self._amplitude):
+                return i, median(window)
+            end -= 0.5 * _CHECK_S
+        return begin, base
+
+    def _end(self, movement: Movement, why: str, at_s: float) -> None:
+        past_s = at_s if why == "next input" else float(np.nextafter(at_s, np.inf))
+        end_s = float(self._samples.t[max(0, self._samples.index(past_s) - 1)])
+        record_from_s = max(movement.start_s - LEAD_IN_S, float(self._samples.t[0]))
+        self._ended.append(
+            Span(
+                record_from_s,
+                movement.start_s,
+                movement.last_step_s,
+                end_s,
+                movement.kind,
+                movement.steps,
+                why,
+            )
+        )
 
     def _forget_all(self) -> None:
-        self._size = self._from = 0
-        self._level = self._onset_s = None
+        self._samples.clear()
+        self._begin_anew(-np.inf)
 
 
-def _least_free_s(shape: Shape) -> float:
-    """How long the elevator must rest for an input to count when something cuts its free response."""
-    if shape.is_3211:
-        return -np.inf
-    least_s = max(1.0, 2.0 * shape.longest_s)
-    return min(least_s, _LEAST_FREE_S) if shape.kind == "multisine" else least_s
+def _parting_s(movement: Movement) -> float:
+    """How long the elevator must rest for what follows to be another movement."""
+    onsets = [onset for onset, _ in movement.steps]
+    longest_s = max((b - a for a, b in pairwise(onsets)), default=0.0)
+    return min(max(_PARTING_S[0], 0.75 * longest_s), _PARTING_S[1])

@@ -28,7 +28,6 @@ from advisor.flight.elevator_watch import SETTLE_S, ElevatorWatch
 from advisor.flight.events import (
     FlightEvent,
     ManeuverFlown,
-    ManeuverStarted,
     ModeChanged,
     Notice,
     Rebooted,
@@ -161,7 +160,7 @@ class FlightStream:
         self._note_rates()
         flown = self._cutting
         found = problems(
-            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.autopilots
+            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.activities
         )
         wrong = self._mixing.contradiction
         return [
@@ -180,6 +179,8 @@ class FlightStream:
         marked_s = self.marks.since_s(now)
         onset = self._watch.onset_s if marked_s is None else marked_s
         if onset is None or not now > onset:
+            return None
+        if marked_s is None and not self._cutting.pilot_flies(onset):
             return None
         span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
         return self._cutting.so_far(span, self.boot)
@@ -306,7 +307,10 @@ class FlightStream:
         for order, t, y in sorted(arrived):
             self.marks.advance(order)
             for found in self._watch.push(t, order, y):
-                events += [found] if isinstance(found, ManeuverStarted) else self._found(found, order)
+                if isinstance(found, Span):
+                    events += self._found(found, order)
+                elif self._cutting.pilot_flies(found.at_s):
+                    events.append(found)
             events += self._marked(self.marks.due(self._watch.newest_s - SETTLE_S), order)
         return events
 

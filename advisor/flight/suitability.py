@@ -37,7 +37,7 @@ def problems(
     elevator: Surface | Problem,
     channels: Mapping[str, ChannelStatus],
     maneuvers: int,
-    autopilots: Mapping[str, int],
+    activities: Mapping[str, int],
 ) -> list[Problem]:
     """Everything that keeps a stream from being used, the most fundamental first.
 
@@ -51,28 +51,32 @@ def problems(
         How every channel arrived, at its best.
     maneuvers
         How many manoeuvres were found.
-    autopilots
-        How many inputs were left out as the autopilot's own, by flight mode.
+    activities
+        How many movements of the elevator were no test inputs, by the reason in words.
     """
     if vehicle is None:
         return [_no_vehicle(other_systems)]
     found = [*_missing(elevator, channels, vehicle), *_too_slow(channels, vehicle)]
     if not found and maneuvers == 0:
-        found.append(_no_maneuver(autopilots))
+        found.append(_no_maneuver(activities))
     if found and other_systems:
         found.insert(0, _perhaps_another(vehicle, other_systems))
     return found
 
 
-def _no_maneuver(autopilots: Mapping[str, int]) -> Problem:
-    seen = "the elevator never left its quiet level in steps and returned"
-    if autopilots:
-        counted = " and ".join(f"{n} in {mode}" for mode, n in autopilots.items())
-        seen = f"the only inputs ({counted}) came where the autopilot moves the elevator itself"
+def _no_maneuver(activities: Mapping[str, int]) -> Problem:
+    if not activities:
+        return Problem(
+            "no_maneuver",
+            "No test manoeuvre was found: the elevator kept still.",
+            "Fly a 3-2-1-1 on the elevator in MANUAL, the stick still for a second before and some after.",
+        )
+    counted = "; ".join(f"{text} ({n} times)" if n > 1 else text for text, n in activities.items())
     return Problem(
         "no_maneuver",
-        f"No test manoeuvre was found: {seen}.",
-        "Fly a 3-2-1-1 on the elevator in MANUAL, the stick still for some seconds before and after.",
+        f"No test manoeuvre was found among the movements of the elevator: {counted}.",
+        "Fly a 3-2-1-1 on the elevator in MANUAL, large enough to see in the pitch rate; "
+        "analyze --all lists each movement.",
     )
 
 

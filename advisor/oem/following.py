@@ -36,7 +36,7 @@ class Follower:
         if isinstance(prepared, NoEstimate):
             return prepared
         last = self._last
-        if last is None:
+        if last is None or last.noise.colours.keys() != prepared.problem.records[0].outputs.keys():
             solution = solve(prepared.problem)
         else:
             solution = solve(

@@ -46,6 +46,16 @@ def analysis_document(
         if state and state.model
         else {},
         "estimate_from": list(state.estimate_from) if state else [],
+        "activity": [
+            {
+                "start_boot_s": number(activity.start_s),
+                "end_boot_s": number(activity.end_s),
+                "reason": activity.reason,
+                "text": activity.text,
+                "boot": activity.boot,
+            }
+            for activity in (state.activity if state else ())
+        ],
         "notices": list(state.notices) if state else [],
     }
 

@@ -10,6 +10,7 @@ from rich.text import Text
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
+from advisor.flight.events import Activity
 from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate
 
@@ -48,6 +49,11 @@ def maneuver_line(judged: JudgedManeuver) -> str:
     return f"{judged.maneuver.number:2d}  {span.start_s:8.2f} s  {span.kind:<15}  {mark} {verdict.sentence}"
 
 
+def activity_line(activity: Activity) -> str:
+    """One line a movement of the elevator that was no test input: when, and what it was."""
+    return f" -  {activity.start_s:8.2f} s  to {activity.end_s:8.2f} s      {activity.text}"
+
+
 def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
     """Each caution once, with the numbers of the manoeuvres it stands on."""
     numbers: dict[str, list[int]] = {}
@@ -79,8 +85,11 @@ def next_line(verdict: FlightTestVerdict) -> str:
 class AnalysisText:
     """The whole analysis; rich prints it at the width of the terminal, plain where colour is unwanted."""
 
-    def __init__(self, state: CampaignState, file: str, aircraft: Aircraft) -> None:
+    def __init__(
+        self, state: CampaignState, file: str, aircraft: Aircraft, every_movement: bool = False
+    ) -> None:
         self.state, self.file, self.aircraft = state, file, aircraft
+        self.every_movement = every_movement
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         vehicle = self.state.vehicle
@@ -91,9 +100,7 @@ class AnalysisText:
             for note in (*self.state.elevator_notes, *self.state.mark_notes)
         )
         yield Text()
-        for judged in self.state.maneuvers:
-            yield Text(maneuver_line(judged), style="green" if judged.verdict.accepted else "red")
-            yield from (Text(f"    note: {note}") for note in judged.notes)
+        yield from self._movements()
         yield Text()
         yield from (Text(line, style="dim") for line in caution_lines(self.state.maneuvers))
         yield Text()
@@ -106,6 +113,18 @@ class AnalysisText:
             yield from (Text(f"note: {note}") for note in self.state.model.notes)
             yield Text()
         yield from self._decision()
+
+    def _movements(self) -> Iterator[Text]:
+        """The manoeuvres, and where wanted whatever else moved the elevator, in the order of time."""
+        lines = []
+        for judged in self.state.maneuvers:
+            at = (judged.maneuver.boot, judged.maneuver.span.start_s)
+            style = "green" if judged.verdict.accepted else "red"
+            lines.append((at, Text(maneuver_line(judged), style=style)))
+            lines += [(at, Text(f"    note: {note}")) for note in judged.notes]
+        if self.every_movement:
+            lines += [((a.boot, a.start_s), Text(activity_line(a), style="dim")) for a in self.state.activity]
+        yield from (line for _, line in sorted(lines, key=lambda entry: entry[0]))
 
     def _channels(self) -> Table:
         table = Table(box=None, pad_edge=False, header_style="dim")

@@ -9,7 +9,7 @@ from sim.effects.catalogue import CATALOGUE
 from sim.effects.kit import Kind, Kit, Sizes
 from sim.effects.outside import OUTSIDE
 from sim.fittings import Fittings
-from sim.flight import CLOSING_S, Flight
+from sim.flight import Flight
 from sim.loading import ScenarioError
 from sim.nonlinear_aircraft import NonlinearAircraft
 from sim.scenario import Scenario
@@ -71,7 +71,7 @@ def flight_of(scenario: Scenario) -> Flight:
             raise ScenarioError(problems)
     usual = hangar.habits(scenario)
     planned = plan(scenario, usual.amplitude_deg, usual.unit_s)
-    duration = (planned[-1].end_s if planned else scenario.lead_in_s) + CLOSING_S
+    duration = (planned[-1].end_s if planned else scenario.lead_in_s) + scenario.closing_s
     kit = Kit(
         Fittings(), engine.trim, planned, duration, scenario.seed, scenario.height_m, engine.motion().alpha
     )

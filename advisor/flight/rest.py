@@ -1,0 +1,57 @@
+"""Rest of the elevator, measured against the movement that it ends.
+
+A stick is never still in itself. Whether the elevator rests is a question of scale: a hand that
+shakes by a tenth of an input has come to rest after that input, and is flying a smaller one before it.
+"""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+SMALLEST_RAD = float(np.radians(0.15))
+"""Least amplitude of a movement, rad: two steps of an output of 1 us at 0.06 deg a microsecond, and a bit."""
+STILL_SPREAD = 0.15
+"""Largest standard deviation of a rest, as a share of the movement's amplitude. A shaking stick has 0.1;
+a sine of that amplitude has 0.7."""
+_STILL_SHIFT = 0.12
+"""Largest difference between the means over the thirds of a rest, as a share of the amplitude."""
+
+
+def median(x: FloatArray) -> float:
+    """As numpy's, which on so few numbers spends its time on asking whether they are numbers."""
+    middle = np.sort(x)[(len(x) - 1) // 2 : len(x) // 2 + 1]
+    return float(middle.sum() / len(middle))
+
+
+def is_still(u: FloatArray, amplitude: float) -> bool:
+    """Whether the elevator rests over a window, against a movement of this amplitude.
+
+    Parameters
+    ----------
+    u
+        Shape (n,): elevator in the window, rad.
+    amplitude
+        Largest deviation of the movement, rad.
+
+    Returns
+    -------
+    bool
+        True where neither the spread nor the drift of the window counts. White noise may
+        have a spread of ``STILL_SPREAD``; what moves in one direction is told by its thirds.
+    """
+    if len(u) < 3 or float(u.std()) > STILL_SPREAD * amplitude:
+        return False
+    third = len(u) // 3
+    means = (float(u[:third].mean()), float(u[third:-third].mean()), float(u[-third:].mean()))
+    # Second differences know white noise from a level that moves.
+    bent = u[2:] - 2.0 * u[1:-1] + u[:-2]
+    noise = 2.0 * float(np.sqrt((bent * bent).mean() / (6.0 * third)))
+    return max(means) - min(means) <= _STILL_SHIFT * amplitude + min(noise, STILL_SPREAD * amplitude)
+
+
+def without_spikes(u: FloatArray) -> FloatArray:
+    """Median of three: one sample alone is no movement."""
+    if len(u) < 3:
+        return u
+    low, high = np.minimum(u[:-2], u[1:-1]), np.maximum(u[:-2], u[1:-1])
+    return np.concatenate(([u[0]], np.maximum(low, np.minimum(high, u[2:])), [u[-1]]))
