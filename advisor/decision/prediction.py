@@ -71,6 +71,16 @@ class Prediction:
         inside = np.where(np.outer(known, known), covariance, 0.0)
         return {name: _widest(slope, inside, known) for name, slope in self.slopes.items()}
 
+    @property
+    def percent_by_derivative(self) -> FloatArray:
+        """(6,) largest change of any output with each derivative alone, in percent of its peak per unit.
+
+        NaN where it is not known what was flown, or the model runs away.
+        """
+        if not self.slopes:
+            return np.full(len(DERIVATIVES), np.nan)
+        return np.asarray(np.max([np.max(np.abs(slope), axis=0) for slope in self.slopes.values()], axis=0))
+
 
 def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> float:
     if not np.all(np.isfinite(slope)) or np.any(slope[:, ~known]):
