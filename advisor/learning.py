@@ -7,10 +7,7 @@ from dataclasses import replace
 
 from advisor.aircraft import Aircraft
 from advisor.oem.estimate import Estimate
-
-KNOWN_TO = 0.1
-"""Standard deviation of the lag over the lag, below which it is used. An error of a tenth of a usual lag
-moves M_δe by some 5 %, as much as the tolerance that a campaign has by default."""
+from advisor.oem.instruments import KNOWN_TO
 
 
 def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False) -> Aircraft:

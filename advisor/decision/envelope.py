@@ -11,7 +11,7 @@ import numpy as np
 from advisor.aircraft import Aircraft
 from advisor.beside import beside
 from advisor.decision.verdict import Reason
-from advisor.flight.maneuver import Maneuver
+from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 
@@ -27,6 +27,7 @@ _SHORTEST_STEP = 0.15
 """Least length of the shortest step, in natural periods; shorter ones the servo smears."""
 _OTHER_CONTROLS_DEG = 5.0
 _THROTTLE_PERCENT = 15.0
+_INTERRUPTIONS = ("gap", "end of log", "mode change")
 _ASSUMED_STROKE_DEG = 25.0
 """Full travel where the aircraft file has no calibration."""
 
@@ -115,12 +116,26 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
 
 
 def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
+    if _is_broken_off(maneuver.span):
+        return [
+            Reason(
+                "aborted",
+                "the input was broken off before the elevator came to rest; fly all of it",
+                0.0,
+                1.0,
+            )
+        ]
     free, least = maneuver.span.end_s - maneuver.span.last_step_s, _SHORTEST_FREE * period_s
     if free >= least:
         return []
     shown, limit = beside(free, least, 1)
     text = f"free response too short, {shown} s (at least {limit}); hands still after the last step"
     return [Reason("free_response", text, free, least)]
+
+
+def _is_broken_off(span: Span) -> bool:
+    """Whether something ended the record while the elevator was still away from trim."""
+    return span.closed_by in _INTERRUPTIONS and bool(span.steps) and span.steps[-1][1] != 0.0
 
 
 def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:

@@ -64,10 +64,9 @@ def judge_quality(
 def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
     """Natural period of the short period in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
 
-    Where there is no estimate of a stable aircraft, two and a half of the shortest step, or two of
-    a multisine's median lobes: the inputs of a test are matched to the aircraft.
-    """
-    if isinstance(estimate, Estimate):
+    Where no estimate of a stable aircraft predicts its own response, two and a half of the shortest step,
+    or two of a multisine's median lobes: the inputs of a test are matched to the aircraft."""
+    if isinstance(estimate, Estimate) and estimate.prediction.get("q", 0.0) < 1.0:
         square = estimate.value("Z_alpha") * estimate.value("M_q")
         square -= (1.0 + estimate.value("Z_q")) * estimate.value("M_alpha")
         if square > 0.0:

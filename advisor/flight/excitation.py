@@ -24,8 +24,8 @@ from advisor.flight.motion import integrated
 
 _INPUTS = 3
 """Terms of the elevator in the recursion."""
-_FEWEST = 24
-"""Intervals below which the recursion with its seven terms says nothing."""
+_FEWEST = 14
+"""Intervals below which the recursion with its seven terms says nothing: five are left to judge them by."""
 _LONGEST_S = 0.3
 """Longest interval: a fifth of the natural period of a slow aircraft at 0.5 Hz."""
 _PER_STEP = 4.0

@@ -39,7 +39,7 @@ _SURELY_S = 2.5
 """A rest this long parts two movements however it wavers."""
 _BACK = 0.2
 """After a shorter rest within this share of the amplitude from the level before, the next input may come."""
-_WAVERING = 0.25
+_WAVERING = 0.2
 """A shorter rest after a movement without levels must be still against this share of its amplitude: a
 multisine has gentle parts of its own."""
 _NEAR = 0.4
@@ -52,6 +52,9 @@ _LONGER = 1.2
 _LEAVES = (0.2, 0.35)
 """A free response ends where the elevator moves by five standard deviations of its rest, but
 within these shares of the amplitude."""
+_FAR = 0.3
+"""The movement has begun where the elevator is so far from the level before, as a share of the amplitude. The
+first step of a 3-2-1-1 with balanced areas has half of it."""
 _LEAST_REST_S = 0.3
 """A rest before the movement is at least so long, if anything else moved before."""
 _KEEP_S = _REACH_S + 30.0
@@ -294,7 +297,7 @@ class Segmenter:
         """Where the elevator last rested before it went far, and its level there."""
         samples, base = self._samples, self._base or 0.0
         begin = samples.index(self._moved_from_s or 0.0)
-        far = np.flatnonzero(np.abs(samples.y[begin:until] - base) > _NEAR * self._amplitude)
+        far = np.flatnonzero(np.abs(samples.y[begin:until] - base) > _FAR * self._amplitude)
         end = float(samples.t[begin + int(far[0]) if len(far) else begin])
         while (i := samples.index(end - _LEAST_REST_S)) > begin:
             window = samples.y[i : samples.index(end) + 1]

@@ -25,7 +25,9 @@ from advisor.oem.turbulence import Rows, Turbulence, find_turbulence
 
 ROUNDS = 6
 SETTLED = 0.1
-"""Largest step, in standard deviations, after which the estimate is settled."""
+"""Largest step still to take, in standard deviations, with which the estimate is settled."""
+UNSETTLED = 3.0
+"""... and with which the search has run away: the model does not hold for the record."""
 MOST_MANEUVERS = 7
 """Newest manoeuvres from which the noise is found: its figures are known well enough by then."""
 _UNIT = np.ones(len(OUTPUTS))
@@ -61,6 +63,11 @@ class Whitened:
     """Of each manoeuvre's own parameters that are free."""
     std: FloatArray
     """(n,) Cramér-Rao standard deviations."""
+
+    @property
+    def pending(self) -> float:
+        """The largest step still to take, in standard deviations."""
+        return float(np.max(np.abs(self.step) / self.std))
 
 
 def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
@@ -119,32 +126,41 @@ def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instru
         there, next_seen = _better(here, seen, air, instruments)
         if there is None or next_seen is None:
             break
-        here, step, std = there, seen.step, seen.std
-        seen = next_seen
-        if np.max(np.abs(step) / std) < SETTLED:
+        here, seen = there, next_seen
+        if seen.pending < SETTLED:
             break
-    return _solution(solution, here, air)
+    return _solution(solution, here, air) if seen.pending < UNSETTLED else None
 
 
 def _better(
     here: Place, seen: Whitened, air: AirModel, instruments: Sequence[Instrument]
 ) -> tuple[Place | None, Whitened | None]:
-    """The place after a step, halved until the likelihood does not fall; none where it always does."""
-    common, own = _free(here.assembly)
-    scale = 1.0
-    for _ in range(5):
-        shared, local, problem = here.shared.copy(), here.local.copy(), here.problem
-        shared[common] += scale * seen.step[: len(common)]
-        for m, step in enumerate(seen.own_steps):
-            local[m, own - N_SHARED] += scale * step
-        for x, change in zip(instruments, seen.step[len(common) :], strict=True):
-            problem = x.write(problem, float(np.clip(x.read(problem) + scale * change, x.lowest, x.highest)))
-        there = _at(problem, shared, local, instruments)
+    """The likeliest place along the step; none where the likelihood falls all the way.
+
+    A whole step ignores that the filter's gains move with the parameters, and overshoots in a curved valley.
+    """
+    best: tuple[Place | None, Whitened | None] = (None, None)
+    lowest = seen.cost
+    for scale in (1.0, 0.5, 0.25, 0.1, 0.03):
+        there = _moved(here, seen, scale, instruments)
         found = None if there is None else _whitened(there, air, len(instruments))
-        if found is not None and found.cost < seen.cost:
-            return there, found
-        scale /= 3.0
-    return None, None
+        if found is not None and found.cost < lowest:
+            best, lowest = (there, found), found.cost
+        elif best[1] is not None:
+            break
+    return best
+
+
+def _moved(here: Place, seen: Whitened, scale: float, instruments: Sequence[Instrument]) -> Place | None:
+    """The place after a share of the step; None where the model overflows there."""
+    common, own = _free(here.assembly)
+    shared, local, problem = here.shared.copy(), here.local.copy(), here.problem
+    shared[common] += scale * seen.step[: len(common)]
+    for m, step in enumerate(seen.own_steps):
+        local[m, own - N_SHARED] += scale * step
+    for x, change in zip(instruments, seen.step[len(common) :], strict=True):
+        problem = x.write(problem, float(np.clip(x.read(problem) + scale * change, x.lowest, x.highest)))
+    return _at(problem, shared, local, instruments)
 
 
 def _at(

@@ -33,6 +33,9 @@ SETTLED = 1e-2
 """Change of Σ n·log σ², per round, below which the search for instrument parameters is done."""
 CLEARLY = 9.0
 """Twice the log-likelihood that a parameter must bring to be believed: three standard deviations."""
+KNOWN_TO = 0.1
+"""Standard deviation over the value, below which a value stands for the aircraft. An error of a tenth of a
+usual servo lag moves M_δe by some 5 %, as much as the tolerance that a campaign has by default."""
 SMALLEST_DELAY_S = 0.004
 """Smallest lateness of the angle of attack that matters, s: a fifth of a sample at 50 Hz."""
 SMALLEST_ARM_M = 0.02

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.oem.identifiability import HIGH_CORRELATION, SUPPOSED_LAG_S, correlated
-from advisor.oem.instruments import Told
+from advisor.oem.instruments import KNOWN_TO, Told
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution
@@ -68,22 +68,27 @@ def _instrument(told: Told, solution: Solution) -> str:
         case "servo_lag_s":
             return (
                 f"The servo's lag is estimated and used: {value:.3f} ± {half:.3f} s; a pure delay would look"
-                f" much the same. For the aircraft file: elevator: {{lag_s: {value:.3f}}}"
+                " much the same." + _line(told, f"elevator: {{lag_s: {value:.3f}}}")
             )
         case "vane_arm_m":
             speed = solution.problem.reference_airspeed_m_s or float(solution.assembly.grid.airspeed.mean())
             return (
                 f"alpha reads as a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity does"
                 f" ({value / speed:.3f} s of pitch rate); this is allowed for."
-                f" For the aircraft file: alpha: {{vane_arm_m: {value:.2f}}}"
+                + _line(told, f"alpha: {{vane_arm_m: {value:.2f}}}")
             )
         case "alpha_delay_s":
             return f"alpha is {1e3 * value:.0f} ± {1e3 * half:.0f} ms late against the motion; allowed for."
         case "accelerometer_arm_m":
             return (
                 f"The accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity;"
-                f" allowed for. For the aircraft file: accelerometer: {{arm_m: {value:.2f}}}"
+                " allowed for." + _line(told, f"accelerometer: {{arm_m: {value:.2f}}}")
             )
+
+
+def _line(told: Told, line: str) -> str:
+    """The line for the aircraft file, once a value is known to a tenth."""
+    return f" For the aircraft file: {line}" if told.std < KNOWN_TO * abs(told.value) else ""
 
 
 def _servo(solution: Solution, lagged: FloatArray | None) -> str:
