@@ -72,7 +72,7 @@ study-advice: .venv/.developed ## what following the advice saves
 	$(BIN)/advisor study --advice --campaigns 100
 
 study-stops: .venv/.developed ## how often the default rule stops too early, and what each rule needs
-	$(BIN)/advisor study --stops --campaigns 200
+	$(BIN)/advisor study --stops --campaigns 150
 
 study-change: .venv/.developed ## how soon a change of the aircraft is told
 	$(BIN)/advisor study --change --campaigns 400

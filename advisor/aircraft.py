@@ -122,7 +122,10 @@ class CampaignPlan:
     parameters: tuple[str, ...] = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
     """Whose own tolerance the rule ``information`` demands besides; any of ``PARAMETERS``."""
     tolerance: Mapping[str, float] = field(default_factory=dict)
-    """That tolerance by name, in the parameter's own unit; default: twice ``tolerance_percent`` of it."""
+    """That tolerance by name, in the parameter's own unit.
+
+    The default is twice ``tolerance_percent`` of the parameter; of M_q and Z_q it is four times.
+    """
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.decision.pooling import Belief, Shared, disagreement, inconsistency, pool, pool_shared
+from advisor.decision.pooling import (
+    Belief,
+    Shared,
+    disagreement,
+    inconsistency,
+    inconsistency_without_each,
+    pool,
+    pool_shared,
+)
 
 WIDEN_BELOW = 0.05
 """Chance level below which scatter between manoeuvres widens the intervals."""
@@ -41,7 +49,7 @@ def odd_ones(beliefs: Sequence[Belief]) -> Mapping[int, Odd]:
         total, dof = inconsistency([beliefs[i] for i in inside])
         if dof < 1 or total < float(chdtri(dof, ODD_BELOW)):
             break
-        remaining = {i: inconsistency([beliefs[j] for j in inside if j != i]) for i in inside}
+        remaining = dict(zip(inside, inconsistency_without_each([beliefs[i] for i in inside]), strict=True))
         candidate = min(remaining, key=lambda i: remaining[i][0])
         rest, rest_dof = remaining[candidate]
         if rest_dof < 1 or rest / rest_dof * ODD_IMPROVEMENT > total / dof:

@@ -109,12 +109,13 @@ def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
     agreeing = [flown for i, flown in enumerate(usable) if i not in left_out]
     surprise, missed, foretold = _compared(usable[-1], beliefs, airspeed)
     used = estimates_of(agreeing)
+    prediction = predict(agreeing, belief.shared.theta, airspeed)
     return Knowledge(
         belief=belief,
-        prediction=predict(agreeing, belief.shared.theta, airspeed),
+        prediction=prediction,
         tolerance_percent=plan.tolerance_percent,
         named=plan.parameters,
-        tolerance=tolerances(belief.theta, used[0], plan),
+        tolerance=tolerances(belief.theta, prediction, plan),
         surprise=surprise,
         missed_percent=missed,
         foretold_percent=foretold,

@@ -172,6 +172,36 @@ def inconsistency(beliefs: Sequence[Belief]) -> tuple[float, int]:
     return total, dof
 
 
+def inconsistency_without_each(beliefs: Sequence[Belief]) -> list[tuple[float, int]]:
+    """As `inconsistency` of all the others, for each of at least two estimates left out in turn.
+
+    χ² about the pooled value is Σ dᵢᵀIᵢdᵢ - vᵀCv with v = Σ Iᵢdᵢ and C = (Σ Iᵢ)⁻¹. The sums before and
+    after each estimate are kept, so that all the χ² together cost little more than one.
+    """
+    centre = pool_shared(beliefs).theta
+    information = np.array([belief.information for belief in beliefs])
+    apart = np.array([_finite(belief.shared.theta - centre) for belief in beliefs])
+    pull = np.einsum("nij,nj->ni", information, apart)
+    own = np.einsum("ni,ni->n", pull, apart)
+    known = np.count_nonzero(np.diagonal(information, axis1=1, axis2=2) > 0.0, axis=1)
+    others, pulls, owns, sizes = (_sum_of_others(values) for values in (information, pull, own, known))
+    found = []
+    for k in range(len(beliefs)):
+        covariance = covariance_of(others[k])
+        pooled = np.isfinite(np.diag(covariance))
+        explained = float(pulls[k] @ _finite(covariance) @ pulls[k])
+        found.append((max(float(owns[k]) - explained, 0.0), int(sizes[k]) - int(pooled.sum())))
+    return found
+
+
+def _sum_of_others(values: FloatArray) -> FloatArray:
+    """For each entry along the first axis the sum of all the others, without cancellation."""
+    nothing = np.zeros_like(values[:1])
+    before = np.concatenate([nothing, np.cumsum(values, axis=0)[:-1]])
+    after = np.concatenate([np.cumsum(values[::-1], axis=0)[::-1][1:], nothing])
+    return np.asarray(before + after)
+
+
 def _finite(values: FloatArray) -> FloatArray:
     """Zero for what is unknown."""
     return np.where(np.isfinite(values), values, 0.0)

@@ -71,6 +71,16 @@ class Prediction:
         inside = np.where(np.outer(known, known), covariance, 0.0)
         return {name: _widest(slope, inside, known) for name, slope in self.slopes.items()}
 
+    @property
+    def percent_by_derivative(self) -> FloatArray:
+        """(6,) largest change of any output with each derivative alone, in percent of its peak per unit.
+
+        NaN where it is not known what was flown, or the model runs away.
+        """
+        if not self.slopes:
+            return np.full(len(DERIVATIVES), np.nan)
+        return np.asarray(np.max([np.max(np.abs(slope), axis=0) for slope in self.slopes.values()], axis=0))
+
 
 def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> float:
     if not np.all(np.isfinite(slope)) or np.any(slope[:, ~known]):
@@ -171,11 +181,26 @@ def _airspeed(maneuver: Maneuver) -> float | None:
     return speed if speed > 0.0 else None
 
 
+def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
+    """Until when a response is looked at: of a diverging model until a deviation has doubled.
+
+    Whoever flies an unstable aircraft corrects within that time; an open loop further ahead means nothing.
+    """
+    z_alpha, z_q, _, m_alpha, m_q, _ = derivatives
+    trace, determinant = z_alpha + m_q, z_alpha * m_q - (1.0 + z_q) * m_alpha
+    growth = 0.5 * (trace + np.sqrt(max(trace**2 - 4.0 * determinant, 0.0)))
+    if growth <= 0.0:
+        return float(command.t[-1])
+    size = np.abs(command.y)
+    onset = command.t[np.argmax(size >= 0.5 * np.max(size))]
+    return float(min(command.t[-1], onset + np.log(2.0) / growth))
+
+
 @lru_cache(maxsize=_REMEMBERED)
 def _respond(t: bytes, elevator: bytes, servo: Servo, derivatives: tuple[float, ...]) -> Response | None:
     """The response to an elevator, given as bytes of its stamps and deflections so that it can be kept."""
     command = Signal(np.frombuffer(t), np.frombuffer(elevator))
-    moments = np.linspace(command.t[0], command.t[-1], MOMENTS)
+    moments = np.linspace(command.t[0], _horizon(command, derivatives), MOMENTS)
     still = Signal(moments, np.zeros(MOMENTS))
     record = Record(command, dict.fromkeys(PREDICTED, still), gravity_z=still)
     assembly = assemble(Problem((record,), servo=servo))

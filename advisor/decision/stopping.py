@@ -14,13 +14,11 @@ from advisor.decision.history import Flown, estimates_of, usable_ones
 from advisor.decision.information import Knowledge, knowledge
 from advisor.decision.judge import accepted_estimates, rule_results
 from advisor.decision.scatter import scatter_percent, scattered_most, window
-from advisor.decision.verdict import FlightTestVerdict, RuleProgress
+from advisor.decision.verdict import FlightTestVerdict, RuleProgress, limit_percent
 from advisor.decision.warnings import warnings
 from advisor.oem.estimate import Estimate
 
 _NO_SCALE_PERCENT = 1000.0
-INFORMATION_LIMIT_PERCENT = 100.0
-"""The rule ``information`` counts in percent of the tolerance."""
 
 
 def flight_test(
@@ -85,11 +83,6 @@ def progress(history: Sequence[Flown], rule: Rule, plan: CampaignPlan) -> RulePr
         {name: _finite(band) for name, band in known.prediction_percent.items()},
         {name: shares[name] for name in known.named},
     )
-
-
-def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
-    """What the criterion of ``rule`` must fall below."""
-    return INFORMATION_LIMIT_PERCENT if rule == "information" else plan.limit_percent
 
 
 def _scatter(accepted: Sequence[Estimate], plan: CampaignPlan) -> float | None:

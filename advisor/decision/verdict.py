@@ -4,7 +4,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from advisor.aircraft import Rule
+from advisor.aircraft import CampaignPlan, Rule
+
+INFORMATION_LIMIT_PERCENT = 100.0
+"""The rule ``information`` counts in percent of the tolerance."""
+
+
+def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
+    """What the criterion of ``rule`` must fall below."""
+    return INFORMATION_LIMIT_PERCENT if rule == "information" else plan.limit_percent
 
 
 @dataclass(frozen=True, slots=True)

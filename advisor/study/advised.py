@@ -58,8 +58,8 @@ class Saving:
         return 100.0 * (1.0 - float(np.mean(self.advised) / np.mean(self.standard)))
 
 
-CASES = (("twin jet", 5.0), ("UAV", 5.0))
-"""Aircraft and noise in percent at which the standard input needs ten manoeuvres and more."""
+CASES = (("twin jet", 5.0), ("UAV", 7.5))
+"""Aircraft and noise in percent at which the standard input needs about ten manoeuvres."""
 
 
 def measure(

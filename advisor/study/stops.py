@@ -22,7 +22,7 @@ from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.surface import Servo
 from advisor.study.campaigns import RULES
 from advisor.study.estimating import Advance, estimate_copies
-from advisor.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale
+from advisor.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale, respond
 from advisor.study.paper import ORDER
 
 
@@ -35,6 +35,8 @@ class Case:
     tolerance_percent: float = 5.0
     correlation_s: float = 0.0
     """Correlation time of the noise, first order; 0: white."""
+    gust_percent: float = 0.0
+    """Gusts that move the aircraft, standard deviation of their angle in percent of the response's in α."""
     lag_s: float = 0.0
     """First-order lag of the servo, which the crew does not know: it is estimated jointly, as in flight."""
 
@@ -47,10 +49,14 @@ CASES = (
     Case("coloured noise, 0.2 s", 2.5, correlation_s=0.2),
     Case("coloured noise, 0.2 s", 2.5, tolerance_percent=2.0, correlation_s=0.2),
     Case("coloured noise, 1 s", 5.0, tolerance_percent=3.0, correlation_s=1.0),
+    Case("gusts of 5 %", 2.5, gust_percent=5.0),
+    Case("gusts of 10 %", 2.5, gust_percent=10.0),
     Case("servo lag 0.05 s unknown", 2.5, lag_s=0.05),
     Case("servo lag 0.14 s unknown", 2.5, lag_s=0.14),
 )
 """The default tolerance, and tighter ones with which the rule has something to decide."""
+GUST_S = 0.5
+"""Correlation time of the gusts."""
 KNOWN_FROM = 2
 """Manoeuvres from which an unknown lag is estimated jointly."""
 
@@ -96,11 +102,11 @@ def measure(
         flights = {name: _through(scene, fly_named(scene, name), case.lag_s) for name in set(ORDER)}
         noise = 0.01 * case.noise_percent * noise_scale(flights[ORDER[0]], "std")
         order = [flights[name] for name in ORDER]
-        if case.correlation_s == 0.0 and case.lag_s == 0.0:
+        if case.correlation_s == case.gust_percent == case.lag_s == 0.0:
             columns = [_copies(flight, noise, campaigns, rng) for flight in order]
             flown = list(zip(*columns, strict=True))
         else:
-            flown = [_campaign(order, noise, case, rng) for _ in range(campaigns)]
+            flown = [_campaign(scene, order, noise, case, rng) for _ in range(campaigns)]
         found.append(_measured(case, flown, order))
         if advance is not None:
             advance(1)
@@ -122,7 +128,7 @@ def _copies(flight: Flight, noise: FloatArray, campaigns: int, rng: np.random.Ge
 
 
 def _campaign(
-    order: Sequence[Flight], noise: FloatArray, case: Case, rng: np.random.Generator
+    scene: Scene, order: Sequence[Flight], noise: FloatArray, case: Case, rng: np.random.Generator
 ) -> tuple[Flown, ...]:
     """One campaign through the estimator of the flight test, with its corrected covariance.
 
@@ -131,7 +137,12 @@ def _campaign(
     ArithmeticError
         A manoeuvre could not be estimated.
     """
-    maneuvers = [_measure(flight, noise * _coloured(flight, case, rng)) for flight in order]
+    maneuvers = [
+        _measure(
+            flight, noise * _coloured(flight, case.correlation_s, rng) + _gusts(scene, flight, case, rng)
+        )
+        for flight in order
+    ]
     lag_s = _lag_found(maneuvers[:KNOWN_FROM]) if case.lag_s > 0.0 else 0.0
     aircraft = Aircraft(elevator=Elevator(lag_s=lag_s, delay_s=0.0))
     flown = []
@@ -143,8 +154,19 @@ def _campaign(
     return tuple(flown)
 
 
-def _measure(flight: Flight, noise: FloatArray) -> Maneuver:
-    maneuver, z = as_maneuver(flight), flight.response + noise
+def _gusts(scene: Scene, flight: Flight, case: Case, rng: np.random.Generator) -> FloatArray | float:
+    """(n, 2) what gusts add to α and q: a gust acts through Z_alpha and M_alpha as an elevator would."""
+    if case.gust_percent == 0.0:
+        return 0.0
+    size = 0.01 * case.gust_percent * float(np.std(flight.response[:, 0]))
+    gust = size * _coloured(flight, GUST_S, rng)[:, 0]
+    p = scene.aircraft
+    moved = replace(p, Z_0=0.0, M_0=0.0, Z_delta_e=p.Z_alpha, M_delta_e=p.M_alpha)
+    return respond(moved, gust, np.zeros(2), 1.0 / scene.rate_hz)
+
+
+def _measure(flight: Flight, disturbance: FloatArray) -> Maneuver:
+    maneuver, z = as_maneuver(flight), flight.response + disturbance
     channels = {name: Channel(name, flight.t, z[:, k]) for k, name in enumerate(("alpha", "q"))}
     return replace(maneuver, channels={**maneuver.channels, **channels})
 
@@ -158,12 +180,12 @@ def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
     return lag.value if lag is not None else 0.0
 
 
-def _coloured(flight: Flight, case: Case, rng: np.random.Generator) -> FloatArray:
+def _coloured(flight: Flight, correlation_s: float, rng: np.random.Generator) -> FloatArray:
     """(n, 2) noise of unit variance."""
     white = rng.standard_normal(flight.response.shape)
-    if case.correlation_s == 0.0:
+    if correlation_s == 0.0:
         return white
-    kept = float(np.exp(-(flight.t[1] - flight.t[0]) / case.correlation_s))
+    kept = float(np.exp(-(flight.t[1] - flight.t[0]) / correlation_s))
     noise: FloatArray = white.copy()
     for k in range(1, len(white)):
         noise[k] = kept * noise[k - 1] + np.sqrt(1.0 - kept**2) * white[k]

@@ -122,8 +122,8 @@ def readings(results: Iterable[ReadingResult]) -> list[str]:
 def savings(found: Sequence[Saving], campaigns: int) -> list[str]:
     """Manoeuvres needed with and without the advice."""
     lines = [
-        f"Manoeuvres until the response is known to {PLAN.tolerance_percent:g} % of its peak and each named "
-        f"derivative to {2.0 * PLAN.tolerance_percent:g} % (rule information), {campaigns} campaigns each,",
+        f"Manoeuvres until the response is known to {PLAN.tolerance_percent:g} % of its peak, the named "
+        f"derivatives accordingly (rule information), {campaigns} campaigns each,",
         "repeating the standard 3-2-1-1 in alternating directions, and flying what was advised:",
     ]
     for one in found:

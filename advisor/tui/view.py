@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from advisor.aircraft import Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
-from advisor.decision.verdict import FlightTestVerdict
+from advisor.decision.verdict import FlightTestVerdict, limit_percent
 from advisor.problems import Problem
 from advisor.tui.source import LinkHealth, Playback, Tempo
 
@@ -54,9 +54,8 @@ class View:
 def view_before_first(aircraft: Aircraft, title: str, tempo: Tempo | None) -> View:
     """What there is to show before the first report: nothing flown, nothing heard."""
     plan = aircraft.campaign
-    verdict = FlightTestVerdict(
-        plan.rule, "continue", "No manoeuvre has been flown yet.", None, plan.limit_percent, None
-    )
+    limit = limit_percent(plan.rule, plan)
+    verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
     state = CampaignState(
         vehicle=None,
         now_s=0.0,

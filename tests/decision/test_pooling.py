@@ -13,6 +13,7 @@ from advisor.decision.pooling import (
     beliefs_at_one_speed,
     disagreement,
     inconsistency,
+    inconsistency_without_each,
     pool,
 )
 from advisor.flight.messages import FloatArray
@@ -127,3 +128,18 @@ def test_without_every_air_speed_nothing_is_scaled() -> None:
 
 def test_the_order_of_parameters_is_that_of_the_house() -> None:
     assert [PARAMETERS[k] for k in INTERCEPTS] == ["Z_0", "M_0"]
+
+
+def test_leaving_out_each_in_turn_equals_pooling_the_others() -> None:
+    rng = np.random.default_rng(6)
+    beliefs = [random_belief(rng) for _ in range(5)]
+    # One derivative that a single manoeuvre alone knows, another that one does not know.
+    for belief in beliefs[1:]:
+        belief.covariance[2, :] = belief.covariance[:, 2] = 0.0
+        belief.covariance[2, 2] = np.inf
+    beliefs[3].covariance[6, :] = beliefs[3].covariance[:, 6] = 0.0
+    beliefs[3].covariance[6, 6] = np.inf
+    for k, (distance, dof) in enumerate(inconsistency_without_each(beliefs)):
+        expected, size = inconsistency([b for i, b in enumerate(beliefs) if i != k])
+        assert distance == pytest.approx(expected)
+        assert dof == size

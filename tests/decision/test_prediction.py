@@ -103,6 +103,19 @@ def test_a_derivative_of_which_nothing_is_known_leaves_the_response_unknown() ->
     assert predict([ONE], DERIVED, None).percent(covariance) == {"alpha": np.inf, "q": np.inf}
 
 
+def test_an_unstable_aircraft_is_predicted_until_a_deviation_has_doubled() -> None:
+    unstable = np.array([-1.42, 0.0, -0.1, 9.64, -3.71, -12.0])
+    growth = np.max(np.linalg.eigvals([[-1.42, 1.0], [9.64, -3.71]]).real)
+    response = response_to(ONE, unstable, None)
+    assert response is not None
+    # The first step comes after one second; it is a step, so q begins as M_delta_e times its size.
+    step_s = (1.0 + np.log(2.0) / growth) / (MOMENTS - 1)
+    moving = np.argmax(np.abs(response.values[1]) > 0.0)
+    assert moving * step_s == pytest.approx(1.0, abs=0.05)
+    band = predict([ONE], unstable, None).percent(np.diag((0.02 * unstable) ** 2))
+    assert max(band.values()) < 10.0
+
+
 def test_a_model_that_runs_away_predicts_nothing() -> None:
     wild = predict([ONE], 1e3 * np.abs(DERIVED), None)
     assert set(wild.percent(np.diag(DERIVED**2)).values()) == {np.inf}

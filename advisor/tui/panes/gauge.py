@@ -34,7 +34,8 @@ def _criterion(view: View) -> str:
     verdict = view.state.flight_test
     value, limit = verdict.criterion_percent, verdict.limit_percent
     if value is None:
-        return f"none yet: it needs {view.aircraft.campaign.window} good manoeuvres (limit {percent(limit)})"
+        least = 2 if verdict.rule == "information" else view.aircraft.campaign.window
+        return f"none yet: it needs {least} good manoeuvres (limit {percent(limit)})"
     side = "below" if value < limit else "above"
     now, most = beside(value, limit)
     return f"{now:>4} %  {bar(value, limit, 24)}  {side} the limit {most} %"
