@@ -26,11 +26,12 @@ LEAST = 1e-12
 def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) -> FloatArray:
     """The half-width each parameter's 95 % interval must stay below.
 
-    ``SHARE`` times ``plan.tolerance_percent`` of the parameter, or what moves the frequency or the damping of
-    the short period by ``plan.tolerance_percent``, whichever is larger. For a derivative near zero, a share of which is smaller than anything that matters: with δ the change that alone moves
-    the predicted response by its tolerance, δ itself at zero, falling to nothing extra at 3·δ. What
-    ``plan.tolerance`` says of a parameter stands above all this. No noise enters: a poor manoeuvre must not
-    widen what is asked for.
+    ``SHARE`` times ``plan.tolerance_percent`` of the parameter, or what moves the frequency or the damping
+    of the short period by ``plan.tolerance_percent``, whichever is larger. For a derivative near zero, a
+    share of which is smaller than anything that matters: with δ the change that alone moves the predicted
+    response by its tolerance, δ itself at zero, falling to nothing extra at 3·δ. What ``plan.tolerance``
+    says of a parameter stands above all this. No noise enters: a poor manoeuvre must not widen what is
+    asked for.
 
     Returns
     -------

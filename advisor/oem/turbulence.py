@@ -37,7 +37,8 @@ def cost_of(
 
 
 LARGEST_GUST_RAD = 0.26
-"""Largest standard deviation of the gust angle, rad: beyond 15 deg no lift is linear in the angle of attack."""
+"""Largest standard deviation of the gust angle, rad: beyond 15 deg no lift is linear in the angle of
+attack."""
 _STEPS = (0.7, 0.35, 0.15)
 """Of the search in the logarithms of the noise figures: from a factor of two to one of 1.16."""
 _RANGE = (1e-12, 1e3)
@@ -64,7 +65,8 @@ class Turbulence:
 
     @property
     def is_air(self) -> bool:
-        """Whether the gusts are within a linear model of the aircraft; larger ones are errors of the model."""
+        """Whether the gusts are within a linear model of the aircraft; larger ones are errors of the
+        model."""
         return self.gust_angle < LARGEST_GUST_RAD
 
 
