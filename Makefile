@@ -84,6 +84,10 @@ study-second: .venv/.developed ## the diagnosis on 240 flights of the second gen
 	$(BIN)/python -m benchmarks.answer_sealed build/second build/second.jsonl
 	$(BIN)/python -m benchmarks.second_generator score build/second build/second.jsonl --details
 
+FLIGHTS ?= ../shared/flights
+real: .venv/.developed ## records of real aircraft against what is known of them (FLIGHTS=folder)
+	$(BIN)/python -m benchmarks.real $(FLIGHTS) --write docs/validation.md
+
 accuracy: .venv/.developed ## the estimator against the Cramér-Rao bound, intervals against the truth
 	$(BIN)/python -m benchmarks.accuracy --write docs/accuracy.md
 

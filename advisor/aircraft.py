@@ -72,7 +72,7 @@ class Alpha:
     """Where the angle of attack comes from."""
 
     source: str = "auto"
-    """auto | aoa_ssa | derived | named_value:NAME"""
+    """auto | aoa_ssa | derived | named_value:NAME | none; ``none``: estimate without one."""
     vane_arm_m: float | None = None
     """Distance of the vane ahead of the centre of gravity; None: unknown, 0: corrected already."""
 

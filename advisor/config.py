@@ -138,10 +138,10 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     """Yield mistakes that types do not show, as ``path: what is wrong``."""
     yield from _elevator_mistakes(aircraft.elevator)
     source = aircraft.alpha.source
-    if source not in ("auto", "aoa_ssa", "derived") and not (
+    if source not in ("auto", "aoa_ssa", "derived", "none") and not (
         source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
     ):
-        yield f"alpha.source: {source!r} is none of auto, aoa_ssa, derived, named_value:NAME"
+        yield f"alpha.source: {source!r} is none of auto, aoa_ssa, derived, none, named_value:NAME"
     positive = {
         "airspeed_m_s": aircraft.airspeed_m_s,
         "reference_airspeed_m_s": aircraft.reference_airspeed_m_s,

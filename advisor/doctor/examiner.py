@@ -85,15 +85,17 @@ class Examiner:
         autopilot = vehicle.autopilot if vehicle else ""
         found = problems(vehicle, self._stream.other_systems, self._stream.elevator, channels, 1, {})
         limits = [_stopping(problem) for problem in found if problem.code != "rate"]
-        complete = {"elevator", "q", "alpha"} <= paced.keys()
         speed = self._airspeed(paced)
+        complete = {"elevator", "q"} <= paced.keys() and (
+            "alpha" in paced or ("a_z" in paced and speed is not None)
+        )
         if complete:
             limits += rate_limits(paced, belief, autopilot, speed)
         period_s = 2.0 * np.pi / frequency(belief.model)
         limits += steadiness_limits(arrivals, {p.message for p in paced.values()}, period_s)
         if vehicle is not None and complete:
             limits += self._speed_limits(paced, belief, autopilot, speed)
-            limits += alpha_limits(self._stream.channels["alpha"], autopilot)
+            limits += alpha_limits(self._stream.channels["alpha"], autopilot) if "alpha" in paced else []
         elevator = self._elevator()
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
         limits += clock_limits(clocks) if clocks else []
@@ -135,7 +137,7 @@ class Examiner:
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
         """The channels that identification lives on, with the messages that pace them."""
         paced = {}
-        for name in ("elevator", "q", "alpha", "a_z", "theta"):
+        for name in ("elevator", "q", "alpha", "a_z"):
             status = self._stream.channels.get(name)
             message = _message(status) if status else ""
             arrival = arrivals.get(message)
@@ -195,7 +197,7 @@ def _believable(flown: Estimate) -> bool:
     low, high = _PLAUSIBLE_RAD_S
     pace = frequency(ShortPeriod(flown.theta))
     moved = low < pace < high and abs(flown.value("M_delta_e")) > _LEAST_EFFECT * pace**2
-    explained = all(fit[name].r2 > _EXPLAINED for fit in flown.fits for name in ("alpha", "q"))
+    explained = all(fit.r2 > _EXPLAINED for fits in flown.fits for fit in fits.values())
     known = [PARAMETERS.index(name) for name in ("M_alpha", "M_delta_e")]
     sharp = bool(np.all(flown.std[known] < _KNOWN_SHARE * np.abs(flown.theta[known])))
     return moved and explained and sharp and not {"M_alpha", "M_delta_e"} & flown.not_identifiable.keys()

@@ -15,6 +15,8 @@ from advisor.flight.messages import FloatArray
 from advisor.model.response import LOCAL, N_LOCAL, N_SHARED, OUTPUTS, SHARED, respond
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.covariance import cramer_rao, influence
+from advisor.oem.prepare import OUTPUTS as COUNTED
+from advisor.oem.prior import precision_without_alpha
 from advisor.oem.problem import Assembly, Problem, Record, Signal, assemble
 
 UNITS_OF_TIME = (3, 2, 1, 1)
@@ -73,8 +75,7 @@ def expect(belief: Belief, rates_hz: Mapping[str, float], airspeed_m_s: float | 
     belief
         What the aircraft and its instruments are believed to be.
     rates_hz
-        Rates at which ``elevator``, ``alpha``, ``q`` and, when they are there, ``a_z`` and
-        ``theta`` bring new values.
+        Rates at which ``elevator``, ``q`` and, when they are there, ``alpha`` and ``a_z`` bring new values.
     airspeed_m_s
         Enters the specific force; None: not measured, so that a_z cannot be used.
     """
@@ -82,8 +83,8 @@ def expect(belief: Belief, rates_hz: Mapping[str, float], airspeed_m_s: float | 
     unit_s = float(np.clip(2.0 / frequency(model), 0.1, 3.0))
     edges = _LEAD_IN_S + unit_s * np.cumsum([0, *UNITS_OF_TIME])
     end_s = float(edges[-1]) + max(2.0, 10.0 * unit_s)
-    outputs = [name for name in OUTPUTS if name in rates_hz and (name != "a_z" or airspeed_m_s)]
-    shape = _assembly(edges, 1.0, end_s, rates_hz, outputs, airspeed_m_s)
+    outputs = [name for name in COUNTED if name in rates_hz and (name != "a_z" or airspeed_m_s)]
+    shape = _assembly(edges, 1.0, end_s, {"alpha": rates_hz["q"], **rates_hz}, ["alpha", "q"], airspeed_m_s)
     unit_response = _answer(shape, model)
     peak = float(np.max(np.abs(unit_response[shape.rows[0]["alpha"]])))
     amplitude = np.radians(RESPONSE_ALPHA_DEG) / peak
@@ -108,7 +109,8 @@ def _errors(
     sensitivities = np.empty((len(manoeuvre.z), N_SHARED + N_LOCAL))
     respond(manoeuvre.grid, *_parameters(model), np.empty(len(manoeuvre.z)), sensitivities)
     noise = np.array([belief.noise.get(name, NOISE[name]) for name in OUTPUTS])
-    effect = influence(manoeuvre, sensitivities, noise)
+    prior = None if "alpha" in outputs else precision_without_alpha(_parameters(model)[0])
+    effect = influence(manoeuvre, sensitivities, noise, prior=prior)
     if effect is None:
         return np.full(len(PARAMETERS), np.nan)
     covariance = cramer_rao(manoeuvre, effect.rows, noise)

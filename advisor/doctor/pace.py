@@ -44,7 +44,8 @@ def rate_limits(
     Parameters
     ----------
     paced
-        Elevator, q and alpha, and a_z and theta when they are there.
+        Elevator and q, and alpha and a_z when they are there. With a_z and air speed a slow alpha stops
+        nothing.
     """
     period_s = 2.0 * np.pi / frequency(belief.model)
     fewest_hz = max(SLOWEST_HZ, FEWEST_PER_PERIOD / period_s)
@@ -52,9 +53,10 @@ def rate_limits(
     good = {name: max(float(GOOD_HZ), channel.renewed_hz) for name, channel in paced.items()}
     best = expect(belief, good, airspeed_m_s)
     limits = []
+    stands_in = "a_z" in paced and airspeed_m_s is not None
     for name in ("elevator", "q", "alpha"):
-        channel = paced[name]
-        if channel.renewed_hz >= enough_hz:
+        channel = paced.get(name)
+        if channel is None or channel.renewed_hz >= enough_hz:
             continue
         alone = expect(belief, {**good, name: channel.renewed_hz}, airspeed_m_s)
         repeats = channel.rate_hz >= enough_hz
@@ -66,7 +68,7 @@ def rate_limits(
                 "renewal" if repeats else "rate",
                 f"{arrives}: {_samples(channel.renewed_hz, fewest_hz, enough_hz, _PLAIN[name], period_s)}",
                 _staircase(channel) if repeats else how_to_ask(channel.message, autopilot),
-                stops=channel.renewed_hz < fewest_hz,
+                stops=channel.renewed_hz < fewest_hz and not (name == "alpha" and stands_in),
                 std_ratio=_ratio(alone, best),
             )
         )

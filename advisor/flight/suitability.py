@@ -20,6 +20,8 @@ from advisor.problems import Problem
 SLOWEST_HZ = 8.0
 """Least rate of elevator, pitch rate and angle of attack, whatever the aircraft."""
 _ASK_HZ = 50
+_MOTION = ("a_z", "airspeed", "theta")
+"""Channels that stand in for an angle of attack, besides the pitch rate."""
 
 # Stream groups of ArduPilot, which hold a message's rate: SRn_<group>, since 4.7 MAVn_<group>.
 _GROUPS = {
@@ -121,22 +123,29 @@ def _missing(
                 "Ask for SERVO_OUTPUT_RAW (--request-rates), or set elevator.output in the aircraft file.",
             )
         )
-    if "alpha" not in channels:
+    if "alpha" not in channels and not motion_stands_in(channels):
+        absent = " nor ".join(name for name in _MOTION if name not in channels)
         found.append(
             Problem(
                 "no_alpha",
-                "There is no angle of attack, and none can be derived.",
-                "Ask for AOA_SSA, or for VFR_HUD with air speed and climb rate (--request-rates); "
+                f"There is no angle of attack, and the motion cannot stand in for it: no {absent} arrived.",
+                "Ask for RAW_IMU and VFR_HUD (--request-rates), or for AOA_SSA; "
                 "a vane may send NAMED_VALUE_FLOAT (alpha.source).",
             )
         )
     return found
 
 
+def motion_stands_in(channels: Collection[str]) -> bool:
+    """Whether an estimate needs no angle of attack: specific force, air speed and attitude arrive."""
+    return all(name in channels for name in _MOTION)
+
+
 def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[Problem]:
     if "q" not in channels:
         return []
-    needed = [channels[name] for name in ("elevator", "q", "alpha") if name in channels]
+    names = ("elevator", "q") if motion_stands_in(channels) else ("elevator", "q", "alpha")
+    needed = [channels[name] for name in names if name in channels]
     slow = {_message(status): status.rate_hz for status in needed if not status.rate_hz >= SLOWEST_HZ}
     return [
         Problem(

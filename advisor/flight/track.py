@@ -97,7 +97,8 @@ class Tracks:
     Parameters
     ----------
     alpha_source
-        ``auto``, ``aoa_ssa``, ``derived`` or ``named_value:NAME``, as the aircraft file has it.
+        ``auto``, ``aoa_ssa``, ``derived``, ``named_value:NAME`` or ``none``, as the aircraft file has it.
+        With ``none`` the channel is kept as with ``auto``, but no estimate uses it.
     """
 
     def __init__(self, alpha_source: str) -> None:
@@ -108,6 +109,7 @@ class Tracks:
         named = alpha_source.removeprefix("named_value:")
         self._sources["alpha"] = {
             "auto": ["AOA_SSA.AOA", DERIVED_ALPHA],
+            "none": ["AOA_SSA.AOA", DERIVED_ALPHA],
             "aoa_ssa": ["AOA_SSA.AOA"],
             "derived": [DERIVED_ALPHA],
         }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])

@@ -34,9 +34,14 @@ def precision(problem: Problem, shared: FloatArray) -> FloatArray:
     FloatArray
         Shape (7,). Zero throughout where every record has an angle of attack.
     """
-    weight = np.zeros(N_SHARED)
     if all("alpha" in record.outputs for record in problem.records):
-        return weight
+        return np.zeros(N_SHARED)
+    return precision_without_alpha(shared)
+
+
+def precision_without_alpha(shared: FloatArray) -> FloatArray:
+    """(7,) inverse variances where no angle of attack is measured; ``shared`` (7,), order of ``SHARED``."""
+    weight = np.zeros(N_SHARED)
     moment = max(abs(float(shared[SHARED.index("M_delta_e")])), 1e-6)
     weight[SHARED.index("Z_q")] = Z_Q_STD**-2
     weight[SHARED.index("Z_delta_e")] = (LIFT_OVER_MOMENT_S * moment) ** -2

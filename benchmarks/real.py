@@ -1,0 +1,183 @@
+"""What the product says of records of real aircraft, against what is known of them.
+
+    python -m benchmarks.real FOLDER [--write docs/validation.md]
+
+``real_records.yaml`` holds what was flown and what is published; the records themselves stay where they
+are. Each record runs through ``advisor analyze --json`` with the aircraft file of the same name, as a user
+runs it. A figure holds when it lies within its tolerance, or when the stated 95 % interval contains the
+known value."""
+
+import argparse
+import json
+import platform
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+RECORDS = Path(__file__).with_name("real_records.yaml")
+START, END = "<!-- real: begin -->", "<!-- real: end -->"
+NEAR_S = 1.5
+"""A found input is the one that was flown when it begins this close to it, s."""
+NORMAL_95 = 1.96
+
+
+@dataclass(frozen=True)
+class Row:
+    """One record: what was asked of it and what came out."""
+
+    log: str
+    what: str
+    asked: str
+    got: str
+    holds: bool
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the table; 0 also where the records are not here, 1 where something does not hold."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--write", type=Path, help="rewrite the table of this document")
+    given = parser.parse_args(arguments)
+    if not given.folder.is_dir():
+        print(f"No flight records at {given.folder}: nothing was measured. Say where: make real FLIGHTS=DIR")
+        return 0
+    records = yaml.safe_load(RECORDS.read_text(encoding="utf-8"))
+    rows = [row for record in records for row in judged(record, given.folder)]
+    table = in_markdown(rows)
+    print(table)
+    if given.write:
+        document = given.write.read_text(encoding="utf-8")
+        before, rest = document.split(START)
+        given.write.write_text(f"{before}{START}\n{table}\n{END}{rest.split(END)[1]}", encoding="utf-8")
+    return 0 if all(row.holds for row in rows) else 1
+
+
+def judged(record: Mapping[str, Any], folder: Path) -> Iterator[Row]:
+    """The row of a record; none where the folder does not hold the log."""
+    log = folder / record["log"]
+    if not log.exists():
+        return
+    document = analyzed(log)
+    claims = [*_found(record, document), *_accepted(record, document), *_stopped(record, document)]
+    claims += _figures(record, document)
+    asked, got, holds = zip(*claims, strict=True)
+    yield Row(record["log"], record["what"], "; ".join(asked), "; ".join(got), all(holds))
+
+
+def analyzed(log: Path) -> dict[str, Any]:
+    """The document of ``advisor analyze``."""
+    aircraft = log.with_suffix(".yaml")
+    options = ["--aircraft", str(aircraft)] if aircraft.exists() else []
+    command = [sys.executable, "-m", "advisor", "analyze", str(log), *options, "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def in_markdown(rows: Sequence[Row]) -> str:
+    """The table, with its date and machine."""
+    lines = ["| record | flown | asked | got | holds |", "|---|---|---|---|---|"]
+    lines += [
+        f"| `{r.log}` | {r.what} | {r.asked} | {r.got} | {'yes' if r.holds else '**no**'} |" for r in rows
+    ]
+    held = sum(row.holds for row in rows)
+    lines.append(
+        f"\n{held} of {len(rows)} hold. Measured {date.today().isoformat()}, {platform.machine()}, "
+        f"Python {platform.python_version()}."
+    )
+    return "\n".join(lines)
+
+
+Claim = tuple[str, str, bool]
+
+
+def _found(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Claim]:
+    flown = record["flown"]
+    if isinstance(flown, int):
+        found = len(document["maneuvers"])
+        yield f"{flown} found", f"{found} found", found == flown
+        return
+    hits = sum(_at(document, start_s) is not None for start_s in flown)
+    yield f"{len(flown)} found", f"{hits} found", hits == len(flown)
+
+
+def _accepted(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Claim]:
+    flown = record["flown"]
+    mine = document["maneuvers"] if isinstance(flown, int) else [_at(document, s) for s in flown]
+    among = [m for m in mine if m is not None]
+    accepted = sum(m["verdict"] == "accepted" for m in among)
+    if record["accepted"] == 0:
+        reasons = ", ".join(sorted({r["code"] for m in among for r in m["reasons"][:1]}))
+        yield "refused", f"refused for {reasons}" if accepted == 0 else "accepted", accepted == 0
+    else:
+        yield (
+            f"at least {record['accepted']} accepted",
+            f"{accepted} accepted",
+            accepted >= record["accepted"],
+        )
+
+
+def _stopped(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Claim]:
+    if "stop" in record:
+        stopped = document["flight_test"]["stopped_at"]
+        said = f"stop after {stopped}" if stopped else "no stop"
+        yield f"stop by {record['stop']}", said, stopped is not None and stopped <= record["stop"]
+
+
+def _figures(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Claim]:
+    for name, known in record.get("figures", {}).items():
+        value, half = _figure(name, document)
+        truth = _truth(known, record, document)
+        margin = known["within"] * abs(truth) if "within" in known else known["absolute"]
+        holds = value is not None and (abs(value - truth) <= margin or abs(value - truth) <= half)
+        shown = "none" if value is None else f"{value:.3g} ± {half:.2g}"
+        yield f"{name} {truth:.3g} ± {margin:.2g}", f"{name} {shown}", holds
+    for name, excluded in record.get("outside", {}).items():
+        value, half = _figure(name, document)
+        holds = value is not None and abs(value - excluded) > half
+        yield f"{name} {excluded:g} outside the interval", "outside" if holds else "inside", holds
+
+
+def _truth(known: Mapping[str, float], record: Mapping[str, Any], document: Mapping[str, Any]) -> float:
+    if "value" in known:
+        return known["value"]
+    speed = document["model"]["reference_airspeed_m_s"] * record["true_over_indicated"]
+    if "per_speed" in known:
+        return float(known["per_speed"] * speed)
+    return float(known["per_speed_squared"] * speed**2)
+
+
+def _figure(name: str, document: Mapping[str, Any]) -> tuple[float | None, float]:
+    """A figure of the joint estimate and the half-width of its 95 % interval."""
+    model = document["model"] or {}
+    if name == "vane_lag_s":
+        instruments = model.get("instruments", {})
+        if "alpha_delay_s" in instruments:
+            entry = instruments["alpha_delay_s"]
+        else:
+            speed = model.get("reference_airspeed_m_s") or 1.0
+            entry = {k: v / speed for k, v in instruments.get("vane_arm_m", {}).items()}
+    elif name == "servo_lag_s":
+        entry = model.get("instruments", {}).get("servo_lag_s", {})
+    elif name.startswith("C_"):
+        entry = document["coefficients"].get(name, {})
+    else:
+        entry = model.get(name, {})
+    if entry.get("value") is None:
+        return None, 0.0
+    return float(entry["value"]), NORMAL_95 * float(entry["std"])
+
+
+def _at(document: Mapping[str, Any], start_s: float) -> Mapping[str, Any] | None:
+    near = [m for m in document["maneuvers"] if abs(m["start_boot_s"] - start_s) <= NEAR_S]
+    return near[0] if near else None
+
+
+if __name__ == "__main__":
+    sys.exit(main())
