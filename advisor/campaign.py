@@ -26,6 +26,7 @@ from advisor.flight.marks import MARK_NOTICES, Mark
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
 from advisor.learning import learnt as learnt_from
+from advisor.learning import reserved
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.solution import Method
@@ -240,6 +241,10 @@ class Campaign:
         self._flight_test = flight_test(self._history, plan, self._aircraft)
         model = estimate_jointly([j.maneuver for j in self._judged if j.verdict.accepted], self._aircraft)
         self._model = model if isinstance(model, Estimate) else None
+        self._judged = tuple(
+            replace(judged, verdict=reserved(judged.verdict, judged.estimate, self._model))
+            for judged in self._judged
+        )
 
     def _learn(self, exactly: bool = False) -> None:
         """Examine all manoeuvres again when they have told more of the instruments."""
@@ -253,7 +258,10 @@ class Campaign:
             for flown, before in zip(again, self._history, strict=True)
         ]
         lag = learnt.elevator.lag_found_s
-        self._log(f"the servo's lag is {lag:.3f} s by all manoeuvres together; every estimate uses it now")
+        self._log(
+            f"the servo's lag is {lag:.3f} s by all manoeuvres together; every estimate uses it now;"
+            f" for the aircraft file: elevator: {{lag_s: {lag:.3f}}}"
+        )
         self._decide()
 
     def _decide_by_hand(self, number: int, because: str | None) -> None:

@@ -5,9 +5,16 @@ lag is known to a tenth, single estimates, verdicts and criteria are those with 
 
 from dataclasses import replace
 
-from advisor.aircraft import Aircraft
-from advisor.oem.estimate import Estimate
+import numpy as np
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.decision.verdict import ManeuverVerdict
+from advisor.model.short_period import SPEED_EXPONENTS
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.instruments import KNOWN_TO
+
+CONTRADICTS = 3.0
+"""Standard deviations between two estimates of one derivative that chance does not make."""
 
 
 def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False) -> Aircraft:
@@ -29,3 +36,29 @@ def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False)
     used = elevator.lag_found_s
     near = used is not None and abs(lag.value - used) <= (0.0 if exactly else lag.std)
     return aircraft if near else replace(aircraft, elevator=replace(elevator, lag_found_s=lag.value))
+
+
+def reserved(
+    verdict: ManeuverVerdict, estimate: Estimate | NoEstimate, model: Estimate | None
+) -> ManeuverVerdict:
+    """The verdict, without praise where the joint estimate contradicts the control derivative.
+
+    A record that does not tell the servo's lag by itself has M_δe wrong by up to a factor of two, at a fit
+    as good as any, and with a small stated error."""
+    if model is None or isinstance(estimate, NoEstimate) or not verdict.accepted:
+        return verdict
+    if model.instrument("servo_lag_s") is None or estimate.servo_lag_s > 0.0:
+        return verdict
+    scale = 1.0
+    if model.airspeed_m_s and estimate.airspeed_m_s:
+        scale = (model.airspeed_m_s / estimate.airspeed_m_s) ** SPEED_EXPONENTS["M_delta_e"]
+    j = PARAMETERS.index("M_delta_e")
+    here, std = scale * float(estimate.theta[j]), scale * float(estimate.std[j])
+    together, error = float(model.theta[j]), float(model.std[j])
+    if abs(here - together) <= CONTRADICTS * np.hypot(std, error):
+        return verdict
+    sentence = (
+        f"ACCEPTED, but not its M_delta_e of {here:.3g}: with the servo's lag that all manoeuvres tell"
+        f" it is {together:.3g}"
+    )
+    return replace(verdict, sentence=sentence)

@@ -1,0 +1,54 @@
+"""What a campaign learns of the servo, and what becomes of verdicts that knew less."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft, Elevator
+from advisor.decision.verdict import ManeuverVerdict
+from advisor.learning import learnt, reserved
+from advisor.oem.estimate import InstrumentEstimate
+from tests.decision.campaigns import estimate
+
+GOOD = ManeuverVerdict(True, "ACCEPTED: good manoeuvre", (), {})
+
+
+def with_lag(lag_s, std_s, **changed):
+    told = (InstrumentEstimate("servo_lag_s", lag_s, std_s),)
+    return replace(estimate(), instruments=told, servo_lag_s=lag_s, **changed)
+
+
+def test_a_lag_known_to_a_tenth_is_learnt():
+    assert learnt(Aircraft(), with_lag(0.14, 0.01)).elevator.lag_found_s == 0.14
+
+
+@pytest.mark.parametrize("model", [None, estimate(), with_lag(0.14, 0.02)])
+def test_a_lag_that_is_unknown_or_unsure_is_not_learnt(model):
+    nothing = Aircraft()
+    assert learnt(nothing, model) is nothing
+
+
+def test_a_lag_that_the_crew_gives_stands():
+    given = Aircraft(elevator=Elevator(lag_s=0.05))
+    assert learnt(given, with_lag(0.14, 0.01)) is given
+
+
+def test_a_lag_within_its_own_error_of_the_one_used_changes_nothing_but_at_the_end():
+    used = learnt(Aircraft(), with_lag(0.14, 0.01))
+    assert learnt(used, with_lag(0.145, 0.01)) is used
+    assert learnt(used, with_lag(0.145, 0.01), exactly=True).elevator.lag_found_s == 0.145
+
+
+def test_no_verdict_praises_a_control_derivative_that_the_joint_estimate_contradicts():
+    alone = estimate()
+    twice = np.array(alone.theta)
+    twice[7] *= 2.3
+    judged = reserved(GOOD, alone, with_lag(0.14, 0.01, theta=twice))
+    assert judged.accepted
+    assert "good manoeuvre" not in judged.sentence
+    assert "M_delta_e" in judged.sentence
+
+
+def test_a_verdict_that_the_joint_estimate_confirms_stays():
+    assert reserved(GOOD, estimate(), with_lag(0.14, 0.01)) is GOOD
