@@ -15,7 +15,7 @@ from advisor.flight.channels import SLOWEST_FLIGHT_M_S
 from advisor.flight.excitation import excitation
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.rest import SMALLEST_RAD
-from advisor.flight.vehicle import closes_pitch_loop
+from advisor.flight.vehicle import closes_pitch_loop, has_an_errand
 
 LEAST_PITCH_RATE_DEG_S = 1.0
 """Least answer of the pitch rate to a test input, deg/s: smaller ones drown in light turbulence. The gentlest
@@ -69,7 +69,8 @@ def not_an_input(maneuver: Maneuver) -> Because | None:
     if _is_on_ground(maneuver):
         return Because("ground", "the elevator moved while the aircraft did not fly")
     because = _tells_nothing(maneuver)
-    if closes_pitch_loop(maneuver.mode) and (because or not _is_external(maneuver)):
+    inside = has_an_errand(maneuver.mode) or not _is_external(maneuver)
+    if closes_pitch_loop(maneuver.mode) and (because or inside):
         return Because("autopilot", f"the elevator moved in {maneuver.mode}; not a test input")
     return because
 

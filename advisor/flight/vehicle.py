@@ -16,6 +16,10 @@ _PLANE_MODES = {
     16: "INITIALISING", 17: "QSTABILIZE", 18: "QHOVER", 19: "QLOITER", 20: "QLAND", 21: "QRTL",
     22: "QAUTOTUNE", 23: "QACRO", 24: "THERMAL", 25: "LOITER_ALT_QLAND", 26: "AUTOLAND",
 }  # fmt: skip
+_MISSIONS = frozenset({
+    "TAKEOFF", "RTL", "CIRCLE", "THERMAL", "AVOID_ADSB", "AUTOLAND", "QLAND", "QRTL", "LOITER_ALT_QLAND",
+})  # fmt: skip
+"""Modes in which the autopilot has an errand of its own: nobody flies or injects a test input there."""
 _PX4_MODES = {1: "MANUAL", 2: "ALTCTL", 3: "POSCTL", 4: "AUTO", 5: "ACRO", 6: "OFFBOARD", 7: "STABILIZED"}
 
 
@@ -82,6 +86,11 @@ def closes_pitch_loop(mode: str) -> bool:
     Elevator, angle of attack and pitch rate are then correlated by the loop.
     """
     return mode in {*_PLANE_MODES.values(), *_PX4_MODES.values()} - {"MANUAL", "INITIALISING"}
+
+
+def has_an_errand(mode: str) -> bool:
+    """Whether the autopilot takes off, lands, returns or circles by itself in this mode."""
+    return mode in _MISSIONS
 
 
 def mode_name(vehicle: Vehicle, custom: int) -> str:

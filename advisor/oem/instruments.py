@@ -162,8 +162,9 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Fitted:
     """
     begin = _Fit(plain.problem, plain.assembly, plain.optimum)
     common = tuple(x for x in unknown if x not in OF_ALPHA)
+    near = _looked_about(begin, common)
     choices = [(*common, x) for x in unknown if x in OF_ALPHA] or [common]
-    fits = [(names, _descend(begin, names)) for names in choices if names]
+    fits = [(names, _descend(near, names)) for names in choices if names]
     names, best = min(fits, key=lambda found: found[1].cost, default=((), begin))
     while names:
         solution = _solution(best, names)
@@ -186,7 +187,7 @@ def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solu
     begin = _Fit(plain.problem, plain.assembly, plain.optimum)
     others = [other for other in names if other is not x]
     reset = x.write(best.problem, x.read(plain.problem))
-    return _descend(_at(reset, best) or begin, others, afresh=False)
+    return _descend(_at(reset, best) or begin, others)
 
 
 def _gain(weighing: Weighing, fit: _Fit, rival: _Fit) -> float:
@@ -215,18 +216,22 @@ def by_instruments(
     return np.column_stack(columns) if columns else np.empty((len(assemble(problem).z), 0))
 
 
-def _descend(begin: _Fit, names: Sequence[Instrument], afresh: bool = True) -> _Fit:
-    """Gauss-Newton on the instruments, everything else refitted at each step.
-
-    ``afresh`` asks to look at the starts of each instrument first.
-    """
+def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
+    """The best of the starts of each instrument, one instrument after the other."""
     best = begin
-    for x in names if afresh else ():
+    for x in names:
         near = best
         for start in x.starts:
-            found = _at(x.write(best.problem, start), near)
-            near = found or near
-            best = near if near.cost < best.cost else best
+            near = _at(x.write(best.problem, start), near) or near
+            if near.cost > best.cost:
+                break
+            best = near
+    return best
+
+
+def _descend(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
+    """Gauss-Newton on the instruments, everything else refitted at each step."""
+    best = begin
     for _ in range(ROUNDS if names else 0):
         step = _step(best, names)
         found = None
