@@ -58,7 +58,7 @@ class Saving:
         return 100.0 * (1.0 - float(np.mean(self.advised) / np.mean(self.standard)))
 
 
-CASES = (("twin jet", 5.0), ("UAV", 7.5))
+CASES = (("twin jet", 10.0), ("UAV", 5.0))
 """Aircraft and noise in percent at which the standard input needs about ten manoeuvres."""
 
 

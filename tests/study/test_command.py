@@ -73,7 +73,7 @@ def test_a_figure_that_cannot_be_drawn_is_refused_before_a_campaign_is_flown(
 
 
 def test_following_the_advice_saves_manoeuvres() -> None:
-    savings = advised.measure(5, seed=1, cases=[("twin jet", 5.0)])
+    savings = advised.measure(5, seed=1, cases=[("twin jet", 10.0)])
     assert [s.same_excursion for s in savings] == [True, False]
     assert min(s.percent for s in savings) > 20.0
 
