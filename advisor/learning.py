@@ -1,7 +1,8 @@
 """What a campaign learns of the instruments on the way, and uses from then on.
 
 A servo's lag that the crew does not give is estimated from all accepted manoeuvres together. As soon as the
-lag is known to a tenth, single estimates, verdicts and criteria are those with the lag."""
+lag is known to a tenth, single estimates, verdicts and criteria are those with the lag.
+"""
 
 from dataclasses import replace
 
@@ -44,7 +45,8 @@ def reserved(
     """The verdict, without praise where the joint estimate contradicts the control derivative.
 
     A record that does not tell the servo's lag by itself has M_δe wrong by up to a factor of two, at a fit
-    as good as any, and with a small stated error."""
+    as good as any, and with a small stated error.
+    """
     if model is None or isinstance(estimate, NoEstimate) or not verdict.accepted:
         return verdict
     if model.instrument("servo_lag_s") is None or estimate.servo_lag_s > 0.0:

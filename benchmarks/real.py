@@ -5,7 +5,8 @@
 ``real_records.yaml`` holds what was flown and what is published; the records themselves stay where they
 are. Each record runs through ``advisor analyze --json`` with the aircraft file of the same name, as a user
 runs it. A figure holds when it lies within its tolerance, or when the stated 95 % interval contains the
-known value."""
+known value.
+"""
 
 import argparse
 import json

@@ -1,5 +1,6 @@
 """Flights of the kinds that real records are, flown by the bundled simulator: judged, estimated, and
-ended."""
+ended.
+"""
 
 from functools import cache
 from pathlib import Path
@@ -38,7 +39,8 @@ def analysed(name, flight, aircraft):
 
 def off(state, name):
     """How far a derivative of the joint estimate is from the truth, over the truth; and its error
-    likewise."""
+    likewise.
+    """
     truth = NonlinearAircraft(UAV, state.model.airspeed_m_s, 150.0).truth.as_dict()[name]
     place = list(NonlinearAircraft(UAV, 25.0, 150.0).truth.as_dict()).index(name)
     return abs(state.model.value(name) / truth - 1.0), abs(state.model.std[place] / truth)

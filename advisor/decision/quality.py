@@ -6,7 +6,8 @@ one the crew can act on, and what follows from it comes after it.
 Richness is information, not amplitude: how well the estimate from this manoeuvre alone predicts the pitch
 rate that its own input makes. Moving air, a slow channel, a missing vane or a gentle input all show in that
 one number. Where the input has a good shape, more stick is the cure, and the reason says how much more,
-since standard deviations fall with the amplitude."""
+since standard deviations fall with the amplitude.
+"""
 
 import math
 from collections.abc import Mapping
@@ -65,7 +66,8 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
     """Natural period of the short period in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
 
     Where no estimate of a stable aircraft predicts its own response, two and a half of the shortest step,
-    or two of a multisine's median lobes: the inputs of a test are matched to the aircraft."""
+    or two of a multisine's median lobes: the inputs of a test are matched to the aircraft.
+    """
     if isinstance(estimate, Estimate) and estimate.prediction.get("q", 0.0) < 1.0:
         square = estimate.value("Z_alpha") * estimate.value("M_q")
         square -= (1.0 + estimate.value("Z_q")) * estimate.value("M_alpha")

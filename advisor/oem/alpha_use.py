@@ -2,7 +2,8 @@
 
 Most small aircraft have no vane. With pitch rate, specific force, attitude and air speed the angle of
 attack is a state that nobody need measure. An angle of attack that the autopilot derives counts only as far
-as the kinematics support it (``advisor.flight.kinematics``)."""
+as the kinematics support it (``advisor.flight.kinematics``).
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -41,7 +42,8 @@ def can_do_without(maneuver: Maneuver, aircraft: Aircraft) -> bool:
 
 def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
     """Why no measured angle of attack counts in these manoeuvres, as half a sentence; empty where one
-    does."""
+    does.
+    """
     if aircraft.alpha.source == "none":
         return "alpha is left out, as the aircraft file asks"
     if not all(has(m.channels, "alpha") for m in maneuvers):

@@ -4,7 +4,8 @@ The influence of the measurements on a joint estimate splits into one contributi
 optimum the contributions sum to zero; their scatter is the covariance that holds whatever the errors within
 a manoeuvre are, model error included (Liang & Zeger, *Biometrika* 73, 1986: clusters are manoeuvres). From
 few manoeuvres that scatter is known badly, so that it takes the place of the stated error only where chance
-hardly explains the difference."""
+hardly explains the difference.
+"""
 
 import numpy as np
 from scipy.special import chdtri

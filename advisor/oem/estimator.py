@@ -111,7 +111,8 @@ def unknown_instruments(prepared: Prepared, aircraft: Aircraft) -> tuple[Instrum
     """Instruments whose parameters the aircraft file leaves open and the record may tell.
 
     A vane and an accelerometer at one place describe the motion of that place as well as those at the
-    centre of gravity describe the aircraft's: one of the two places must be known to tell the other."""
+    centre of gravity describe the aircraft's: one of the two places must be known to tell the other.
+    """
     unknown = [SERVO_LAG] if lag_is_unknown(aircraft) else []
     measured = {name for record in prepared.problem.records for name in record.outputs}
     if {"alpha", "a_z"} <= measured:

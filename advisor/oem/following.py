@@ -1,8 +1,8 @@
 """The estimate of a manoeuvre while it is being flown, refreshed at every sample.
 
-Each refresh is complete: all data so far, all parameters, corrected errors. It is quick because the
-search begins where the last one ended, and because the colour of the noise, which changes
-slowly, is fitted only now and then.
+Each refresh is complete: all data so far, all parameters, corrected errors. It is quick because the search
+begins where the last one ended, and because what changes slowly, the colour of the noise and whether the
+angle of attack counts, is found out only now and then.
 """
 
 from advisor.aircraft import Aircraft
@@ -13,7 +13,7 @@ from advisor.oem.prepare import prepare
 from advisor.oem.solution import Solution, solve
 
 COLOUR_EVERY = 100
-"""Refreshes between two fits of the noise's colour."""
+"""Refreshes between two fits of the noise's colour, and between two checks of the angle of attack."""
 
 CLOSE_ENOUGH = 1e-4
 """Promised change of log J per sample at which a refresh is done: hundredths of a standard deviation."""
@@ -26,15 +26,18 @@ class Follower:
         self._aircraft = aircraft
         self._number: int | None = None
         self._last: Solution | None = None
+        self._left_out: str | None = None
         self._age = 0
 
     def refresh(self, maneuver: Maneuver) -> Estimate | NoEstimate:
         """Estimate from the manoeuvre as far as it has been flown."""
         if maneuver.number != self._number:
             self._number, self._last, self._age = maneuver.number, None, 0
-        prepared = prepare([maneuver], self._aircraft)
+        left_out = self._left_out if self._age % COLOUR_EVERY else None
+        prepared = prepare([maneuver], self._aircraft, alpha_left_out=left_out)
         if isinstance(prepared, NoEstimate):
             return prepared
+        self._left_out = prepared.alpha_left_out
         last = self._last
         if last is None or last.noise.colours.keys() != prepared.problem.records[0].outputs.keys():
             solution = solve(prepared.problem)

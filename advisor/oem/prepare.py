@@ -49,19 +49,24 @@ class Prepared:
 
 
 def prepare(
-    maneuvers: Sequence[Maneuver], aircraft: Aircraft, outputs: Sequence[str] = OUTPUTS
+    maneuvers: Sequence[Maneuver],
+    aircraft: Aircraft,
+    outputs: Sequence[str] = OUTPUTS,
+    alpha_left_out: str | None = None,
 ) -> Prepared | NoEstimate:
     """Collect what the estimator needs, or say why it cannot begin.
 
     Parameters
     ----------
     outputs : the outputs to use when measured; q always is, and alpha unless the motion contradicts it.
+    alpha_left_out : what ``why_left_out`` said, where that is known already.
     """
     for maneuver in maneuvers:
         missing = _missing(maneuver)
         if missing is not None:
             return missing
-    alpha_left_out = why_left_out(maneuvers, aircraft)
+    if alpha_left_out is None:
+        alpha_left_out = why_left_out(maneuvers, aircraft)
     if alpha_left_out and not all(can_do_without(m, aircraft) for m in maneuvers):
         if not all(_has(m.channels, "alpha") for m in maneuvers):
             return _no_alpha(maneuvers, aircraft, alpha_left_out)

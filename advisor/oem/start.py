@@ -69,7 +69,8 @@ def _from_force(problem: Problem) -> tuple[FloatArray, FloatArray]:
 
     Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) n stands for α, with the factor
     M_α/Z_α, so that moving air, which the inferred α does not show, does no harm. The slope of n over the
-    inferred α is Z_α; a parabola in time takes up its drift."""
+    inferred α is Z_α; a parabola in time takes up its drift.
+    """
     shared, local = np.zeros(N_SHARED), np.zeros((len(problem.records), N_LOCAL))
     moments, rates, slopes, forces, own = [], [], [], [], []
     for record in problem.records:

@@ -66,7 +66,8 @@ class Turbulence:
     @property
     def is_air(self) -> bool:
         """Whether the gusts are within a linear model of the aircraft; larger ones are errors of the
-        model."""
+        model.
+        """
         return self.gust_angle < LARGEST_GUST_RAD
 
 
