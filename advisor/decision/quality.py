@@ -14,7 +14,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.beside import beside
 from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
 from advisor.decision.verdict import Reason
@@ -68,7 +68,7 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
     Where no estimate of a stable aircraft predicts its own response, two and a half of the shortest step,
     or two of a multisine's median lobes: the inputs of a test are matched to the aircraft.
     """
-    if isinstance(estimate, Estimate) and estimate.prediction.get("q", 0.0) < 1.0:
+    if isinstance(estimate, Estimate) and _knows_the_motion(estimate):
         square = estimate.value("Z_alpha") * estimate.value("M_q")
         square -= (1.0 + estimate.value("Z_q")) * estimate.value("M_alpha")
         if square > 0.0:
@@ -78,6 +78,13 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
         return 1.0
     swept = maneuver.span.kind == "multisine"
     return 2.0 * float(np.median(np.diff(onsets))) if swept else 2.5 * float(np.min(np.diff(onsets)))
+
+
+def _knows_the_motion(estimate: Estimate) -> bool:
+    """Whether an estimate predicts its own response and knows the stiffness better than not at all."""
+    stiffness = PARAMETERS.index("M_alpha")
+    known = abs(float(estimate.theta[stiffness])) > float(estimate.std[stiffness])
+    return known and estimate.prediction.get("q", 0.0) < 1.0
 
 
 def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reason]:

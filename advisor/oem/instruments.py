@@ -31,6 +31,8 @@ N = len(PARAMETERS)
 ROUNDS = 12
 SETTLED = 1e-2
 """Change of Σ n·log σ², per round, below which the search for instrument parameters is done."""
+CLOSE_ENOUGH = 1e-7
+"""Promised change of log J per sample at which a search on the way is done."""
 CLEARLY = 9.0
 """Twice the log-likelihood that a parameter must bring to be believed: three standard deviations."""
 KNOWN_TO = 0.1
@@ -267,7 +269,8 @@ def _step(fit: _Fit, names: Sequence[Instrument]) -> FloatArray:
 
 
 def _at(problem: Problem, near: _Fit) -> _Fit | None:
-    assembly, optimum = search(problem, begin=(near.optimum.shared, near.optimum.local))
+    begin = (near.optimum.shared, near.optimum.local)
+    assembly, optimum = search(problem, begin=begin, flat=CLOSE_ENOUGH)
     return _Fit(problem, assembly, optimum) if optimum.status == CONVERGED else None
 
 
