@@ -65,7 +65,8 @@ def test_default_rates_are_not_usable_and_every_limit_names_message_rate_number_
     assert found.verdict == "not usable"
     stopping = [limit for limit in found.limits if limit.stops]
     told = {limit.text.split()[0]: limit for limit in stopping}
-    assert told.keys() == {"ATTITUDE", "AOA_SSA", "SERVO_OUTPUT_RAW"}
+    assert told.keys() == {"ATTITUDE", "SERVO_OUTPUT_RAW"}
+    told |= {limit.text.split()[0]: limit for limit in found.limits if "AOA_SSA arrives" in limit.text}
     assert "arrives at 4.0 Hz" in told["AOA_SSA"].text
     assert "arrives at 2.0 Hz" in told["SERVO_OUTPUT_RAW"].text
     assert "SR0_EXTRA1 (MAV1_EXTRA1) to 50" in told["AOA_SSA"].fix
