@@ -2,16 +2,17 @@
 
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import yaml
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
 from advisor.aircraft import PARAMETERS, Aircraft, Elevator, Markers, Pairs
 from advisor.effects import mistakes_in
 from advisor.problems import ConfigurationError
+from advisor.yaml_file import read_yaml
 
 
 def load_aircraft(path: Path | None) -> Aircraft:
@@ -20,19 +21,11 @@ def load_aircraft(path: Path | None) -> Aircraft:
     Raises
     ------
     ConfigurationError
-        The file cannot be read, is not YAML, or holds unknown keys or unusable values.
+        The file cannot be read, is not plain YAML, or holds unknown keys or unusable values.
     """
     if path is None:
         return Aircraft()
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigurationError(
-            f"{path}: cannot be read ({error.strerror}); give an aircraft file."
-        ) from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        where = f", line {mark.line + 1}" if (mark := getattr(error, "problem_mark", None)) else ""
-        raise ConfigurationError(f"{path}: not a YAML file{where}; see the example in the README.") from None
+    content = read_yaml(path)
     return parse_aircraft({} if content is None else content, str(path))
 
 
@@ -60,9 +53,14 @@ def parse_aircraft(content: Any, origin: str = "aircraft file") -> Aircraft:
         else:
             mistakes += _beyond_types(aircraft)
             if not mistakes:
-                return aircraft
+                return replace(aircraft, name=_printable(aircraft.name))
             break
     raise ConfigurationError(f"{origin}: " + "; ".join(mistakes) + ".")
+
+
+def _printable(name: str) -> str:
+    # A name goes to terminals: an escape sequence in it would be obeyed there.
+    return "".join(character for character in name if character.isprintable())
 
 
 def _without_empty(content: Any) -> Any:

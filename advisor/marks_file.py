@@ -14,11 +14,13 @@ import yaml
 from advisor.by_hand import ByHand, Remark
 from advisor.flight.marks import LONGEST_S, Mark
 from advisor.problems import ConfigurationError
+from advisor.yaml_file import read_yaml
 
 SUFFIX = ".maneuvers.yaml"
 _TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}
 """Sections of sentences, named as the fields of ``ByHand``, and the key that holds the sentence."""
 _SECTIONS = ("maneuvers", *_TEXT_KEYS)
+_MEND = "Mend the file, move it away, or give --no-marks."
 _HEADING = "# Decided by hand; times in vehicle seconds since boot. `advisor` reads this file with its log.\n"
 
 
@@ -36,15 +38,9 @@ def read_by_hand(log: Path) -> ByHand:
         The file cannot be read, is not YAML, or holds unknown keys or unusable values.
     """
     path = path_beside(log)
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
+    if not path.exists():
         return ByHand()
-    except OSError as error:
-        raise _mistake(path, f"cannot be read ({error.strerror})") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        where = f", line {mark.line + 1}" if (mark := getattr(error, "problem_mark", None)) else ""
-        raise _mistake(path, f"not a YAML file{where}") from None
+    content = read_yaml(path, _MEND)
     if content is None:
         return ByHand()
     if not isinstance(content, dict):
@@ -158,4 +154,4 @@ def _power_on(path: Path, where: str, entry: dict[str, Any]) -> int:
 
 
 def _mistake(path: Path, what: str) -> ConfigurationError:
-    return ConfigurationError(f"{path}: {what}. Mend the file, move it away, or give --no-marks.")
+    return ConfigurationError(f"{path}: {what}. {_MEND}")

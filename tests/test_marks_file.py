@@ -80,7 +80,7 @@ def test_it_is_on_the_disk_before_it_takes_the_place_of_the_old_one(
 
 
 MISTAKES = {
-    "maneuvers: [": "not a YAML file, line 1",
+    "maneuvers: [": "not a YAML file, line",
     "- 1": "holds no sections",
     "marks: []": "marks: unknown key",
     "maneuvers: 3": "maneuvers: must be a list",

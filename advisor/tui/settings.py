@@ -44,15 +44,12 @@ def load_settings(path: Path | None = None) -> Settings:
     ConfigurationError
         Lists every mistake with its key and what is allowed there.
     """
-    import yaml
+    from advisor.yaml_file import read_yaml
 
     path = path or settings_path()
     if not path.exists():
         return Settings()
-    try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
-    except (yaml.YAMLError, OSError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"{path} cannot be read as YAML: {error}") from error
+    data = read_yaml(path, "See `advisor locate config`.") or {}
     if not isinstance(data, dict):
         raise ConfigurationError(f"{path} must hold keys and values, as in `theme: light`.")
     mistakes = [*_unknown(data), *_wrong(data)]

@@ -1,0 +1,98 @@
+"""YAML as people write it for the advisor: plain text, flat, each key once; anything else is one sentence."""
+
+from collections.abc import Hashable
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from advisor.problems import ConfigurationError
+
+_MOST_BYTES = 256 * 1024
+"""A settings file of a program holds a few kB; the limit keeps the time of reading below a second."""
+_DEEPEST = 32
+"""Sections within sections; the advisor's own files need six."""
+
+_Parser: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
+    """Content of a YAML file; None for an empty one.
+
+    Parameters
+    ----------
+    path
+        File to read.
+    mend
+        Sentence that tells the user what to do about a file that is not taken.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be read, is too large, is not YAML in UTF-8, nests too deeply, refers to
+        another place of itself, or says a key twice.
+    """
+    try:
+        with path.open("rb") as file:
+            raw = file.read(_MOST_BYTES + 1)
+        if len(raw) > _MOST_BYTES:
+            raise _Refused(f"larger than {_MOST_BYTES // 1024} kB, which no file of this kind needs")
+        text = raw.decode("utf-8-sig")
+        _look_over(text)
+        return yaml.load(text, Loader=_Loader)
+    except OSError as error:
+        mistake = f"cannot be read ({error.strerror})"
+    except UnicodeDecodeError:
+        mistake = "not a YAML file: it is no text in UTF-8"
+    except _Refused as refused:
+        mistake = str(refused)
+    except yaml.YAMLError as error:
+        where = f", line {mark.line + 1}" if (mark := getattr(error, "problem_mark", None)) else ""
+        mistake = f"not a YAML file{where}"
+    except ValueError as error:
+        # PyYAML builds dates: "2026-02-31" has the form of one and is none.
+        mistake = f"holds a value that is none ({error})"
+    raise ConfigurationError(f"{path}: {mistake}. {mend}")
+
+
+class _Refused(Exception):  # noqa: N818 (a reason, told by the caller)
+    """Why well-formed YAML is not taken."""
+
+
+def _look_over(text: str) -> None:
+    """Refuse, before anything is built, the forms that a reader by recursion does not survive."""
+    depth = 0
+    for event in yaml.parse(text, Loader=_Parser):
+        line = event.start_mark.line + 1  # type: ignore[union-attr]
+        if isinstance(event, yaml.AliasEvent):
+            raise _Refused(f"line {line}: the reference *{event.anchor} is not read; write its content out")
+        if isinstance(event, yaml.CollectionStartEvent):
+            depth += 1
+        elif isinstance(event, yaml.CollectionEndEvent):
+            depth -= 1
+        if depth > _DEEPEST:
+            raise _Refused(f"line {line}: nested more than {_DEEPEST} deep")
+
+
+class _Loader(_Parser):  # type: ignore[misc]
+    """Safe loader that takes each key of a section once."""
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        """Build one section.
+
+        Raises
+        ------
+        _Refused
+            A key stands there twice.
+        """
+        said: set[Hashable] = set()
+        for key_node, _ in node.value:
+            key = (key_node.tag, str(key_node.value))
+            if key in said:
+                line = key_node.start_mark.line + 1
+                raise _Refused(
+                    f"line {line}: the key {key_node.value!r} stands there a second time; keep one"
+                )
+            said.add(key)
+        section: dict[Any, Any] = super().construct_mapping(node, deep=deep)
+        return section
