@@ -13,6 +13,9 @@ from advisor.problems import Problem
 _BUNDLED = b"Bundled aircraft"
 """How the simulator of this project introduces itself in a STATUSTEXT."""
 
+_GROUND_STATION = 190
+"""Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
+
 
 class Identity:
     """Collects the messages that say who and what the vehicle is.
@@ -108,14 +111,16 @@ class Identity:
                 known[name] = float(value)
                 changed = True
         vehicle = self._finder.vehicle
-        if changed and vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
+        if changed and vehicle and (columns.system, columns.component) in _speakers(vehicle):
             return self._settle_surfaces()
         return []
 
     def _settle_surfaces(self) -> list[FlightEvent]:
         vehicle = self._finder.vehicle
         assert vehicle is not None
-        parameters = self._parameters.get((vehicle.system, vehicle.component), {})
+        parameters: dict[str, float] = {}
+        for speaker in _speakers(vehicle):
+            parameters |= self._parameters.get(speaker, {})
         self.elevator = find_elevator(self._elevator, parameters)
         found = {
             "elevator": self.elevator,
@@ -142,3 +147,8 @@ class Identity:
         words = text.split()
         if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
             self._firmware.setdefault(columns.system, words[1][1:].decode("ascii", "replace"))
+
+
+def _speakers(vehicle: Vehicle) -> tuple[tuple[int, int], ...]:
+    """Senders (system, component) that state the vehicle's parameters; the vehicle comes last and wins."""
+    return (vehicle.system, _GROUND_STATION), (vehicle.system, vehicle.component)

@@ -146,7 +146,9 @@ def _edges(solution: Solution, prepared: Prepared) -> str:
     steps = sum(len(used.elevator.t) - len(given.elevator.t) for used, given in pairs) // 2
     if steps == 0:
         return ""
-    return f"When {steps} elevator steps happened between two samples of the command was estimated, too."
+    return (
+        f"The times of {steps} elevator steps, each between two samples of the command, are estimated, too."
+    )
 
 
 def _offset(solution: Solution, prepared: Prepared) -> str:
