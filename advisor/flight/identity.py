@@ -13,6 +13,11 @@ from advisor.problems import Problem
 _BUNDLED = b"Bundled aircraft"
 """How the simulator of this project introduces itself in a STATUSTEXT."""
 
+READER = b"Log reader: "
+"""How a reader of logs begins the sentences that its STATUSTEXTs carry to the user."""
+
+SENSOR_NOTICE = "sensor"
+"""Code of the notice that says which of several like sensors flew."""
 _GROUND_STATION = 190
 """Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
 
@@ -78,7 +83,7 @@ class Identity:
             elif columns.name == "AUTOPILOT_VERSION":
                 self._version(columns)
             elif columns.name == "STATUSTEXT":
-                self._text(columns)
+                events += self._text(columns)
         return events
 
     def _heartbeat(self, columns: Columns) -> list[FlightEvent]:
@@ -140,13 +145,16 @@ class Identity:
             version = f"{packed >> 24 & 0xFF}.{packed >> 16 & 0xFF}.{packed >> 8 & 0xFF}"
             self._firmware[columns.system] = version
 
-    def _text(self, columns: Columns) -> None:
+    def _text(self, columns: Columns) -> list[FlightEvent]:
         text = bytes(columns.fields["text"][0])
+        if text.startswith(READER):
+            return [Notice(SENSOR_NOTICE, f"{text.removeprefix(READER).decode()}.")]
         if text.startswith(_BUNDLED):
             self.simulated = True
         words = text.split()
         if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
             self._firmware.setdefault(columns.system, words[1][1:].decode("ascii", "replace"))
+        return []
 
 
 def _speakers(vehicle: Vehicle) -> tuple[tuple[int, int], ...]:

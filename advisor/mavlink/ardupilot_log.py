@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from advisor.flight.identity import READER
 from advisor.flight.messages import Columns
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
 from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message, system_id
+from advisor.mavlink.sensors import changes, flown
 from advisor.problems import UnusableInputError
 
 _RECORDS: dict[str, set[str]] = {
@@ -33,6 +35,8 @@ _RECORDS: dict[str, set[str]] = {
 }
 """Records, and the fields needed of each: without them (another kind of vehicle, an older version)
 a record counts as missing."""
+_SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
+"""Records of which a vehicle may carry several, and the quantities that they hold."""
 _ARDUPILOTMEGA = 3  # MAV_AUTOPILOT
 _BUILD_TO_MAV_TYPE = {1: 10, 2: 2, 3: MAV_TYPE_FIXED_WING, 4: 5, 7: 12, 12: 7, 13: 4}
 """VER.BU: rover, copter, plane, antenna tracker, submarine, airship, helicopter."""
@@ -69,7 +73,7 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
 
 class _Translation:
     def __init__(self, tables: dict[str, Table]) -> None:
-        self._tables = tables
+        self._tables = {name: flown(table) if name in _SENSORS else table for name, table in tables.items()}
         self._base_s = gps_time_base_s(tables.get("GPS"))
         self._system = self._system_id()
 
@@ -82,7 +86,6 @@ class _Translation:
             "POS": self._global_position_int,
             "RCIN": self._rc_channels,
             "PARM": self._param_value,
-            "MSG": self._statustext,
             "VER": self._autopilot_version,
         }
         if "ATT" not in self._tables and "IMU" in self._tables:
@@ -93,7 +96,8 @@ class _Translation:
         yield from self._servo_outputs()
         air = self._tables.get("ARSP", self._tables.get("CTUN"))
         if air is not None:
-            yield self._vfr_hud(air.first_instance())
+            yield self._vfr_hud(air)
+        yield self._statustext()
 
     def _system_id(self) -> int:
         """As the parameters give it, under its old or its new name."""
@@ -115,7 +119,7 @@ class _Translation:
             angles = np.radians([att.fields[axis] for axis in ("Roll", "Pitch", "Yaw")])
             rows.append((att, np.vstack([angles, np.full_like(angles, np.nan)])))
         if "IMU" in self._tables:
-            imu = self._tables["IMU"].first_instance()
+            imu = self._tables["IMU"]
             rates = np.array([imu.fields[axis] for axis in ("GyrX", "GyrY", "GyrZ")], dtype=np.float64)
             rows.append((imu, np.vstack([np.full_like(rates, np.nan), rates])))
         order = np.concatenate([table.order for table, _ in rows])
@@ -127,7 +131,6 @@ class _Translation:
         return message("ATTITUDE", self._system, order, self._base_s + seconds(time_us), fields)
 
     def _highres_imu(self, imu: Table) -> Columns:
-        imu = imu.first_instance()
         fields: dict[str, ArrayLike] = {"time_usec": imu.time_us}
         for axis in "XYZ":
             fields[f"{axis.lower()}acc"] = imu.fields[f"Acc{axis}"]
@@ -212,8 +215,36 @@ class _Translation:
         }
         return self._message("PARAM_VALUE", parm, fields)
 
-    def _statustext(self, msg: Table) -> Columns:
-        return self._message("STATUSTEXT", msg, {"severity": 6, "text": msg.fields["Message"]})
+    def _statustext(self) -> Columns:
+        """The vehicle's own texts, and which of several like sensors flew."""
+        order, time_us, texts = [], [], []
+        if "MSG" in self._tables:
+            msg = self._tables["MSG"]
+            order, time_us, texts = [msg.order], [msg.time_us], [*msg.fields["Message"].tolist()]
+        for name, quantity in _SENSORS.items():
+            said = self._sensors_said(name, quantity)
+            order.append(np.array([at for at, *_ in said], dtype=np.int64))
+            time_us.append(np.array([at_us for _, at_us, _ in said], dtype=np.int64))
+            texts += [READER + text.encode() for *_, text in said]
+        fields: dict[str, ArrayLike] = {"severity": 6, "text": np.array(texts, dtype=np.bytes_)}
+        arrival_s = self._base_s + seconds(np.concatenate(time_us))
+        return message("STATUSTEXT", self._system, np.concatenate(order), arrival_s, fields)
+
+    def _sensors_said(self, name: str, quantity: str) -> list[tuple[int, int, str]]:
+        """Place, time in us and sentence of each change of sensor; none where sensor 0 flew throughout."""
+        if name not in self._tables:
+            return []
+        table = self._tables[name]
+        flew = list(changes(table))
+        if [number for _, number in flew] == [0]:
+            return []
+        said = []
+        for i, (row, number) in enumerate(flew):
+            since = f" from {table.time_us[row] / 1e6:.1f} s on" if i else ""
+            # A record's own messages take its place and the one after it.
+            place = int(table.order[row]) + 2
+            said.append((place, int(table.time_us[row]), f"{quantity}: sensor {number} flew{since}"))
+        return said
 
     def _autopilot_version(self, ver: Table) -> Columns:
         parts = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))

@@ -74,7 +74,7 @@ class Table:
                 return self[self.fields[name] == 0]
         return self
 
-    def __getitem__(self, rows: NDArray[np.bool_]) -> "Table":
+    def __getitem__(self, rows: NDArray[Any]) -> "Table":
         return Table(self.order[rows], {name: values[rows] for name, values in self.fields.items()})
 
 

@@ -1,0 +1,59 @@
+"""Which of several like sensors of a log counts, on hand-made records."""
+
+import numpy as np
+import pytest
+
+from advisor.mavlink.dataflash import Table
+from advisor.mavlink.sensors import changes, flown
+
+
+def table(*rows, names):
+    """Records one after the other, each a tuple of values in the order of ``names``."""
+    fields = {name: np.array(values) for name, values in zip(names, zip(*rows, strict=True), strict=True)}
+    fields["row"] = np.arange(len(rows))
+    return Table(10 * np.arange(len(rows)), fields)
+
+
+def airspeeds(*rows):
+    return table(*rows, names=("I", "U", "H", "Pri"))
+
+
+def inertial(*rows):
+    return table(*rows, names=("I", "GH", "AH"))
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "why"),
+    [((0, 0, 1, 1), "not in use"), ((0, 1, 0, 1), "unhealthy"), ((0, 1, 1, 1), "not primary")],
+)
+def test_the_air_speed_sensor_that_is_good_and_primary_flew(spoilt, why):
+    chosen = flown(airspeeds(spoilt, (1, 1, 1, 1), spoilt, (1, 1, 1, 1)))
+    assert chosen.fields["row"].tolist() == [1, 3]
+
+
+def test_a_primary_sensor_that_is_unhealthy_gives_way_to_a_good_one():
+    chosen = flown(airspeeds((0, 1, 0, 0), (1, 1, 1, 0), (0, 1, 0, 0), (1, 1, 1, 0)))
+    assert chosen.fields["I"].tolist() == [1, 1]
+
+
+@pytest.mark.parametrize("dead", [(0, 0, 1), (0, 1, 0)], ids=["gyro", "accelerometer"])
+def test_an_inertial_sensor_that_is_dead_gives_way_to_the_next(dead):
+    chosen = flown(inertial(dead, (1, 1, 1), (2, 1, 1), dead, (1, 1, 1), (2, 1, 1)))
+    assert chosen.fields["I"].tolist() == [1, 1]
+
+
+def test_a_sensor_that_dies_in_flight_gives_way_from_then_on():
+    chosen = flown(inertial((0, 1, 1), (1, 1, 1), (0, 0, 1), (1, 1, 1), (0, 0, 1), (1, 1, 1)))
+    assert chosen.fields["row"].tolist() == [0, 3, 5]
+    assert list(changes(chosen)) == [(0, 0), (1, 1)]
+
+
+def test_the_first_sensor_flew_where_none_is_good():
+    chosen = flown(inertial((0, 0, 0), (1, 0, 0)))
+    assert chosen.fields["I"].tolist() == [0]
+
+
+def test_records_that_do_not_tell_their_sensor_are_all_of_one():
+    records = Table(np.arange(3), {"Airspeed": np.array([20.0, 21.0, 22.0])})
+    assert flown(records) is records
+    assert list(changes(records)) == []
