@@ -33,7 +33,7 @@ _ASSUMED_STROKE_DEG = 25.0
 
 
 def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
-    """Missing channels, slow ones, gaps, a free response cut short.
+    """Missing or frozen channels, slow ones, gaps, a free response cut short.
 
     Parameters
     ----------
@@ -48,6 +48,11 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
     if missing:
         text = f"no {' and no '.join(missing)} during the manoeuvre; check the link and fly it again"
         return [Reason("missing", text, float(len(missing)), 0.0)]
+    rate = maneuver.channels["q"].y
+    if np.ptp(rate) == 0.0:
+        shown = f"{np.degrees(rate[0]):.2g}"
+        text = f"pitch rate stands still at {shown} deg/s; check the gyro and how its rate is recorded"
+        return [Reason("frozen", text, 0.0, 0.0)]
     needed = [maneuver.channels[name] for name in NEEDED]
     used = [maneuver.channels[name] for name in {*NEEDED, *counted} if name in maneuver.channels]
     return [

@@ -50,9 +50,13 @@ def judge_quality(
     period_s = natural_period(maneuver, estimate)
     fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
     reasons = [*incomplete(maneuver, period_s, fits), *outside(maneuver, aircraft)]
-    if any(reason.code == "missing" for reason in reasons):
+    codes = {reason.code for reason in reasons}
+    if codes & {"missing", "frozen"}:
         return tuple(reasons)
     follows = [*changed_speed(maneuver, aircraft), *too_quick(maneuver, period_s)]
+    if codes & {"rate", "gap"}:
+        # A larger input mends no record: the reasons that ask for one would mislead.
+        return (*reasons, *follows)
     gentle = _too_gentle(maneuver, fits)
     if isinstance(estimate, NoEstimate):
         return (*reasons, *follows, *gentle)

@@ -172,6 +172,26 @@ def test_a_manoeuvre_without_pitch_rate_says_so_and_nothing_else():
     assert reason.code == "missing"
 
 
+def test_a_pitch_rate_that_stands_still_is_a_broken_gyro_and_no_gentle_input():
+    maneuver, estimated, _ = bad_flight()[0]
+    rate = maneuver.channels["q"]
+    frozen = {**maneuver.channels, "q": replace(rate, y=np.zeros_like(rate.y))}
+    (reason,) = judge_quality(replace(maneuver, channels=frozen), estimated, AIRCRAFT)
+    assert reason.code == "frozen"
+    assert "check the gyro" in reason.text
+
+
+def test_no_larger_input_is_asked_for_while_the_pitch_rate_is_too_slow():
+    maneuver, _, _ = bad_flight()[0]
+    rate = maneuver.channels["q"]
+    slow = {**maneuver.channels, "q": replace(rate, t=rate.t[::40], y=1e-4 * rate.y[::40])}
+    reasons = judge_quality(
+        replace(maneuver, channels=slow), NoEstimate("not_converged", "the fit did not converge"), AIRCRAFT
+    )
+    assert "rate" in {reason.code for reason in reasons}
+    assert not any("stick" in reason.text for reason in reasons)
+
+
 def test_the_natural_period_is_that_of_the_aircraft_flown():
     maneuver, estimated, _ = bad_flight()[0]
     # Bundled UAV: natural frequency about 8.5 rad/s at its usual speed.
