@@ -58,12 +58,23 @@ def problems(
     """
     if vehicle is None:
         return [_no_vehicle(other_systems)]
-    found = [*_missing(elevator, channels, vehicle), *_too_slow(channels, vehicle)]
+    if vehicle.is_multicopter and isinstance(elevator, Problem):
+        found = [_no_surfaces(vehicle)]
+    else:
+        found = [*_missing(elevator, channels, vehicle), *_too_slow(channels, vehicle)]
     if not found and maneuvers == 0:
         found.append(_no_maneuver(activities))
     if found and other_systems:
         found.insert(0, _perhaps_another(vehicle, other_systems))
     return found
+
+
+def _no_surfaces(vehicle: Vehicle) -> Problem:
+    return Problem(
+        "multicopter",
+        f"{vehicle} is a multicopter: it has no elevator.",
+        "Give the log or link of an aircraft with an elevator.",
+    )
 
 
 def _no_maneuver(activities: Mapping[str, int]) -> Problem:

@@ -9,6 +9,8 @@ _AUTOPILOT_INVALID = 8
 _AUTOPILOTS = {0: "generic", 3: "ardupilot", 12: "px4", 4: "openpilot", 15: "armazila", 18: "smartap"}
 _PERIPHERALS = frozenset({5, 6, 18, 26, 27, 30, 31, 32, 33, 34, 36, 37, 38, 39, 40, 41, 42})
 """Antenna tracker, ground station, onboard controller, gimbal, ADS-B, camera, and other parts."""
+_MULTICOPTERS = frozenset({2, 13, 14, 15, 29, 35})
+"""Aircraft on four, six, eight, three, twelve and ten rotors."""
 
 _PLANE_MODES = {
     0: "MANUAL", 1: "CIRCLE", 2: "STABILIZE", 3: "TRAINING", 4: "ACRO", 5: "FBWA", 6: "FBWB", 7: "CRUISE",
@@ -38,6 +40,11 @@ class Vehicle:
 
     def __str__(self) -> str:
         return f"{self.autopilot} {self.system}/{self.component}"
+
+    @property
+    def is_multicopter(self) -> bool:
+        """Whether rotors alone steer the vehicle."""
+        return self.type in _MULTICOPTERS
 
     def with_firmware(self, firmware: str) -> "Vehicle":
         """The same vehicle, its version known."""

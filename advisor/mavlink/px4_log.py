@@ -31,8 +31,8 @@ TOPICS: dict[str, set[str]] = {
 """Topics, and the fields needed of each: without them (another version) a topic counts as missing."""
 
 _PX4 = 12  # MAV_AUTOPILOT
-_MAV_TYPES = {1: 2, 2: MAV_TYPE_FIXED_WING}
-"""vehicle_status.vehicle_type: rotary wing, fixed wing."""
+_MAV_TYPE_QUADROTOR = 2
+_ROTARY_WING = 1  # vehicle_status.vehicle_type
 _MAIN_MODES = {0: 1, 1: 2, 2: 3, 10: 5, 14: 6, 15: 7}
 """vehicle_status.nav_state to the main mode of PX4's custom_mode: manual, altitude, position, acro,
 offboard, stabilised; any other is automatic."""
@@ -66,7 +66,12 @@ def translate(log: Any) -> list[TimedMessages]:
         *_texts(log),
     ]
     start_us = min((int(np.min(m.time_us)) for m in messages), default=0)
-    return [_heartbeat(first, start_us), *_version(log, start_us), *_parameters(log, start_us), *messages]
+    return [
+        _heartbeat(first, log.initial_parameters, start_us),
+        *_version(log, start_us),
+        *_parameters(log, start_us),
+        *messages,
+    ]
 
 
 def unix_time_base_s(log: Any) -> float:
@@ -201,20 +206,31 @@ def _outputs(port: int, topic: Topic) -> TimedMessages:
     return TimedMessages("SERVO_OUTPUT_RAW", at, {"time_usec": at, "port": port, **pulses})
 
 
-def _heartbeat(topics: Mapping[str, Topic], start_us: int) -> TimedMessages:
+def _mav_type(parameters: Mapping[str, Any], status: Topic | None) -> int:
+    """MAV_TYPE as the parameter states, else as vehicle_status does: by vehicle_type, once by is_rotary_wing.
+
+    A VTOL aircraft says rotary wing while it hovers; its elevator is there all the same.
+    """
+    stated = parameters.get("MAV_TYPE")
+    if isinstance(stated, int | float) and stated in range(1, 256):
+        return int(stated)
+    if status is None or np.any(status.get("is_vtol", 0)):
+        return MAV_TYPE_FIXED_WING
+    rotary = status.get("is_rotary_wing", status.get("vehicle_type", np.zeros(1)) == _ROTARY_WING)
+    return _MAV_TYPE_QUADROTOR if np.all(rotary) else MAV_TYPE_FIXED_WING
+
+
+def _heartbeat(topics: Mapping[str, Topic], parameters: Mapping[str, Any], start_us: int) -> TimedMessages:
     """One before everything else, so that the vehicle is known, then as the mode may change."""
     status = topics.get("vehicle_status")
-    at, states, kinds = np.array([start_us]), np.zeros(1, np.int64), np.array([MAV_TYPE_FIXED_WING])
+    at, states = np.array([start_us]), np.zeros(1, np.int64)
     if status is not None:
         rows = np.concatenate([[0], np.arange(len(status["timestamp"]))])
         at = np.concatenate([at, _time_us(status)])
         states = status["nav_state"].astype(np.int64)[rows]
-        kinds = np.vectorize(lambda kind: _MAV_TYPES.get(kind, MAV_TYPE_FIXED_WING))(
-            status.get("vehicle_type", np.full(len(rows) - 1, 2))[rows]
-        )
     mains = np.array([_MAIN_MODES.get(state, _AUTO) for state in states.tolist()])
     fields: dict[str, ArrayLike] = {
-        "type": kinds,
+        "type": _mav_type(parameters, status),
         "autopilot": _PX4,
         "base_mode": 1,
         "custom_mode": mains << 16,

@@ -50,6 +50,21 @@ def test_a_useless_vehicle_heard_first_names_the_other():
     assert "--target-system 3" in found[0].fix
 
 
+def test_a_multicopter_is_told_that_it_has_no_elevator_and_nothing_else():
+    wire = Wire()
+    heartbeat(wire, 1000.0, kind=2)
+    (problem,) = problems(wire)
+    assert problem.code == "multicopter"
+    assert "is a multicopter: it has no elevator" in problem.text
+    assert "SERVO" not in str(problem)
+
+
+def test_a_rotorcraft_whose_elevator_is_given_is_taken_as_it_is():
+    wire = Wire()
+    heartbeat(wire, 1000.0, kind=2)
+    assert "multicopter" not in str(problems(wire, Aircraft(elevator=Elevator(output=2)))[0])
+
+
 def test_a_missing_elevator_is_told_apart_from_one_that_is_not_sent():
     nowhere = problems(flight(without=("PARAM_VALUE",)))
     silent = problems(flight(without=("SERVO_OUTPUT_RAW",)))

@@ -333,6 +333,13 @@ class TestPx4:
         assert messages["AUTOPILOT_VERSION"].fields["flight_sw_version"].tolist() == [0x010F02FF]
         assert messages["HIGHRES_IMU"].arrival_s[0] == pytest.approx(1_770_000_001.0, abs=0.1)
 
+    @pytest.mark.parametrize(("stated", "kind"), [({}, 1), ({"MAV_TYPE": 2.0}, 2), ({"MAV_TYPE": 22.0}, 22)])
+    def test_the_kind_of_vehicle_is_the_one_its_parameter_states(
+        self, tmp_path: Path, stated: dict[str, float], kind: int
+    ) -> None:
+        heartbeat = read(tmp_path, px4_flight(**stated), "flight.ulg")["HEARTBEAT"]
+        assert set(heartbeat.fields["type"].tolist()) == {kind}
+
     def test_the_manoeuvre_in_it_is_found(self, tmp_path: Path) -> None:
         stream = FlightStream(Aircraft(elevator=Elevator(output=2, calibration=((1000, 25), (2000, -25)))))
         path = tmp_path / "flight.ulg"
