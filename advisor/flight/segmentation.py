@@ -8,10 +8,9 @@ hand (`purpose`). The work per sample is bounded. A result depends on the sample
 were delivered.
 """
 
-from itertools import pairwise
-
 import numpy as np
 
+from advisor.flight.free_response import FreeResponse
 from advisor.flight.maneuver import Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.movement import Movement, describe
@@ -30,18 +29,6 @@ _RESTING_S = 0.5
 """How long the elevator rests before a movement counts as over."""
 _FIRST_LEVEL_S = 0.1
 """A stream that has just begun counts as at rest over this time."""
-_FREE_S = (3.0, 8.0)
-"""Free response: as long as the input, but within these."""
-_PARTING_S = (0.5, 0.6)
-"""A rest parts two movements if it lasts for three quarters of the longest step, but within these. The next
-input may come one second later."""
-_SURELY_S = 2.5
-"""A rest this long parts two movements however it wavers."""
-_BACK = 0.2
-"""After a shorter rest within this share of the amplitude from the level before, the next input may come."""
-_WAVERING = 0.2
-"""A shorter rest after a movement without levels must be still against this share of its amplitude: a
-multisine has gentle parts of its own."""
 _NEAR = 0.4
 """The elevator has returned if it rests within this share of the amplitude from the level before."""
 _HOLD_S = (8.0, 20.0)
@@ -49,9 +36,6 @@ _HOLD_S = (8.0, 20.0)
 that a long pulse is one input."""
 _LONGER = 1.2
 """... or after the longest earlier rest at another level and so much more: a slow input has long steps."""
-_LEAVES = (0.2, 0.35)
-"""A free response ends where the elevator moves by five standard deviations of its rest, but
-within these shares of the amplitude."""
 _FAR = 0.3
 """The movement has begun where the elevator is so far from the level before, as a share of the amplitude. The
 first step of a 3-2-1-1 with balanced areas has half of it."""
@@ -59,9 +43,6 @@ _LEAST_REST_S = 0.3
 """A rest before the movement is at least so long, if anything else moved before."""
 _KEEP_S = _REACH_S + 30.0
 """Samples are kept for so long: a movement and its free response."""
-_LEAVING_S = (1.0, 0.15)
-"""The part of a rest that is asked whether it is still, s before the elevator leaves: the last
-moment may be its setting out."""
 _GAP_S = 1.0
 """A longer gap ends a free response, ..."""
 _MANY_INTERVALS = 5.0
@@ -83,14 +64,13 @@ class Segmenter:
         self._new_from_s = from_s
         self._base: float | None = None
         self._leaving = 0.5 * SMALLEST_RAD
-        self._pending: Movement | None = None
+        self._pending: FreeResponse | None = None
         self._set_out(None, 0.0)
         self._next_check_s = -np.inf
 
     def _set_out(self, from_s: float | None, amplitude: float) -> None:
         """The elevator rests, or moves since the sample at ``from_s``."""
         self._moved_from_s, self._amplitude = from_s, amplitude
-        self._away: list[float] = []
         self._held_since_s: float | None = None
         self._held_rad = 0.0
         self._longest_hold_s = 0.0
@@ -99,13 +79,13 @@ class Segmenter:
     def onset_s(self) -> float | None:
         """Since when the elevator has been moving, or the manoeuvre's start in its free response."""
         if self._pending:
-            return self._pending.start_s
+            return self._pending.movement.start_s
         return self._moved_from_s if self._amplitude >= SMALLEST_RAD else None
 
     @property
     def recognised(self) -> Movement | None:
         """The movement whose free response is being awaited."""
-        return self._pending
+        return self._pending.movement if self._pending else None
 
     def push(self, t: float, u: float) -> list[Span]:
         """Take one sample, stamp (s, rising) and elevator (rad); the spans that have ended by it."""
@@ -122,7 +102,7 @@ class Segmenter:
     def mode_changed(self, t: float) -> list[Span]:
         """The flight mode changed, at ``t`` at the earliest: what moved before ends there."""
         if self._pending is not None:
-            pending = self._pending
+            pending = self._pending.movement
             if pending.start_s >= t:
                 return []
             self._end(pending, "mode change", max(t, pending.last_step_s))
@@ -137,7 +117,7 @@ class Segmenter:
         if self._samples.size:
             last = float(self._samples.t[-1])
             if self._pending is not None:
-                self._end(self._pending, "end of log", last)
+                self._end(self._pending.movement, "end of log", last)
             else:
                 self._cut_off("end of log", last)
         self._forget_all()
@@ -156,7 +136,7 @@ class Segmenter:
     def _interrupt(self, last_s: float, whole: bool) -> None:
         """The link was silent after ``last_s``, for long or, ``whole``, for very long."""
         if self._pending is not None:
-            self._end(self._pending, "gap", last_s)
+            self._end(self._pending.movement, "gap", last_s)
             self._begin_anew(last_s)
         elif whole:
             self._cut_off("gap", last_s)
@@ -208,8 +188,10 @@ class Segmenter:
             return
         level = median(rest)
         if abs(level - base) <= _NEAR * self._amplitude:
-            self._pending = self._described(i + 1, rest)
-            if self._pending is None:
+            movement = self._described(i + 1, rest)
+            if movement is not None:
+                self._pending = FreeResponse(movement, base, self._samples)
+            else:
                 self._base = level
                 self._set_out(None, 0.0)
         elif self._held_since_s is None or abs(level - self._held_rad) > _NEAR * self._amplitude:
@@ -236,43 +218,22 @@ class Segmenter:
         single = beyond <= _NEAR * self._amplitude and self._longest_hold_s == 0.0
         return _HOLD_S[1] if single else max(_HOLD_S[0], _LONGER * self._longest_hold_s)
 
-    def _follow(self, movement: Movement, t: float, u: float) -> None:
-        """The free response: ends with time, or when the elevator leaves trim again."""
-        least, most = (share * movement.amplitude for share in _LEAVES)
-        if abs(u - movement.trim) > min(max(5.0 * movement.quiet, least), most):
-            self._away.append(t)
-            if len(self._away) < 2:
-                return
-            left_s, deviation = self._away[0], abs(u - movement.trim)
-            self._away = []
-            if not self._parts(movement, left_s):
-                self._pending = None
-                return
-            self._end(movement, "next input", left_s)
-            self._pending, self._base = None, movement.trim
-            before = max(self._samples.index(left_s) - 1, 0)
-            self._set_out(float(self._samples.t[before]), deviation)
+    def _follow(self, response: FreeResponse, t: float, u: float) -> None:
+        """Take a sample of a free response into account."""
+        ended = response.take(t, u)
+        if ended is None:
             return
-        self._away = []
-        duration_s = movement.last_step_s - movement.start_s
-        end_s = movement.last_step_s + min(max(duration_s, _FREE_S[0]), _FREE_S[1])
-        if t >= end_s:
-            self._end(movement, "quiet", end_s)
-            self._pending, self._base = None, movement.trim
+        self._pending = None
+        if ended.why == "same input":
+            return
+        movement = response.movement
+        self._end(movement, ended.why, ended.at_s)
+        self._base = movement.trim
+        if ended.why == "quiet":
             self._set_out(None, 0.0)
-
-    def _parts(self, movement: Movement, left_s: float) -> bool:
-        """Whether the rest until ``left_s`` makes another movement of what follows."""
-        rested_s = left_s - movement.over_s
-        if rested_s < _parting_s(movement):
-            return False
-        if rested_s >= _SURELY_S:
-            return True
-        if self._base is not None and abs(movement.trim - self._base) > _BACK * movement.amplitude:
-            return False
-        from_s = left_s - min(rested_s, _LEAVING_S[0])
-        rest = self._samples.since(from_s, self._samples.index(left_s - _LEAVING_S[1]))
-        return is_still(rest, (1.0 if movement.is_stepped else _WAVERING) * movement.amplitude)
+        else:
+            before = max(self._samples.index(ended.at_s) - 1, 0)
+            self._set_out(float(self._samples.t[before]), abs(u - movement.trim))
 
     def _cut_off(self, why: str, at_s: float) -> None:
         """Something ends a movement before the elevator has come to rest."""
@@ -325,10 +286,3 @@ class Segmenter:
     def _forget_all(self) -> None:
         self._samples.clear()
         self._begin_anew(-np.inf)
-
-
-def _parting_s(movement: Movement) -> float:
-    """How long the elevator must rest for what follows to be another movement."""
-    onsets = [onset for onset, _ in movement.steps]
-    longest_s = max((b - a for a, b in pairwise(onsets)), default=0.0)
-    return min(max(_PARTING_S[0], 0.75 * longest_s), _PARTING_S[1])
