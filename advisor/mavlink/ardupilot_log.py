@@ -11,7 +11,7 @@ from advisor.flight.identity import READER
 from advisor.flight.messages import Columns
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
 from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message, system_id
-from advisor.mavlink.sensors import changes, flown
+from advisor.mavlink.sensors import flown, said
 from advisor.problems import UnusableInputError
 
 _RECORDS: dict[str, set[str]] = {
@@ -217,34 +217,19 @@ class _Translation:
 
     def _statustext(self) -> Columns:
         """The vehicle's own texts, and which of several like sensors flew."""
-        order, time_us, texts = [], [], []
-        if "MSG" in self._tables:
-            msg = self._tables["MSG"]
-            order, time_us, texts = [msg.order], [msg.time_us], [*msg.fields["Message"].tolist()]
-        for name, quantity in _SENSORS.items():
-            said = self._sensors_said(name, quantity)
-            order.append(np.array([at for at, *_ in said], dtype=np.int64))
-            time_us.append(np.array([at_us for _, at_us, _ in said], dtype=np.int64))
-            texts += [READER + text.encode() for *_, text in said]
-        fields: dict[str, ArrayLike] = {"severity": 6, "text": np.array(texts, dtype=np.bytes_)}
-        arrival_s = self._base_s + seconds(np.concatenate(time_us))
-        return message("STATUSTEXT", self._system, np.concatenate(order), arrival_s, fields)
-
-    def _sensors_said(self, name: str, quantity: str) -> list[tuple[int, int, str]]:
-        """Place, time in us and sentence of each change of sensor; none where sensor 0 flew throughout."""
-        if name not in self._tables:
-            return []
-        table = self._tables[name]
-        flew = list(changes(table))
-        if [number for _, number in flew] == [0]:
-            return []
-        said = []
-        for i, (row, number) in enumerate(flew):
-            since = f" from {table.time_us[row] / 1e6:.1f} s on" if i else ""
-            # A record's own messages take its place and the one after it.
-            place = int(table.order[row]) + 2
-            said.append((place, int(table.time_us[row]), f"{quantity}: sensor {number} flew{since}"))
-        return said
+        msg = self._tables.get("MSG")
+        own = [] if msg is None else zip(msg.order, msg.time_us, msg.fields["Message"].tolist(), strict=True)
+        # A record's own messages take its place and the one after it.
+        read = [
+            (one.order + 2, one.time_us, READER + one.text.encode())
+            for name, quantity in _SENSORS.items()
+            if name in self._tables
+            for one in said(self._tables[name], quantity)
+        ]
+        texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S128")])
+        fields: dict[str, ArrayLike] = {"severity": 6, "text": texts["text"]}
+        arrival_s = self._base_s + seconds(texts["time_us"])
+        return message("STATUSTEXT", self._system, texts["order"], arrival_s, fields)
 
     def _autopilot_version(self, ver: Table) -> Columns:
         parts = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))

@@ -1,6 +1,6 @@
 """Which of several like sensors of an ArduPilot log flew: healthy, in use, and primary."""
 
-from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,13 +41,39 @@ def flown(table: Table) -> Table:
     return table[instance == chosen]
 
 
-def changes(table: Table) -> Iterator[tuple[int, int]]:
-    """Row and number of the sensor at the beginning of the records and at each change of sensor."""
+@dataclass(frozen=True, slots=True)
+class Said:
+    """One sentence about the sensor that flew, and the record it belongs to."""
+
+    order: int
+    """Where the record begins in the file, bytes."""
+    time_us: int
+    """Microseconds since boot."""
+    text: str
+
+
+def said(table: Table, quantity: str) -> list[Said]:
+    """The sensor that flew first and each change of sensor; none where sensor 0 flew throughout.
+
+    Parameters
+    ----------
+    table
+        Records as :func:`flown` gives them.
+    quantity
+        Name of what the sensor measures.
+    """
     if "I" not in table.fields:
-        return
+        return []
     instance = table.fields["I"].astype(np.int64)
-    for row in np.flatnonzero(np.diff(instance, prepend=-1)):
-        yield int(row), int(instance[row])
+    rows = np.flatnonzero(np.diff(instance, prepend=-1))
+    if instance[rows].tolist() == [0]:
+        return []
+    sentences = []
+    for row in rows.tolist():
+        since = f" from {table.time_us[row] / 1e6:.1f} s on" if row else ""
+        text = f"{quantity}: sensor {instance[row]} flew{since}"
+        sentences.append(Said(int(table.order[row]), int(table.time_us[row]), text))
+    return sentences
 
 
 def _good(table: Table) -> BoolArray:

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from advisor.mavlink.dataflash import Table
-from advisor.mavlink.sensors import changes, flown
+from advisor.mavlink.sensors import flown, said
 
 
 def table(*rows, names):
     """Records one after the other, each a tuple of values in the order of ``names``."""
     fields = {name: np.array(values) for name, values in zip(names, zip(*rows, strict=True), strict=True)}
+    fields["TimeUS"] = 100_000 * np.arange(len(rows))
     fields["row"] = np.arange(len(rows))
     return Table(10 * np.arange(len(rows)), fields)
 
@@ -45,7 +46,14 @@ def test_an_inertial_sensor_that_is_dead_gives_way_to_the_next(dead):
 def test_a_sensor_that_dies_in_flight_gives_way_from_then_on():
     chosen = flown(inertial((0, 1, 1), (1, 1, 1), (0, 0, 1), (1, 1, 1), (0, 0, 1), (1, 1, 1)))
     assert chosen.fields["row"].tolist() == [0, 3, 5]
-    assert list(changes(chosen)) == [(0, 0), (1, 1)]
+    assert [one.text for one in said(chosen, "Rates")] == [
+        "Rates: sensor 0 flew",
+        "Rates: sensor 1 flew from 0.3 s on",
+    ]
+
+
+def test_nothing_is_said_where_the_first_sensor_flew_throughout():
+    assert said(flown(inertial((0, 1, 1), (1, 1, 1), (0, 1, 1), (1, 1, 1))), "Rates") == []
 
 
 def test_the_first_sensor_flew_where_none_is_good():
@@ -56,4 +64,4 @@ def test_the_first_sensor_flew_where_none_is_good():
 def test_records_that_do_not_tell_their_sensor_are_all_of_one():
     records = Table(np.arange(3), {"Airspeed": np.array([20.0, 21.0, 22.0])})
     assert flown(records) is records
-    assert list(changes(records)) == []
+    assert said(records, "Air speed") == []
