@@ -29,8 +29,8 @@ def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
     Raises
     ------
     ConfigurationError
-        The file cannot be read, is too large, is not YAML in UTF-8, nests too deeply, refers to
-        another place of itself, or says a key twice.
+        The file cannot be read, is too large, is not YAML in UTF-8, nests too deeply, holds a
+        reference, or repeats a key.
     """
     try:
         with path.open("rb") as file:
@@ -90,9 +90,7 @@ class _Loader(_Parser):  # type: ignore[misc]
             key = (key_node.tag, str(key_node.value))
             if key in said:
                 line = key_node.start_mark.line + 1
-                raise _Refused(
-                    f"line {line}: the key {key_node.value!r} stands there a second time; keep one"
-                )
+                raise _Refused(f"line {line}: the key {key_node.value!r} is repeated; keep one")
             said.add(key)
         section: dict[Any, Any] = super().construct_mapping(node, deep=deep)
         return section

@@ -6,7 +6,6 @@ from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
 
-import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft, Alpha, Elevator
@@ -14,10 +13,10 @@ from advisor.campaign import Campaign
 from advisor.mavlink.logs import open_log
 from sim.flight import Flight
 from sim.hangar import UAV
-from sim.modelled import modelled_flight
 from sim.nonlinear_aircraft import NonlinearAircraft
 from sim.record import record
-from sim.scenario import Air, AlphaSensor, Augmentation, Maneuver, Noise, Scenario, Servo
+from sim.scenario import Air, AlphaSensor, Maneuver, Noise, Scenario, Servo
+from tests.unstable import DERIVATIVES, unstable_flight
 
 FOLDER = Path(mkdtemp(prefix="kinds-"))
 SCALED = ((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))
@@ -108,28 +107,9 @@ def test_a_slow_log_gives_the_derivatives_of_the_aircraft(name):
     assert error < max(0.12, 2.0 * std)
 
 
-def unstable():
-    """Ten seconds of smooth steps on an aircraft that only its feedback keeps in the air."""
-    path = FOLDER / "unstable.yaml"
-    path.write_text(
-        "airspeed_m_s: 120\nmodel: {Z_0: 0.0, Z_alpha: -1.42, Z_q: 0.0, Z_delta_e: -0.2,"
-        " M_0: 0.0, M_alpha: 9.64, M_q: -3.71, M_delta_e: -12.8}\n"
-    )
-    scenario = Scenario(
-        lead_in_s=0.0,
-        settling_s=0.5,
-        closing_s=0.0,
-        unit_s=1.0,
-        amplitude_deg=1.5,
-        noise=Noise(alpha_deg=0.02, pitch_rate_deg_s=0.05, pitch_deg=0.05),
-        augmentation=Augmentation(alpha=1.2, pitch_rate=0.4),
-        maneuvers=(Maneuver("multistep", slew_s=0.4, free_s=1.0),),
-    )
-    known = Aircraft(elevator=Elevator(calibration=SCALED, lag_s=0.0, delay_s=0.0))
-    return analysed("unstable", modelled_flight(scenario, path), known)
-
-
 def test_a_statically_unstable_aircraft_is_estimated():
-    (judged,) = unstable().maneuvers
-    found = [judged.estimate.value(name) for name in ("Z_alpha", "M_alpha", "M_q")]
-    np.testing.assert_allclose(found, [-1.42, 9.64, -3.71], rtol=0.05)
+    noise = Noise(alpha_deg=0.02, pitch_rate_deg_s=0.05, pitch_deg=0.05)
+    known = Aircraft(elevator=Elevator(calibration=SCALED, lag_s=0.0, delay_s=0.0))
+    (judged,) = analysed("unstable", unstable_flight(FOLDER, 0.4, noise), known).maneuvers
+    for name in ("Z_alpha", "M_alpha", "M_q"):
+        assert judged.estimate.value(name) == pytest.approx(DERIVATIVES[name], rel=0.03)

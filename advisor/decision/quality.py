@@ -20,6 +20,7 @@ from advisor.decision.envelope import changed_speed, flown, incomplete, outside,
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
+from advisor.flight.purpose import LEAST_PITCH_RATE_DEG_S
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 
 WIDEST_PREDICTION_PERCENT = 25.0
@@ -27,8 +28,6 @@ WIDEST_PREDICTION_PERCENT = 25.0
 12 % in M_δe alone makes 24. Real records that two halves of a campaign agree on have 9 to 21."""
 LEAST_SIGNAL: Mapping[str, float] = {"q": 12.0, "alpha": 8.0}
 """Least peak of the response over the white part of its noise."""
-LEAST_PITCH_RATE_DEG_S = 1.0
-"""Below this peak the response drowns in what no model holds, however quiet the sensor."""
 LEAST_R2: Mapping[str, float] = {"q": 0.85, "alpha": 0.70}
 """Least share of the response that the model must explain, white noise left out of account."""
 

@@ -10,10 +10,10 @@ from advisor.flight.motion import integrated
 from advisor.flight.record import Channel
 
 _SURELY = 9.0
-"""Twice the logarithm of the likelihood ratio from which on a sense is known: three standard errors.
-Samples count as many as are independent, by the residual's correlation from sample to sample. Set on the
-records of eight aircraft, their elevators wired to two outputs that roll, too: manoeuvres reach 10 to 120,
-a wrong sense never more than 8."""
+"""An output's sense is known where twice the logarithm of the likelihood ratio of both senses exceeds this.
+For one parameter that is three standard errors. Samples count as many as are independent, by the residual's
+correlation from sample to sample. Set on the records of eight aircraft, their elevators wired to two outputs
+that roll, too: manoeuvres reach 10 to 120, a wrong sense never more than 8."""
 _LEAST_S = 4.0
 """Shortest flight that is asked, s. Within one to three seconds slow movements pass for each other: there a
 wrong sense reached 22 on the same records."""

@@ -29,7 +29,7 @@ def at_speed(airspeed_m_s: float) -> Flown:
 
 
 def moved(k: int, by: float) -> FloatArray:
-    """The derivatives with one of them changed by a share of itself."""
+    """All derivatives, number ``k`` multiplied by one plus ``by``."""
     changed = DERIVED.copy()
     changed[k] *= 1.0 + by
     return changed

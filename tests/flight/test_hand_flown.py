@@ -12,9 +12,9 @@ from advisor.flight.events import Activity, ManeuverFlown
 from advisor.flight.stream import FlightStream
 from advisor.mavlink.logs import open_log
 from sim.flight import Flight
-from sim.modelled import modelled_flight
 from sim.record import record
-from sim.scenario import Air, Augmentation, Maneuver, Noise, Scenario
+from sim.scenario import Air, Maneuver, Noise, Scenario
+from tests.unstable import unstable_flight
 
 FOLDER = Path(mkdtemp(prefix="hand-"))
 BOOT_S = Scenario().clock.boot_s
@@ -91,22 +91,8 @@ def test_a_record_that_begins_just_before_the_input_will_do(settling_s):
 
 @pytest.mark.parametrize("slew_s", [0.4, 0.8])
 def test_smooth_steps_of_an_unstable_aircraft_are_found(slew_s):
-    path = FOLDER / "unstable.yaml"
-    path.write_text(
-        "airspeed_m_s: 120\nmodel: {Z_0: 0.0, Z_alpha: -1.42, Z_q: 0.0, Z_delta_e: -0.2,"
-        " M_0: 0.0, M_alpha: 9.64, M_q: -3.71, M_delta_e: -12.8}\n"
-    )
-    scenario = Scenario(
-        lead_in_s=0.0,
-        settling_s=0.5,
-        closing_s=0.0,
-        unit_s=1.0,
-        amplitude_deg=1.5,
-        noise=Noise(alpha_deg=0.05, pitch_rate_deg_s=0.1, pitch_deg=0.05),
-        augmentation=Augmentation(alpha=1.2, pitch_rate=0.4),
-        maneuvers=(Maneuver("multistep", slew_s=slew_s, free_s=1.0),),
-    )
-    (span,) = spans(heard(modelled_flight(scenario, path), f"unstable-{slew_s}"))
+    noise = Noise(alpha_deg=0.05, pitch_rate_deg_s=0.1, pitch_deg=0.05)
+    (span,) = spans(heard(unstable_flight(FOLDER, slew_s, noise), f"unstable-{slew_s}"))
     assert span.last_step_s - span.start_s > 7.0
 
 
