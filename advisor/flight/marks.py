@@ -1,6 +1,6 @@
 """Stretches of flight that somebody marks as manoeuvres: by hand, by a switch, by a text of the vehicle.
 
-A mark takes the place of whatever the finder finds in its stretch. A mark that an engineer makes while the
+A mark takes the place of every input that the finder finds in its stretch. A mark that an engineer makes while the
 stream runs gives the manoeuvre that the same mark gives when it is known before the stream begins.
 """
 
@@ -150,13 +150,22 @@ class Marks:
                 self._close(switched.by, switched.at_s)
 
     def hides(self, span: Span, order: int | None) -> bool:
-        """Whether a span of the finder gives way to a mark, or waits for the end of an open one."""
-        if any(m.overlaps(span.start_s, span.end_s) for m in (*self._waiting, *self._closed)):
+        """Whether a span of the finder gives way to a mark, or waits for the end of an open one.
+
+        A mark takes the place of the inputs that it touches, not of an input whose free response it ends.
+        """
+        if any(m.overlaps(span.start_s, span.last_step_s) for m in (*self._waiting, *self._closed)):
             return True
         waits = any(since_s < span.end_s for since_s in self._open.values())
         if waits:
             self._held.append((span, order))
         return waits
+
+    def before(self, span: Span) -> Span:
+        """The span of an input outside of all marks, its free response ended where a mark begins."""
+        begin_s = [m.start_s for m in (*self._waiting, *self._closed)]
+        within = [at_s for at_s in begin_s if span.last_step_s <= at_s < span.end_s]
+        return replace(span, end_s=min(within), closed_by="next input") if within else span
 
     def due(self, arrived_s: float) -> Due:
         """What is complete when every channel has arrived up to ``arrived_s``, s since boot."""

@@ -328,7 +328,7 @@ class FlightStream:
         return events
 
     def _flown(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
-        events = self._cutting.flown(span, self.boot, up_to_order)
+        events = self._cutting.flown(self.marks.before(span), self.boot, up_to_order)
         if any(isinstance(event, ManeuverFlown) for event in events):
             self._note_rates()
         return events

@@ -76,6 +76,13 @@ def test_what_no_mark_touches_is_found_as_before():
     assert (first.number, second.number) == (1, 2)
 
 
+def test_a_mark_after_an_input_ends_its_free_response_and_hides_nothing():
+    first, second = marked(Mark(58.5, 61.0))
+    assert first.span.kind == "3-2-1-1"
+    assert first.span.end_s == second.span.start_s == 58.5
+    assert second.span.closed_by == "marked by hand"
+
+
 def test_a_stretch_in_which_nothing_was_found_is_a_manoeuvre_when_it_is_marked():
     first, second = marked(Mark(50.5, 53.0))
     assert (first.span.kind, first.span.steps) == ("other", ())
