@@ -1,7 +1,7 @@
 """Stretches of flight that somebody marks as manoeuvres: by hand, by a switch, by a text of the vehicle.
 
-A mark takes the place of every input that the finder finds in its stretch. A mark that an engineer makes while the
-stream runs gives the manoeuvre that the same mark gives when it is known before the stream begins.
+A mark takes the place of every input that the finder finds in its stretch. A mark that an engineer makes
+while the stream runs gives the manoeuvre that the same mark gives when it is known before the stream begins.
 """
 
 from collections.abc import Iterable, Sequence
