@@ -3,7 +3,6 @@
 Times are seconds since boot. Every command that reads the log reads the file, too.
 """
 
-import os
 from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
@@ -14,6 +13,7 @@ import yaml
 from advisor.by_hand import ByHand, Remark
 from advisor.flight.marks import LONGEST_S, Mark
 from advisor.problems import ConfigurationError
+from advisor.whole_file import write_whole
 from advisor.yaml_file import read_yaml
 
 SUFFIX = ".maneuvers.yaml"
@@ -80,16 +80,7 @@ def write_by_hand(log: Path, by_hand: ByHand) -> None:
         sections[section] = [{"at_s": r.at_s, key: r.text, **_boot(r.boot)} for r in remarks]
     filled = {name: entries for name, entries in sections.items() if entries}
     text = _HEADING + (yaml.safe_dump(filled, sort_keys=False, allow_unicode=True) if filled else "")
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with beside.open("w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        beside.replace(path)
-    except OSError:
-        beside.unlink(missing_ok=True)
-        raise
+    write_whole(path, text)
 
 
 def keep_by_hand(log: Path, by_hand: ByHand) -> str:

@@ -1,10 +1,7 @@
 """``advisor live``: advise on a live link."""
 
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING
 
 import click
@@ -14,29 +11,39 @@ from advisor.commands.options import (
     aircraft_option,
     decided_on,
     no_marks_option,
-    read_aircraft,
     rule_option,
     target_system_option,
 )
+from advisor.commands.resuming import NEWEST, start_of, started
 from advisor.commands.screen import advise
 from advisor.problems import ConfigurationError
 
 if TYPE_CHECKING:
-    from advisor.mavlink.announce import Announcer
-    from advisor.mavlink.link import Link
+    from advisor.by_hand import ByHand
+    from advisor.mavlink.kept_link import KeptLink
 
 
 @click.command
+@click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
 @click.option(
     "--master",
-    required=True,
     metavar="CONN",
     help="Connection, as in pymavlink: udpin:0.0.0.0:14550, tcp:host:port, /dev/ttyUSB0,57600.",
 )
 @click.option(
-    "--record", "record_to", type=click.Path(path_type=Path), metavar="FILE", help="Recording's file."
+    "--record",
+    "record_to",
+    metavar="FILE|DIR",
+    help="Recording's file, or its folder.",
 )
 @click.option("--no-record", is_flag=True, help="Keep no recording of the link.")
+@click.option(
+    "--resume",
+    is_flag=False,
+    flag_value=NEWEST,
+    metavar="[REC]",
+    help="Take up the flight test of a recording, the newest by default; its options hold unless given anew.",
+)
 @click.option("--request-rates", is_flag=True, help="Ask the vehicle for 50 Hz streams and its servo set-up.")
 @click.option(
     "--announce", is_flag=True, help="Send each verdict and STOP to the ground stations (STATUSTEXT)."
@@ -55,9 +62,11 @@ if TYPE_CHECKING:
 @target_system_option
 @no_marks_option
 def command(
-    master: str,
-    record_to: Path | None,
+    logs: tuple[Path, ...],
+    master: str | None,
+    record_to: str | None,
     no_record: bool,
+    resume: str | None,
     request_rates: bool,
     announce: bool,
     signing_key: Path | None,
@@ -69,83 +78,64 @@ def command(
 ) -> None:
     """Advise while flying. Nothing is sent to the vehicle unless an option here asks for it.
 
+    The link and its recording live in a process of their own. When this program ends without being
+    asked to, that process goes on recording, and --resume takes the flight test up.
     Without a terminal, or with HEADLESS=1, the verdicts come as text.
 
     \b
     Example:
       advisor live --master udpin:0.0.0.0:14550 --aircraft my-aircraft.yaml
       advisor live --master /dev/ttyUSB0,57600 --request-rates --announce
+      advisor live --resume
     """
-    if no_record and record_to is not None:
-        raise ConfigurationError("--record and --no-record contradict each other; give one of them.")
-    aircraft = read_aircraft(aircraft_file, rule)
-    # A recording that exists is not overwritten: what was decided on it belongs to another flight.
-    is_new = record_to is not None and not record_to.exists()
-    by_hand = decided_on(record_to, no_marks) if record_to is not None and is_new else None
-    from advisor.mavlink.announce import Announcer
+    if no_record and (record_to is not None or resume is not None):
+        other = "--record" if record_to is not None else "--resume"
+        raise ConfigurationError(f"{other} and --no-record contradict each other; give one of them.")
+    if logs and resume is None:
+        raise ConfigurationError("LOG needs --resume: the flight test of these logs is taken up.")
+    from advisor.campaign_file import CampaignFile
     from advisor.mavlink.connection import parse_connection
     from advisor.mavlink.signing import read_key
     from advisor.tui.live import LinkSource
+    from advisor.yaml_file import read_yaml
 
-    parse_connection(master)
-    announcer = Announcer() if announce else None
-    connection = _Connection(
-        master,
-        source_system,
-        target_system,
-        record_to,
-        recorded=not no_record,
-        key=read_key(signing_key) if signing_key else None,
+    content = read_yaml(aircraft_file) if aircraft_file else None
+    asked = CampaignFile(master or "", rule, target_system, content)
+    start = start_of(asked, resume, logs, record_to, recorded=not no_record)
+    parse_connection(start.campaign.master)
+    aircraft = start.campaign.parsed_aircraft(str(aircraft_file or start.recording))
+    by_hand = decided_on(start.recording, no_marks) if start.goes_on and start.recording else None
+    with started(
+        start,
+        source_system=source_system,
+        signing_key=read_key(signing_key) if signing_key else None,
         request_rates=request_rates,
-        announcer=announcer,
-    )
-    tell = partial(_announce, announcer) if announcer else None
-    advise(partial(LinkSource, connection), master, aircraft, target_system, tell, by_hand=by_hand)
-
-
-@dataclass
-class _Connection(AbstractContextManager["Link"]):
-    """A link as the options describe it; nothing is loaded or opened before it is entered."""
-
-    master: str
-    source_system: int
-    target_system: int | None
-    record_to: Path | None
-    recorded: bool
-    key: bytes | None
-    request_rates: bool
-    announcer: "Announcer | None"
-
-    def __enter__(self) -> "Link":
-        from advisor.mavlink.inquiry import Inquiry
-        from advisor.mavlink.link import Link
-        from advisor.mavlink.outgoing import Talker
-        from advisor.mavlink.rates import STREAMS, RateRequest
-        from advisor.mavlink.recorder import default_recording
-
-        talkers: list[Talker] = [self.announcer] if self.announcer else []
-        if self.request_rates:
-            talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
-        self._link = Link(
-            self.master,
-            source_system=self.source_system,
-            target_system=self.target_system,
-            record_to=self.record_to or default_recording() if self.recorded else None,
-            key=self.key,
-            talkers=talkers,
+        announce=announce,
+    ) as process:
+        said = f"recording to {process.recording}" if process.recording else "nothing is recorded"
+        click.echo(said, err=True)
+        link = process.link
+        advise(
+            partial(LinkSource, link),
+            start.campaign.master,
+            aircraft,
+            start.campaign.target_system,
+            partial(_announce, link) if announce else None,
+            by_hand=by_hand,
+            kept=partial(_kept, process.recording),
         )
-        return self._link.start()
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._link.stop()
 
 
-def _announce(announcer: "Announcer", event: object) -> None:
+def _kept(recording: Path | None) -> "ByHand":
+    from advisor.by_hand import NOTHING
+
+    return decided_on(recording, no_marks=False) if recording else NOTHING
+
+
+def _announce(link: "KeptLink", event: object) -> None:
     from advisor.campaign import ManeuverJudged
 
     if isinstance(event, ManeuverJudged):
         verdict = event.flight_test
         stop = verdict.sentence if verdict.decision == "stop" else None
-        announcer.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop)
+        link.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop)

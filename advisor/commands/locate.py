@@ -22,6 +22,6 @@ def command(what: str) -> None:
 
         click.echo(settings_path())
     else:
-        from advisor.mavlink.recorder import default_recording
+        from advisor.mavlink.recording_file import recordings_folder
 
-        click.echo(default_recording().parent)
+        click.echo(recordings_folder())

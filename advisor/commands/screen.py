@@ -2,24 +2,21 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
 from advisor.aircraft import Aircraft
-from advisor.flight.messages import Columns
-from advisor.problems import Problem, UnusableInputError
+from advisor.problems import UnusableInputError
 from advisor.tui.source import Source, Tempo
 
 if TYPE_CHECKING:
     from advisor.by_hand import ByHand
     from advisor.campaign import Campaign
     from advisor.flight.marks import Mark
-
-READ_S = 0.2
+    from advisor.tui.remote import Task
 
 Listener = Callable[[object], object]
 
@@ -38,6 +35,7 @@ def advise(
     tempo: Tempo | None = None,
     by_hand: "ByHand | None" = None,
     marks: "Sequence[Mark]" = (),
+    kept: "Callable[[], ByHand] | None" = None,
 ) -> None:
     """Run a campaign on a source: in the terminal application, or as lines of text.
 
@@ -55,6 +53,9 @@ def advise(
         What was decided by hand on this flight before.
     marks
         Marks of the command line.
+    kept
+        Reads what was decided by hand since the start, for a source that can be read from its
+        beginning again: the death of the estimating process then ends nothing.
 
     Raises
     ------
@@ -62,13 +63,19 @@ def advise(
         When the source can never serve, or has ended without anything to judge.
     """
     from advisor.by_hand import NOTHING
+    from advisor.commands.narrator import narrate, narrate_here
+    from advisor.tui.remote import Task
 
     before = by_hand or NOTHING
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks))
-    if headless():
-        _narrate(open_source(), make_campaign(settle=False, by_hand=before))
+    if not headless():
+        task = Task(open_source, partial(make_campaign, True), before, kept)
+        _show(task, aircraft, title, tempo)
+    elif kept is not None:
+        task = Task(open_source, partial(make_campaign, False), before, kept)
+        narrate(task, click.echo, partial(click.echo, err=True))
     else:
-        _show(open_source, partial(make_campaign, True), before, aircraft, title, tempo)
+        narrate_here(open_source(), make_campaign(False, before), click.echo)
 
 
 def _campaign(
@@ -84,42 +91,14 @@ def _campaign(
     return Campaign(aircraft, target_system, settle=settle, tell=tell, by_hand=by_hand, marks=marks)
 
 
-def _show(
-    open_source: Callable[[], Source],
-    make_campaign: "Callable[[ByHand], Campaign]",
-    by_hand: "ByHand",
-    aircraft: Aircraft,
-    title: str,
-    tempo: Tempo | None,
-) -> None:
+def _show(task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:
     from advisor.tui.app import AdvisorApp
-    from advisor.tui.remote import RemoteConductor, Task
+    from advisor.tui.remote import RemoteConductor
     from advisor.tui.settings import load_settings
 
-    conductor = RemoteConductor(Task(open_source, make_campaign, by_hand))
-    app = AdvisorApp(conductor, aircraft, title, tempo, load_settings())
+    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings())
     app.run()
     if app.failure is not None:
         raise app.failure
-    if tempo is not None:
-        _refuse_if_unusable(app.view.problems)
-
-
-def _narrate(source: Source, campaign: "Campaign") -> None:
-    from advisor.report.follow import follow
-
-    with closing(source):
-        follow(_batches(source), campaign, click.echo)
-    _refuse_if_unusable(campaign.problems)
-
-
-def _refuse_if_unusable(problems: Sequence[Problem]) -> None:
-    if problems:
-        raise UnusableInputError(problems[0].code, problems[0].text, problems[0].fix)
-
-
-def _batches(source: Source) -> Iterator[Sequence[Columns]]:
-    while (columns := source.read(READ_S)) is not None:
-        for notice in source.take_notices():
-            click.echo(f"link: {notice}", err=True)
-        yield columns
+    if tempo is not None and app.view.problems:
+        raise UnusableInputError.of(app.view.problems[:1])

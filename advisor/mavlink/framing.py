@@ -4,13 +4,18 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from fastcrc.crc16 import mcrf4xx
+from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.checksum import TABLE
 
 MAGIC_V1 = 0xFE
 MAGIC_V2 = 0xFD
+MAGIC = (MAGIC_V1, MAGIC_V2)
 SIGNED = 0x01
 SIGNATURE_LENGTH = 13
+LONGEST_FRAME = 12 + 255 + SIGNATURE_LENGTH
+CRC_EXTRA: Mapping[int, int] = {number: message.crc_extra for number, message in dialect.mavlink_map.items()}
+"""Message id to the checksum's seed, of every message that the advisor knows."""
 
 _SEED_REMAINDERS = frozenset(TABLE.tolist())
 
@@ -57,7 +62,7 @@ class FrameCutter:
         frames = []
         i, n = 0, len(buffer)
         while i < n:
-            if buffer[i] not in (MAGIC_V1, MAGIC_V2):
+            if buffer[i] not in MAGIC:
                 i = self._skip(buffer, i)
                 continue
             total = _frame_length(buffer, i)
@@ -97,7 +102,7 @@ class FrameCutter:
         seed = self._seeds.get(message_id)
         if seed is None:
             follower = buffer[i + total : i + total + 1]
-            due = self._in_step and (not follower or follower[0] in (MAGIC_V1, MAGIC_V2))
+            due = self._in_step and (not follower or follower[0] in MAGIC)
             if not due or checksum ^ mcrf4xx(buffer[i + 1 : end - 2]) >> 8 not in _SEED_REMAINDERS:
                 return None
         elif mcrf4xx(buffer[i + 1 : end - 2] + seed) != checksum:

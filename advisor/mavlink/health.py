@@ -47,6 +47,8 @@ class LinkStatistics:
     reconnects: int = 0
     recording: Path | None = None
     recorded_bytes: int = 0
+    recording_problem: str | None = None
+    """Why the disk takes nothing at this moment."""
 
     @property
     def lost_percent(self) -> float:

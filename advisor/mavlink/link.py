@@ -1,9 +1,9 @@
 """A live link: a tlog being written.
 
 A thread of its own takes frames off the connection, puts a time stamp before each as a
-tlog has it, hands these records to the recorder, and decodes the very same bytes with the
-scanner that reads logs. What was seen live and what the recording replays are therefore
-the same messages in the same order.
+tlog has it, and hands these records to the recorder and to whoever reads the link. Readers
+decode the very same bytes with the scanner that reads logs. What is seen live and what the
+recording replays are therefore the same messages in the same order.
 """
 
 import contextlib
@@ -12,17 +12,15 @@ import threading
 import time
 from collections import deque
 from collections.abc import Iterable
+from functools import cached_property
 from pathlib import Path
 from queue import Empty, Full, Queue
 from types import TracebackType
-from typing import Self
-
-from pymavlink.dialects.v20 import ardupilotmega as dialect
+from typing import TYPE_CHECKING, Self
 
 from advisor.flight.messages import Columns
 from advisor.mavlink.connection import parse_connection
-from advisor.mavlink.frames import FrameScanner
-from advisor.mavlink.framing import Frame
+from advisor.mavlink.framing import CRC_EXTRA, Frame
 from advisor.mavlink.health import LinkStatistics, Notice
 from advisor.mavlink.intake import Intake
 from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Packer, Talker
@@ -33,15 +31,17 @@ from advisor.mavlink.transports import open_transport
 from advisor.mavlink.watch import LinkWatch
 from advisor.problems import UnusableInputError
 
+if TYPE_CHECKING:
+    from advisor.mavlink.frames import FrameScanner
+
 BATCH_S = 0.012
-"""Frames gather this long before they are decoded and handed over together."""
+"""Frames gather this long before they are handed over together."""
 PAUSE_S = 0.003
 """Rest between two looks at a busy socket, so that several packets share one look."""
 REOPEN_EVERY_S = 1.0
 QUEUE_LENGTH = 12_000  # batches: more than a minute behind at full load
 
 _HEARD, _SENT_BY_US = 0, 3  # link numbers, the low two bits of a tlog's time stamps
-_CRC_EXTRA = {number: message.crc_extra for number, message in dialect.mavlink_map.items()}
 
 
 class Link:
@@ -57,11 +57,15 @@ class Link:
         System id of the vehicle; None: the first autopilot heard.
     record_to
         File of the recording; None: no recording.
+    goes_on
+        The file exists and is appended to.
     key
         32-byte signing key: what is not signed with it is refused, what is sent is signed.
     talkers
         What may be sent. A connection that must speak first to be heard (``udpout``) adds
         a heartbeat once a second by itself.
+    inherited
+        File descriptor of a UDP socket that another process has opened for the connection; None: open one.
     patience_s
         How long the first connection is tried; later a lost one is tried for ever.
 
@@ -79,21 +83,23 @@ class Link:
         source_component: int = OWN_COMPONENT,
         target_system: int | None = None,
         record_to: Path | None = None,
+        goes_on: bool = False,
         key: bytes | None = None,
         talkers: Iterable[Talker] = (),
+        inherited: int | None = None,
         patience_s: float = 5.0,
     ) -> None:
         self.address = parse_connection(connection)
-        self._record_to = record_to
+        self._record_to, self._goes_on = record_to, goes_on
+        self._inherited = inherited
         self._patience_s = patience_s
         self._talkers = [*talkers, *([Heartbeat()] if self.address.speaks_first else [])]
         self._packer = Packer(source_system, source_component, key)
         signatures = SignatureCheck(key, signing_time(time.time())) if key is not None else None
-        self._intake = Intake(_CRC_EXTRA, target_system, signatures)
-        self._scanner = FrameScanner()
+        self._intake = Intake(CRC_EXTRA, target_system, signatures)
         self._watch = LinkWatch(connection)
         self._notices: deque[Notice] = deque(maxlen=1000)
-        self._queue: Queue[list[Columns]] = Queue(QUEUE_LENGTH)
+        self._queue: Queue[bytes] = Queue(QUEUE_LENGTH)
         self._recorder: Recorder | None = None
         self._transport: Transport | None = None
         self._reopen_at_s = 0.0
@@ -110,10 +116,9 @@ class Link:
         UnusableInputError
             When the connection cannot be opened or the recording cannot be made.
         """
-        self._warm_up()
         self._transport = self._open_first()
         if self._record_to is not None:
-            self._recorder = Recorder(self._record_to)
+            self._recorder = Recorder(self._record_to, self._goes_on)
         # Stamps run on the monotonic clock: a host whose clock is set does not tear the recording.
         self._unix_offset_s = time.time() - time.monotonic()
         self._watch.begin(time.monotonic())
@@ -147,13 +152,33 @@ class Link:
         """The local network port, which the system chose where the address says 0."""
         return self._transport.port if self._transport is not None else None
 
+    catching_up = False
+    """A link of this process has no past that a reader would have to catch up with."""
+
     def read(self, timeout_s: float = 0.1) -> list[Columns]:
-        """The next micro-batch of messages, or nothing when none came in time."""
+        """The messages of the next micro-batch, or nothing when none came in time."""
+        records = self.read_records(timeout_s)
+        return self._scanner.feed(records) if records else []
+
+    @cached_property
+    def _scanner(self) -> "FrameScanner":
+        # A process that only records needs no decoder, whose kernels take longer to load than all the rest.
+        from advisor.mavlink.frames import FrameScanner
+
+        return FrameScanner()
+
+    def read_records(self, timeout_s: float = 0.1) -> bytes:
+        """The next micro-batch as records of a tlog, or nothing when none came in time."""
         with contextlib.suppress(Empty):
             return self._queue.get(timeout=timeout_s)
         if self._failure is not None:
             raise self._failure
-        return []
+        return b""
+
+    @property
+    def recorder(self) -> Recorder | None:
+        """Who keeps the recording; None before the start, and where nothing is recorded."""
+        return self._recorder
 
     def take_notices(self) -> list[Notice]:
         """What happened to the link since the last call, oldest first."""
@@ -184,18 +209,14 @@ class Link:
             reconnects=self._watch.reconnects,
             recording=self._recorder.path if self._recorder else None,
             recorded_bytes=self._recorder.bytes_written if self._recorder else 0,
+            recording_problem=self._recorder.problem if self._recorder else None,
         )
-
-    def _warm_up(self) -> None:
-        """Decode a heartbeat of our own, so that no packet waits for the scanner to be compiled."""
-        frames = [self._packer.pack(message, 0) for message in Heartbeat().speak(None, 0.0)]
-        FrameScanner().feed(self._records(frames, time.time(), _SENT_BY_US))
 
     def _open_first(self) -> Transport:
         give_up_s = time.monotonic() + self._patience_s
         while True:
             try:
-                return open_transport(self.address)
+                return open_transport(self.address, self._inherited)
             except ImportError as error:
                 raise UnusableInputError(
                     "no_connection",
@@ -229,6 +250,7 @@ class Link:
             batch += self._records((frame.raw for frame in frames), now_s, _HEARD)
             batch += self._records(self._talk(frames, now_s), now_s, _SENT_BY_US)
             self._say(self._watch.look(self._intake, frames, now_s), now_s)
+            self._say(self._recorder.take_notices() if self._recorder else (), now_s)
             if batch and now_s - since_s >= BATCH_S:
                 self._hand_over(bytes(batch))
                 batch.clear()
@@ -283,10 +305,9 @@ class Link:
     def _hand_over(self, records: bytes) -> None:
         if self._recorder is not None:
             self._recorder.write(records)
-        columns = self._scanner.feed(records)
-        while columns and not self._stop.is_set():
-            with contextlib.suppress(Full):  # the consumer is a minute behind; the socket's buffer waits
-                self._queue.put(columns, timeout=0.2)
+        while not self._stop.is_set():
+            with contextlib.suppress(Full):  # the reader is a minute behind; the socket's buffer waits
+                self._queue.put(records, timeout=0.2)
                 return
 
     def _say(self, texts: Iterable[str], now_s: float) -> None:

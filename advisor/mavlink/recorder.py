@@ -2,98 +2,172 @@
 
 import contextlib
 import os
+import shutil
 import threading
-from datetime import UTC, datetime
+import time
+from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
 
-import platformdirs
+from advisor.mavlink.recording_file import create, take_up
 
-from advisor.problems import UnusableInputError
+WRITE_EVERY_S = 0.05
+"""Records go to the operating system so often: the death of this process costs no more."""
+SYNC_EVERY_S = 0.5
+"""Records go to the disk itself so often: a power cut costs no more, and one write."""
+RETRY_EVERY_S = 1.0
+MOST_UNSAVED_BYTES = 64_000_000
+"""Records that wait in memory while the disk fails: 17 minutes of a link of 60 kB/s."""
+LITTLE_SPACE_BYTES = 200_000_000
+"""Free space below which the crew is warned: one hour of a link of 60 kB/s."""
 
-FLUSH_EVERY_S = 0.5
 
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """How far a recording has come."""
 
-def default_recording(now: datetime | None = None) -> Path:
-    """Where a recording goes when the user names no place: one file a flight, named by its start in UTC."""
-    stamp = (now or datetime.now(UTC)).strftime("%Y-%m-%dT%H-%M-%SZ")
-    return Path(platformdirs.user_data_dir("inflight-advisor")) / "recordings" / f"{stamp}.tlog"
+    written: int
+    """Bytes of the file, all of them whole records."""
+    unsaved: bytes
+    """Records that follow in memory and are not in the file yet."""
 
 
 class Recorder:
     """Appends whole tlog records to a file from a thread of its own.
 
-    Writing and waiting for the disk happen beside the reader, so that a slow disk cannot
-    delay a packet. What was handed over is on the disk, not only with the operating
-    system, at most ``FLUSH_EVERY_S`` and one write later. A disk that fails ends the
-    recording, never the link: see ``problem``.
+    A slow disk cannot delay a packet, for writing and syncing happen in the recorder's thread.
+    A disk that fails ends neither the link nor the recording: records wait in memory, the recorder
+    tries again every ``RETRY_EVERY_S``, and the file ends with a whole record at every moment between.
 
     Parameters
     ----------
     path
-        File to make; its folder is made too. When it exists, a number is added to its name.
+        File to make; its folder is made too. When the file exists, a number is added to the name.
+    goes_on
+        Append to the file that exists, after its last whole record.
 
     Raises
     ------
     UnusableInputError
-        When no file can be made there.
+        No file can be made there; or the file to go on with is no recording, or is being recorded.
     """
 
-    def __init__(self, path: Path) -> None:
-        self.path, self._file = _create(path)
-        self.bytes_written = 0
+    def __init__(self, path: Path, goes_on: bool = False) -> None:
+        self.path, self._file = take_up(path) if goes_on else create(path)
+        self._written = self._file.tell()
+        self.before = self._written
+        """Bytes of the recording that an earlier flight left."""
         self.problem: str | None = None
-        """Why recording stopped before its time; None while all is well."""
+        """Why records wait in memory at this moment; None while all is well."""
+        self._notices: list[str] = []
         self._pending = bytearray()
+        self._dropped = 0
         self._lock = threading.Lock()
+        self._synced_s = self._failed_s = -RETRY_EVERY_S
+        self._dirty = self._little_told = False
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+        self._look_at_space()
         self._thread.start()
+
+    @property
+    def bytes_written(self) -> int:
+        """Bytes added to the file since it was opened."""
+        return self._written - self.before
 
     def write(self, records: bytes) -> None:
         """Hand over whole records."""
-        if self.problem is None:
-            with self._lock:
+        with self._lock:
+            if len(self._pending) + len(records) > MOST_UNSAVED_BYTES:
+                self._dropped += len(records)
+            else:
                 self._pending += records
+
+    def recorded(self) -> Recorded:
+        """Everything handed over so far: what the file holds, and what waits in memory."""
+        with self._lock:
+            return Recorded(self._written, bytes(self._pending))
+
+    def take_notices(self) -> list[str]:
+        """What the crew should know of the disk since the last call."""
+        with self._lock:
+            notices, self._notices = self._notices, []
+        return notices
 
     def close(self) -> None:
         """Write what is left and close the file."""
         self._stop.set()
         self._thread.join()
-        self._flush()
+        self._failed_s = self._synced_s = -RETRY_EVERY_S
+        self._step()
         with contextlib.suppress(OSError):  # told already, in ``problem``
             self._file.close()
 
     def _run(self) -> None:
-        while not self._stop.wait(FLUSH_EVERY_S):
-            self._flush()
+        while not self._stop.wait(WRITE_EVERY_S):
+            self._step()
 
-    def _flush(self) -> None:
-        with self._lock:
-            records, self._pending = self._pending, bytearray()
-        if not records or self.problem is not None:
+    def _step(self) -> None:
+        """Write what waits, and sync when it is time."""
+        now_s = time.monotonic()
+        if now_s - self._failed_s < RETRY_EVERY_S:
             return
         try:
-            self._file.write(records)
-            self._file.flush()
-            os.fsync(self._file.fileno())
+            self._append()
+            if self._dirty and now_s - self._synced_s >= SYNC_EVERY_S:
+                os.fsync(self._file.fileno())
+                self._dirty, self._synced_s = False, now_s
+                self._look_at_space()
         except OSError as error:
-            self.problem = f"recording to {self.path} stopped: {error.strerror}"
+            self._fail(error, now_s)
+        else:
+            self._recover()
+
+    def _append(self) -> None:
+        with self._lock:
+            records = bytes(self._pending)
+        if not records:
             return
-        self.bytes_written += len(records)
+        try:
+            at = 0
+            while at < len(records):
+                at += os.write(self._file.fileno(), records[at:])
+        except OSError:
+            # What was written of the batch may end within a record; the batch is written again as a whole.
+            with contextlib.suppress(OSError):
+                self._file.truncate(self._written)
+                self._file.seek(self._written)
+            raise
+        with self._lock:
+            del self._pending[: len(records)]
+            self._written += len(records)
+        self._dirty = True
 
+    def _fail(self, error: OSError, now_s: float) -> None:
+        self._failed_s = now_s
+        if self.problem is None:
+            self._say(
+                f"recording to {self.path} fails: {error.strerror or error}. What is heard waits in memory; "
+                "make room on the disk"
+            )
+        self.problem = f"the disk takes no recording: {error.strerror or error}"
 
-def _create(path: Path) -> tuple[Path, BinaryIO]:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        for number in range(1, 1000):
-            candidate = path if number == 1 else path.with_stem(f"{path.stem}-{number}")
-            with contextlib.suppress(FileExistsError):
-                return candidate, candidate.open("xb")
-    except OSError as error:
-        raise UnusableInputError(
-            "recording",
-            f"The recording {path} cannot be made: {error.strerror}.",
-            "Name another place with --record, or turn recording off with --no-record.",
-        ) from None
-    raise UnusableInputError("recording", f"{path} exists many times.", "Name another place with --record.")
+    def _recover(self) -> None:
+        if self.problem is None:
+            return
+        self.problem = None
+        with self._lock:
+            lost, self._dropped = self._dropped, 0
+        what = f"{lost / 1e6:.1f} MB are lost" if lost else "nothing is lost"
+        self._say(f"recording to {self.path} goes on: {what}")
+
+    def _look_at_space(self) -> None:
+        """Warn once when little space is left."""
+        with contextlib.suppress(OSError):
+            free = shutil.disk_usage(self.path.parent).free
+            if free < LITTLE_SPACE_BYTES and not self._little_told:
+                self._little_told = True
+                self._say(f"only {free / 1e6:.0f} MB are free where the recording goes: make room")
+
+    def _say(self, text: str) -> None:
+        with self._lock:
+            self._notices.append(text)

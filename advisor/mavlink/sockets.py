@@ -11,21 +11,41 @@ RECEIVE_BUFFER_BYTES = 4 * 1024 * 1024  # at the usual 208 kB a busy machine los
 _MOST_CHUNKS = 512  # taken in one go, so that a flood cannot keep the reader from handing over
 
 
-class UdpTransport(Transport):
-    """UDP, listening (``udpin``) or calling (``udpout``)."""
+def udp_socket(address: Address) -> socket.socket:
+    """A socket for UDP, bound where ``udpin`` listens.
 
-    def __init__(self, address: Address) -> None:
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
+    Raises
+    ------
+    OSError
+        The port is taken, or is not this computer's.
+    """
+    end = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    end.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
+    try:
+        if address.kind == "udpin":
+            end.bind((address.host, address.port))
+    except OSError:
+        end.close()
+        raise
+    return end
+
+
+class UdpTransport(Transport):
+    """UDP, listening (``udpin``) or calling (``udpout``).
+
+    Parameters
+    ----------
+    address
+        Where to listen, or whom to call.
+    inherited
+        File descriptor of a socket that another process has opened; None: open one.
+    """
+
+    def __init__(self, address: Address, inherited: int | None = None) -> None:
         self._remote: Peer | None = None
-        try:
-            if address.kind == "udpin":
-                self._socket.bind((address.host, address.port))
-            else:
-                self._remote = (socket.gethostbyname(address.host), address.port)
-        except OSError:
-            self._socket.close()
-            raise
+        if address.kind == "udpout":
+            self._remote = (socket.gethostbyname(address.host), address.port)
+        self._socket = udp_socket(address) if inherited is None else socket.socket(fileno=inherited)
         self._socket.setblocking(False)
 
     def wait(self, timeout_s: float) -> bool:

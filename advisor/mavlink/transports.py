@@ -73,8 +73,15 @@ class PymavlinkTransport(Transport):
         self._connection.close()
 
 
-def open_transport(address: Address) -> Transport:
+def open_transport(address: Address, inherited: int | None = None) -> Transport:
     """Open what an address names.
+
+    Parameters
+    ----------
+    address
+        Parsed connection string.
+    inherited
+        File descriptor of a UDP socket that another process has opened for this address; None: open one.
 
     Raises
     ------
@@ -83,7 +90,7 @@ def open_transport(address: Address) -> Transport:
     """
     match address.kind:
         case "udpin" | "udpout":
-            return UdpTransport(address)
+            return UdpTransport(address, inherited)
         case "tcp" | "tcpin" | "unix":
             return StreamTransport(address)
         case "serial":

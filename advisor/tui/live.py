@@ -2,19 +2,34 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from advisor.by_hand import ByHand
 from advisor.flight.messages import Columns
 from advisor.marks_file import keep_by_hand
-from advisor.mavlink.health import LinkStatistics
+from advisor.mavlink.health import LinkStatistics, Notice
 from advisor.tui.source import Condition, LinkHealth
-
-if TYPE_CHECKING:
-    from advisor.mavlink.link import Link
 
 SILENT_S = 2.0
 LOSS_PERCENT = 5.0
+
+
+class LinkLike(Protocol):
+    """A link as its readers see it, kept by this process or by one of its own."""
+
+    @property
+    def statistics(self) -> LinkStatistics:
+        """How the link is doing now."""
+
+    @property
+    def catching_up(self) -> bool:
+        """Whether what was heard before is still being read."""
+
+    def read(self, timeout_s: float) -> list[Columns]:
+        """The next messages in order of arrival, or nothing when none came in time."""
+
+    def take_notices(self) -> list[Notice]:
+        """What happened to the link since the last call, oldest first."""
 
 
 class LinkSource:
@@ -29,10 +44,10 @@ class LinkSource:
     """
 
     def __init__(
-        self, connection: "AbstractContextManager[Link]", over: Callable[[], bool] = lambda: False
+        self, connection: AbstractContextManager[LinkLike], over: Callable[[], bool] = lambda: False
     ) -> None:
         self._connection, self._over = connection, over
-        self._link: Link | None = None
+        self._link: LinkLike | None = None
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
         """The next batch; None when the far end has finished and all of it was read.
@@ -56,7 +71,9 @@ class LinkSource:
         condition, sentence = _glance(statistics)
         if self._over():
             condition, sentence = "ended", "The flight is over."
-        return LinkHealth(condition, sentence, _figures(statistics))
+        elif self._link.catching_up:
+            condition, sentence = "waiting", "The recording so far is being read."
+        return LinkHealth(condition, sentence, _figures(statistics), statistics.recording_problem or "")
 
     def take_notices(self) -> Sequence[str]:
         """What the link has to report since the last call."""

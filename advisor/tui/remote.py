@@ -1,13 +1,11 @@
 """A conductor in a process of its own, so that no estimate keeps the screens' interpreter busy."""
 
 import pickle
-import sys
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
-from queue import SimpleQueue
-from subprocess import DEVNULL, PIPE, Popen
-from threading import Thread
+from dataclasses import dataclass, replace
+from queue import Empty, SimpleQueue
+from threading import Event, Thread
 from typing import IO
 
 from advisor.by_hand import NOTHING, ByHand
@@ -15,10 +13,14 @@ from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.changes import Changes
 from advisor.tui.conducting import Report, Tell
 from advisor.tui.hand import HandDecision
-from advisor.tui.source import Source, Tempo
+from advisor.tui.offspring import offspring, pause_s, said_of
+from advisor.tui.source import LinkHealth, Source, Tempo
 
 Request = tuple[str, tuple[object, ...]]
 """Name of a method of `Conducting`, and its arguments."""
+
+_ENOUGH: Request = ("", ())
+"""No request: ends the thread that passes requests on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,10 +31,15 @@ class Task:
     make_campaign: Callable[[ByHand], CampaignLike]
     by_hand: ByHand = NOTHING
     """What was decided by hand before."""
+    kept: Callable[[], ByHand] | None = None
+    """Reads what was decided by hand since; None: the source cannot be read from its beginning again."""
 
 
 class RemoteConductor:
     """A `Conducting` that passes on what it is asked, and passes back what it is told.
+
+    Where the source can be read from its beginning again, the death of the other process ends nothing:
+    it is started again, and the last report stands until the new process has caught up.
 
     Parameters
     ----------
@@ -43,6 +50,9 @@ class RemoteConductor:
     def __init__(self, task: Task) -> None:
         self._task = task
         self._requests: SimpleQueue[Request] = SimpleQueue()
+        self._last: Report | None = None
+        self._deaths: list[str] = []
+        self._stopped = Event()
 
     def run(self, tell: Tell) -> None:
         """Start the process and hear it until it ends.
@@ -52,20 +62,21 @@ class RemoteConductor:
         UnusableInputError
             When the input can never serve; and whatever else broke the other side off.
         RuntimeError
-            When the process was ended from outside.
+            When the process was ended from outside, and the source cannot be read again.
         """
-        command = [sys.executable, "-m", "advisor.tui.worker"]
-        with Popen(command, stdin=PIPE, stdout=PIPE, stderr=DEVNULL) as process:
-            assert process.stdin is not None
-            assert process.stdout is not None
-            Thread(target=self._pass_on, args=(process.stdin,), daemon=True).start()
-            with suppress(EOFError):
-                _pass_back(process.stdout, tell)
-        if process.returncode:
-            raise RuntimeError(f"The estimating process ended with exit code {process.returncode}.")
+        while code := self._conduct(tell):
+            if self._stopped.is_set():
+                return
+            if self._task.kept is None:
+                raise RuntimeError(f"The estimating process ended with exit code {code}.")
+            self._deaths.append(f"the estimating process {said_of(code)}; it is started again")
+            self._tell_of_death(tell)
+            self._stopped.wait(pause_s(len(self._deaths)))
+            self._task = replace(self._task, by_hand=self._task.kept())
 
     def stop(self) -> None:
         """End ``run`` at the next opportunity."""
+        self._stopped.set()
         self._requests.put(("stop", ()))
 
     def decide(self, decision: HandDecision) -> None:
@@ -84,24 +95,68 @@ class RemoteConductor:
         """Play the next tenth of a second of a held replay."""
         self._requests.put(("step", ()))
 
+    def _conduct(self, tell: Tell) -> int:
+        """One process from its start to its end; the exit code."""
+        with offspring("advisor.tui.worker") as process:
+            assert process.stdin is not None
+            assert process.stdout is not None
+            asking = Thread(target=self._pass_on, args=(process.stdin,), daemon=True)
+            asking.start()
+            with suppress(EOFError, pickle.UnpicklingError):
+                self._pass_back(process.stdout, tell)
+            self._requests.put(_ENOUGH)
+            asking.join()
+            self._keep_what_is_asked()
+            with suppress(BrokenPipeError):
+                process.stdin.close()  # upon which a process that has finished ends
+            return process.wait()
+
     def _pass_on(self, pipe: IO[bytes]) -> None:
-        """Hand over the task, then every request; a process that has ended needs none."""
+        """Hand over the task, then every request; what a process has not taken waits for the next one."""
+        request = _ENOUGH
         with suppress(BrokenPipeError, ValueError):
             pickle.dump(self._task, pipe)
-            while True:
+            pipe.flush()
+            while (request := self._requests.get()) is not _ENOUGH:
+                pickle.dump(request, pipe)
                 pipe.flush()
-                pickle.dump(self._requests.get(), pipe)
+        if request is not _ENOUGH:
+            self._requests.put(request)
 
+    def _keep_what_is_asked(self) -> None:
+        """Take out of the queue whatever was meant for the thread that has ended."""
+        waiting = []
+        with suppress(Empty):
+            while True:
+                waiting.append(self._requests.get_nowait())
+        for request in waiting:
+            if request is not _ENOUGH:
+                self._requests.put(request)
 
-def _pass_back(pipe: IO[bytes], tell: Tell) -> None:
-    last: Report | None = None
-    while True:
-        match pickle.load(pipe):
-            case Report() as first:
-                last = first
-            case Changes() as changes if last is not None:
-                last = changes.applied_to(last)
-            case BaseException() as failure:
-                raise failure
-        if last is not None:
-            tell(last)
+    def _pass_back(self, pipe: IO[bytes], tell: Tell) -> None:
+        last: Report | None = None
+        while True:
+            match pickle.load(pipe):
+                case Report() as first:
+                    last = first
+                case Changes() as changes if last is not None:
+                    last = changes.applied_to(last)
+                case BaseException() as failure:
+                    raise failure
+            if last is not None:
+                self._tell(last, tell)
+
+    def _tell(self, report: Report, tell: Tell) -> None:
+        """Tell a report; of a process that still catches up, only how the link is doing."""
+        if self._deaths:
+            report = replace(report, log=(*report.log, *self._deaths))
+            if self._last is not None and report.health.condition == "waiting":
+                report = replace(self._last, health=report.health, log=report.log)
+        self._last = report
+        tell(report)
+
+    def _tell_of_death(self, tell: Tell) -> None:
+        if self._last is not None:
+            health = LinkHealth("waiting", f"{self._deaths[-1].capitalize()}.", self._last.health.figures)
+            self._last = replace(self._last, health=health, log=(*self._last.log, self._deaths[-1]))
+            tell(self._last)

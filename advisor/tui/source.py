@@ -19,6 +19,8 @@ class LinkHealth:
     """What is wrong and what to do; or what is right."""
     figures: tuple[tuple[str, str], ...] = ()
     """Statistics for the engineer: (name, value with unit)."""
+    alarm: str = ""
+    """What is being lost at this moment; empty while nothing is."""
 
 
 class Source(Protocol):

@@ -19,6 +19,7 @@ from tests.tui.stand_ins import HandFedSource, StagedCampaign
 
 LOG = Path(__file__).parents[2] / "logs" / "bundled-demo.tlog"
 FLOWN_S = 45.0
+FIRST_JUDGED_S = 27.0
 BUSY_S = 4.0
 
 
@@ -33,6 +34,21 @@ def _until(piece: Columns, end_s: float) -> Columns:
     end = int((piece.arrival_s < end_s).sum())
     fields = {name: values[:end] for name, values in piece.fields.items()}
     return replace(piece, order=piece.order[:end], arrival_s=piece.arrival_s[:end], fields=fields)
+
+
+class Traced(LogPlayer):
+    """Tells its process, and waits as long as a link that reads its recording again."""
+
+    def health(self) -> LinkHealth:
+        """The process instead of a sentence."""
+        read_again = self.playback().position_s >= FIRST_JUDGED_S
+        return LinkHealth("good" if read_again else "waiting", str(os.getpid()))
+
+
+def traced() -> Traced:
+    """The bundled log's first two manoeuvres, at ten times their speed."""
+    player = first_manoeuvres()
+    return Traced(LOG.name, player._load, 10.0)
 
 
 def campaign(by_hand: ByHand = NOTHING) -> Campaign:

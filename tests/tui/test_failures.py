@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from advisor.problems import Problem, UnusableInputError
+from advisor.tui.panes.alarm import Alarm
 from advisor.tui.panes.big_word import BigWord
 from advisor.tui.source import LinkHealth
 from tests.tui import flights
@@ -61,3 +62,14 @@ async def test_a_report_that_arrives_while_the_screen_is_taken_down_does_no_harm
     async with stage(flights.state(3)) as here:
         await here.app.screen.query_one("#verdict-block").remove()
         here.app.screen.show(here.app.view)
+
+
+async def test_a_disk_that_takes_nothing_is_told_across_both_screens():
+    source = HandFedSource()
+    async with stage(flights.state(1), source=source) as here:
+        assert not here.app.screen.query_one(Alarm).display
+        source.condition = LinkHealth("good", "412 messages/s.", alarm="the disk takes no recording")
+        await here.until(lambda: "the disk takes no recording" in here.words("Alarm"))
+        assert here.app.screen.query_one(Alarm).display
+        await here.press("e")
+        assert "the disk takes no recording" in here.words("Alarm")

@@ -8,6 +8,7 @@ from textual.events import Resize
 
 from advisor.tui import keys
 from advisor.tui.hand import HandDecision, Verb
+from advisor.tui.panes.alarm import Alarm
 from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.channels import Channels
 from advisor.tui.panes.criterion import Criterion
@@ -56,6 +57,7 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
     def compose(self) -> ComposeResult:
         """The panes in three columns; the style sheet shows what there is room for."""
         yield StatusLine()
+        yield Alarm()
         yield PaneTabs([pane.TITLE for pane in PANES])
         with Container(id="panes"):
             for column, panes in _COLUMNS.items():

@@ -3,6 +3,7 @@
 from textual.app import ComposeResult
 from textual.events import Resize
 
+from advisor.tui.panes.alarm import Alarm
 from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.big_word import BigWord, Why
 from advisor.tui.panes.crew_notes import CrewNotes
@@ -37,6 +38,7 @@ The large word is what to do now:
     def compose(self) -> ComposeResult:
         """From top to bottom in the order of urgency."""
         yield StatusLine()
+        yield Alarm()
         yield BigWord()
         yield Why()
         yield LastVerdict()

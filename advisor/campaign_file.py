@@ -1,0 +1,105 @@
+"""The file beside a recording that keeps how the flight test is advised: ``flight.campaign.yaml``.
+
+``advisor live --resume`` reads the file, so that nobody has to remember the options of the first start.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, get_args
+
+import yaml
+
+from advisor.aircraft import Aircraft, Rule
+from advisor.config import parse_aircraft
+from advisor.problems import ConfigurationError
+from advisor.whole_file import write_whole
+from advisor.yaml_file import read_yaml
+
+SUFFIX = ".campaign.yaml"
+_KEYS = ("master", "rule", "target_system", "aircraft")
+_HEADING = "# How this flight test is advised; `advisor live --resume` reads this file with its recording.\n"
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignFile:
+    """The options of a flight test that a resumed one keeps."""
+
+    master: str
+    """Connection, as in pymavlink."""
+    rule: Rule | None = None
+    """Rule of the command line; None: the aircraft file's."""
+    target_system: int | None = None
+    aircraft: Any = None
+    """Content of the aircraft file; None: no file."""
+
+    def parsed_aircraft(self, origin: str) -> Aircraft:
+        """The aircraft of the flight test, by the rule of the command line where there is one.
+
+        Parameters
+        ----------
+        origin
+            File that mistakes are said of.
+
+        Raises
+        ------
+        ConfigurationError
+            The content is no aircraft file.
+        """
+        aircraft = parse_aircraft(self.aircraft or {}, origin)
+        if self.rule is None:
+            return aircraft
+        return replace(aircraft, campaign=replace(aircraft.campaign, rule=self.rule))
+
+
+def path_beside(recording: Path) -> Path:
+    """Where the options of a flight test are kept."""
+    return recording.with_suffix(SUFFIX)
+
+
+def write_campaign(recording: Path, campaign: CampaignFile) -> None:
+    """Keep the options beside a recording.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    content = {key: value for key in _KEYS if (value := getattr(campaign, key)) is not None}
+    write_whole(
+        path_beside(recording), _HEADING + yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
+    )
+
+
+def read_campaign(recording: Path) -> CampaignFile | None:
+    """Read the options of a flight test; None where none are kept.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be read, or is not what ``write_campaign`` writes.
+    """
+    path = path_beside(recording)
+    if not path.exists():
+        return None
+    content = read_yaml(path, "Mend the file, or move it away and give the options again.")
+    known = isinstance(content, dict) and set(content) <= set(_KEYS)
+    if (
+        not known
+        or not isinstance(content.get("master"), str)
+        or content.get("rule") not in (None, *get_args(Rule))
+    ):
+        raise ConfigurationError(
+            f"{path}: must hold master and may hold {', '.join(_KEYS[1:])}. Move the file away and give the "
+            "options again."
+        )
+    return CampaignFile(**content)
+
+
+def _is_campaign(content: Any) -> bool:
+    return (
+        isinstance(content, dict)
+        and set(content) <= set(_KEYS)
+        and isinstance(content.get("master"), str)
+        and content.get("rule") in (None, *get_args(Rule))
+        and isinstance(content.get("target_system", 1), int)
+    )

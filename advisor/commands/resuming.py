@@ -1,0 +1,165 @@
+"""How a flight test on a live link starts: anew, from a recording, or on a link that still runs."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import click
+
+from advisor.campaign_file import CampaignFile, read_campaign, write_campaign
+from advisor.mavlink.keeping import Keeping, new_door
+from advisor.mavlink.link_process import LinkProcess, end
+from advisor.mavlink.recording_file import default_recording, recordings_folder
+from advisor.mavlink.running import RunningLink, running_alone
+from advisor.problems import ConfigurationError
+
+NEWEST = "the newest"
+"""Value of ``--resume`` without a recording."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """What a flight test begins with."""
+
+    campaign: CampaignFile
+    recording: Path | None
+    """File that is written; None: nothing is recorded."""
+    goes_on: bool = False
+    """The recording exists and is appended to."""
+    earlier: tuple[Path, ...] = ()
+    """Logs of earlier flights of the campaign, which are only read."""
+
+
+def start_of(
+    asked: CampaignFile,
+    resume: str | None,
+    further: Sequence[Path],
+    record_to: str | None,
+    recorded: bool = True,
+) -> Start:
+    """Turn the options of ``advisor live`` into a start.
+
+    Parameters
+    ----------
+    asked
+        Options of the command line; an empty ``master`` and None are those not given.
+    resume
+        Recording of which the flight test is taken up, or ``NEWEST``; None: a new flight test.
+    further
+        Recordings of the same flight test that follow on ``resume``.
+    record_to
+        File or folder of the recording; None: the user's own folder, or the last recording taken up.
+
+    Raises
+    ------
+    ConfigurationError
+        A recording is missing, or no connection is known.
+    """
+    place = _in_folder(record_to)
+    if resume is None:
+        if not asked.master:
+            raise ConfigurationError(
+                "Missing option '--master': say where the vehicle is heard, e.g. "
+                "--master udpin:0.0.0.0:14550."
+            )
+        return Start(asked, (place or default_recording()) if recorded else None)
+    logs = [_newest(place.parent if place else None) if resume == NEWEST else Path(resume), *further]
+    for log in logs:
+        if not log.is_file():
+            raise ConfigurationError(f"--resume: there is no recording {log}; see {recordings_folder()}.")
+    before = read_campaign(logs[-1])
+    campaign = _over(asked, before)
+    if not campaign.master:
+        raise ConfigurationError(
+            f"--resume: nothing beside {logs[-1]} says where the vehicle is heard; give --master."
+        )
+    if place is not None:
+        return Start(campaign, place, earlier=tuple(logs))
+    return Start(campaign, logs[-1], goes_on=True, earlier=tuple(logs[:-1]))
+
+
+@contextmanager
+def started(
+    start: Start, source_system: int, signing_key: bytes | None, request_rates: bool, announce: bool
+) -> Iterator[LinkProcess]:
+    """Run the process of the link, or take over the one that runs; the process ends with the context.
+
+    Raises
+    ------
+    UnusableInputError
+        The connection cannot be opened, or the recording cannot be made or taken up.
+    """
+    keeping = Keeping(
+        start.campaign.master,
+        new_door(),
+        source_system,
+        start.campaign.target_system,
+        start.recording,
+        start.goes_on,
+        signing_key,
+        request_rates,
+        announce,
+    )
+    running = _left_alone(start)
+    if running is not None:
+        keeping = replace(keeping, door=running.door)
+    with LinkProcess(keeping, running) as process:
+        if process.recording is not None:
+            _keep_options(process.recording, start.campaign)
+        yield process
+
+
+def _left_alone(start: Start) -> RunningLink | None:
+    """The link that still records for this flight test; one on the same connection for another is ended."""
+    mine = None
+    for running in running_alone():
+        if start.goes_on and running.recording and _same(running.recording, start.recording):
+            mine = running
+        elif running.master == start.campaign.master:
+            end(running)
+            said = (
+                f"an advisor that ended without being asked to had left {running.master} open; it is closed"
+            )
+            again = f"; --resume {running.recording} takes its flight test up" if running.recording else ""
+            click.echo(said + again, err=True)
+    return mine
+
+
+def _same(a: Path, b: Path | None) -> bool:
+    return b is not None and a.resolve() == b.resolve()
+
+
+def _over(asked: CampaignFile, before: CampaignFile | None) -> CampaignFile:
+    """The options asked for, and those of before where none are."""
+    if before is None:
+        return asked
+    return CampaignFile(
+        asked.master or before.master,
+        asked.rule or before.rule,
+        asked.target_system or before.target_system,
+        before.aircraft if asked.aircraft is None else asked.aircraft,
+    )
+
+
+def _in_folder(place: str | None) -> Path | None:
+    """The file of the recording; a folder gets one named by the time."""
+    if place is None:
+        return None
+    is_folder = Path(place).is_dir() or place.endswith(("/", "\\"))
+    return default_recording(Path(place)) if is_folder else Path(place)
+
+
+def _newest(folder: Path | None) -> Path:
+    folder = folder or recordings_folder()
+    recordings = sorted(folder.glob("*.tlog"), key=lambda path: path.stat().st_mtime)
+    if not recordings:
+        raise ConfigurationError(f"--resume: there is no recording in {folder}; name one.")
+    return recordings[-1]
+
+
+def _keep_options(recording: Path, campaign: CampaignFile) -> None:
+    try:
+        write_campaign(recording, campaign)
+    except OSError as error:
+        click.echo(f"the options cannot be kept for --resume: {error.strerror or error}", err=True)

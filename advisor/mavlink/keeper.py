@@ -1,0 +1,250 @@
+"""The process of the link: listens, records, and passes on what it hears to whoever reads it.
+
+python -m advisor.mavlink.keeper
+
+Nothing is estimated, drawn or decoded here, so nothing of that can take the link or the recording along.
+"""
+
+import contextlib
+import os
+import pickle
+import signal
+import sys
+import threading
+import time
+from multiprocessing.connection import Connection, Listener
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Thread
+
+from advisor.mavlink import running
+from advisor.mavlink.announce import Announcer
+from advisor.mavlink.health import Notice
+from advisor.mavlink.inquiry import Inquiry
+from advisor.mavlink.keeping import Door, Guard, Heard, Hello, Judged, Keeping, Listen, Stop, Told
+from advisor.mavlink.link import Link
+from advisor.mavlink.outgoing import Talker
+from advisor.mavlink.rates import STREAMS, RateRequest
+from advisor.problems import UnusableInputError
+
+TELL_EVERY_S = 0.2
+ALONE_FOR_S = 60.0
+"""So long a link that nobody looks after waits for a silent vehicle, then it ends; the recording is whole."""
+MOST_BEHIND_BYTES = 64_000_000
+"""A reader further behind is cut off; it comes again and reads the recording."""
+
+_Message = Hello | Heard | Told
+
+
+class Reader:
+    """Sends to one reader from a thread of its own, so that a slow one holds up nobody."""
+
+    def __init__(self, connection: Connection, hello: Hello) -> None:
+        self._connection = connection
+        self._waiting: SimpleQueue[_Message] = SimpleQueue()
+        self._behind_bytes = 0
+        self.gone = False
+        self.send(hello)
+        Thread(target=self._run, daemon=True).start()
+
+    def send(self, message: _Message) -> None:
+        """Hand over a message."""
+        if isinstance(message, Heard):
+            self._behind_bytes += len(message.records)
+        self._waiting.put(message)
+
+    def _run(self) -> None:
+        with contextlib.suppress(OSError):
+            while self._behind_bytes <= MOST_BEHIND_BYTES:
+                message = self._waiting.get()
+                self._connection.send(message)
+                if isinstance(message, Heard):
+                    self._behind_bytes -= len(message.records)
+        self.gone = True
+        self._connection.close()
+
+
+class Keeper:
+    """Keeps one link until told to stop, or until it is alone and the vehicle silent.
+
+    Parameters
+    ----------
+    keeping
+        The link and its recording.
+    """
+
+    def __init__(self, keeping: Keeping) -> None:
+        self._keeping = keeping
+        self._announcer = Announcer() if keeping.announce else None
+        self._link = Link(
+            keeping.master,
+            source_system=keeping.source_system,
+            target_system=keeping.target_system,
+            record_to=keeping.record_to,
+            goes_on=keeping.goes_on,
+            key=keeping.signing_key,
+            talkers=_talkers(keeping, self._announcer),
+            inherited=keeping.inherited,
+        )
+        self._listener = Listener(keeping.door.address, authkey=keeping.door.key)
+        self._arrived: SimpleQueue[Connection] = SimpleQueue()
+        self._readers: list[Reader] = []
+        self._passed_on = 0
+        self._guards = 0
+        self._alone_since_s: float | None = None
+        self._lock = threading.Lock()
+        self._stop = threading.Event()
+
+    def start(self) -> Path | None:
+        """Open the link; the file of the recording is returned.
+
+        Raises
+        ------
+        UnusableInputError
+            The connection cannot be opened, or the recording cannot be made.
+        """
+        self._link.start()
+        self._passed_on = self._hello().before
+        Thread(target=self._accept, daemon=True).start()
+        return self.recording
+
+    @property
+    def recording(self) -> Path | None:
+        """File of the recording; None where nothing is recorded."""
+        recorder = self._link.recorder
+        return recorder.path if recorder else None
+
+    def run(self) -> None:
+        """Pass on what is heard; close link and recording in the end."""
+        told_s = time.monotonic()
+        try:
+            while not self._stop.is_set() and not self._abandoned():
+                records = self._link.read_records(0.05)
+                if records:
+                    self._send(Heard(self._passed_on, records))
+                    self._passed_on += len(records)
+                self._admit()
+                if time.monotonic() - told_s >= TELL_EVERY_S:
+                    told_s = time.monotonic()
+                    self._tell()
+        finally:
+            self._link.stop()
+            self._tell()
+            self._listener.close()
+
+    def stop(self) -> None:
+        """End ``run`` at the next opportunity."""
+        self._stop.set()
+
+    def _admit(self) -> None:
+        with contextlib.suppress(Empty):
+            while True:
+                self._readers.append(Reader(self._arrived.get_nowait(), self._hello()))
+
+    def _hello(self) -> Hello:
+        recorder = self._link.recorder
+        if recorder is None:
+            return Hello(None, 0, b"", 0)
+        recorded = recorder.recorded()
+        return Hello(recorder.path, recorded.written, recorded.unsaved, recorder.before)
+
+    def _tell(self) -> None:
+        notices: tuple[Notice, ...] = tuple(self._link.take_notices()) if self._readers else ()
+        self._send(Told(self._link.statistics, notices))
+
+    def _send(self, message: _Message) -> None:
+        self._readers = [reader for reader in self._readers if not reader.gone]
+        for reader in self._readers:
+            reader.send(message)
+
+    def _abandoned(self) -> bool:
+        """Whether nobody looks after the link, and the vehicle has been silent for long."""
+        since_s, now_s = self._alone_since_s, time.monotonic()
+        if since_s is None or now_s - since_s < ALONE_FOR_S:
+            return False
+        return self._link.statistics.silent_s > ALONE_FOR_S
+
+    # From here on: threads of the connections.
+
+    def _accept(self) -> None:
+        while not self._stop.is_set():
+            try:
+                connection = self._listener.accept()
+            except Exception:  # a caller without the key, or one that hung up; at the end the listener itself
+                if self._stop.is_set():
+                    return
+                time.sleep(0.01)
+                continue
+            Thread(target=self._serve, args=(connection,), daemon=True).start()
+
+    def _serve(self, connection: Connection) -> None:
+        guards = False
+        with contextlib.suppress(EOFError, OSError):
+            while True:
+                match connection.recv():
+                    case Listen():
+                        self._arrived.put(connection)
+                    case Guard():
+                        guards = True
+                        self._guarded(+1)
+                    case Judged(maneuver, sentence, stop) if self._announcer:
+                        self._announcer.judged(maneuver, sentence, stop)
+                    case Stop():
+                        self._stop.set()
+                        return
+        if guards:
+            self._guarded(-1)
+
+    def _guarded(self, more: int) -> None:
+        with self._lock:
+            self._guards += more
+            self._alone_since_s = None if self._guards else time.monotonic()
+            link = self._keeping
+            alone = self._guards == 0
+            with contextlib.suppress(OSError):
+                running.note(running.RunningLink(os.getpid(), link.master, self.recording, link.door, alone))
+
+
+def _talkers(keeping: Keeping, announcer: Announcer | None) -> list[Talker]:
+    talkers: list[Talker] = [announcer] if announcer else []
+    if keeping.request_rates:
+        talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
+    return talkers
+
+
+def _clear(door: Door) -> None:
+    """Remove what a local socket leaves in the file system."""
+    if os.name != "nt":
+        with contextlib.suppress(OSError):
+            Path(door.address).unlink(missing_ok=True)
+            Path(door.address).parent.rmdir()
+
+
+def main() -> None:
+    """Keep the link that standard input describes; the first answer on standard output is its recording."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the screens, which stop this process
+    keeping: Keeping = pickle.load(sys.stdin.buffer)
+    with contextlib.suppress(OSError):  # left by a process of this link that was killed
+        if os.name != "nt":
+            Path(keeping.door.address).unlink(missing_ok=True)
+    try:
+        keeper = Keeper(keeping)
+        signal.signal(signal.SIGTERM, lambda number, frame: keeper.stop())
+        answer: Path | Exception | None = keeper.start()
+    except Exception as failure:
+        answer = failure
+    pickle.dump(answer, sys.stdout.buffer)
+    sys.stdout.buffer.flush()
+    sys.stdout.close()
+    if isinstance(answer, Exception):
+        _clear(keeping.door)
+        sys.exit(0 if isinstance(answer, UnusableInputError) else 1)
+    try:
+        keeper.run()
+    finally:
+        running.forget(os.getpid())
+        _clear(keeping.door)
+
+
+if __name__ == "__main__":
+    main()

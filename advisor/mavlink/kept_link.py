@@ -1,0 +1,153 @@
+"""A link that a process of its own keeps, as its readers see it."""
+
+import time
+from collections.abc import Iterator
+from functools import cached_property
+from multiprocessing.connection import Connection
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+from advisor.flight.messages import Columns
+from advisor.mavlink.health import LinkStatistics, Notice
+from advisor.mavlink.keeping import Door, Heard, Hello, Judged, Listen, Told
+
+if TYPE_CHECKING:
+    from advisor.mavlink.frames import FrameScanner
+
+PIECE_BYTES = 262_144
+"""Bytes of the recording that one ``read`` decodes: some 5,000 messages."""
+RETRY_EVERY_S = 0.1
+
+
+class KeptLink:
+    """Reads everything that the process of a link has heard from the beginning, then what it hears.
+
+    A reader that is started again therefore comes to the same campaign. When the process of the link
+    is started again, the reader goes on where it was.
+
+    Parameters
+    ----------
+    door
+        Where the process is spoken to.
+    """
+
+    def __init__(self, door: Door) -> None:
+        self._door = door
+        self._connection: Connection | None = None
+        self._past: Iterator[bytes] = iter(())
+        self._position = 0
+        """Bytes of the recording that were read."""
+        self._before = 0
+        self._next_try_s = 0.0
+        self._notices: list[Notice] = []
+        self._broken = False
+        self.statistics = LinkStatistics()
+        """How the link is doing, as told last."""
+        self.catching_up = True
+        """Whether what was heard before is still being read."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._connection is not None:
+            self._connection.close()
+
+    def read(self, timeout_s: float = 0.1) -> list[Columns]:
+        """The next messages in order of arrival, or nothing when none came in time."""
+        if self._connection is None:
+            self._connect(timeout_s)
+        piece = next(self._past, None)
+        if piece is None:
+            self.catching_up = False
+            piece = self._hear(timeout_s)
+        return self._scanner.feed(piece) if piece else []
+
+    def take_notices(self) -> list[Notice]:
+        """What happened to the link since the last call, oldest first."""
+        notices, self._notices = self._notices, []
+        return notices
+
+    def judged(self, maneuver: int, sentence: str, stop: str | None) -> None:
+        """Have a verdict announced, unless the manoeuvre belongs to a recording that was taken up."""
+        if self._connection is not None and self._position > self._before:
+            self._send(Judged(maneuver, sentence, stop))
+
+    @cached_property
+    def _scanner(self) -> "FrameScanner":
+        # Loaded by the process that reads, not by the one that only names the link.
+        from advisor.mavlink.frames import FrameScanner
+
+        return FrameScanner()
+
+    def _connect(self, timeout_s: float) -> None:
+        if time.monotonic() < self._next_try_s:
+            time.sleep(min(timeout_s, RETRY_EVERY_S))
+            return
+        self._next_try_s = time.monotonic() + RETRY_EVERY_S
+        try:
+            connection = self._door.open()
+            connection.send(Listen())
+            hello = connection.recv()
+        except (OSError, EOFError):
+            return
+        assert isinstance(hello, Hello)
+        if self._broken:
+            self._say("the process of the link has ended and was started again; the recording goes on")
+        self._connection, self._broken = connection, False
+        self._before = hello.before
+        self._past = self._records_of(hello)
+        self.catching_up = True
+
+    def _records_of(self, hello: Hello) -> Iterator[bytes]:
+        """What the recording holds beyond what was read, in pieces."""
+        if hello.recording is not None and self._position < hello.written:
+            with hello.recording.open("rb") as file:
+                file.seek(self._position)
+                while self._position < hello.written:
+                    piece = file.read(min(PIECE_BYTES, hello.written - self._position))
+                    if not piece:
+                        break
+                    self._position += len(piece)
+                    yield piece
+        # A process that was killed may have passed on more than the disk holds.
+        unread = hello.unsaved[max(0, self._position - hello.written) :]
+        self._position = hello.written + len(hello.unsaved)
+        if unread:
+            yield unread
+
+    def _hear(self, timeout_s: float) -> bytes:
+        """The next records of the process; nothing when none came in time."""
+        if self._connection is None:
+            return b""
+        try:
+            while self._connection.poll(timeout_s):
+                match self._connection.recv():
+                    case Heard(at, records) if at + len(records) > self._position:
+                        self._position = at + len(records)
+                        return records
+                    case Told(statistics, notices):
+                        self.statistics = statistics
+                        self._notices += notices
+                        return b""
+        except (OSError, EOFError):
+            self._lose()
+        return b""
+
+    def _send(self, message: object) -> None:
+        try:
+            if self._connection is not None:
+                self._connection.send(message)
+        except OSError:
+            self._lose()
+
+    def _lose(self) -> None:
+        if self._connection is not None:
+            self._connection.close()
+        self._connection, self._broken = None, True
+        self._say("the process of the link has ended; it is started again")
+
+    def _say(self, text: str) -> None:
+        self._notices.append(Notice(time.time(), text))
