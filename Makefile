@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality study-second pictures clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality survival study-second pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -96,6 +96,9 @@ robustness: .venv/.developed ## the estimator's own start on 2,000 random aircra
 
 study-quality: .venv/.developed ## good manoeuvres rejected, and other tests marked as studies
 	$(BIN)/python -m pytest -m study
+
+survival: .venv/.developed ## a live campaign in which fifty processes are killed (three minutes)
+	$(BIN)/python -m pytest -m study tests/link/test_never_lost.py
 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
 	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs

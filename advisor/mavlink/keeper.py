@@ -13,6 +13,7 @@ import sys
 import threading
 import time
 from multiprocessing.connection import Connection, Listener
+from multiprocessing.reduction import send_handle
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
@@ -186,6 +187,7 @@ class Keeper:
                         self._arrived.put(connection)
                     case Guard():
                         guards = True
+                        self._lend_socket(connection)
                         self._guarded(+1)
                     case Judged(maneuver, sentence, stop) if self._announcer:
                         self._announcer.judged(maneuver, sentence, stop)
@@ -194,6 +196,13 @@ class Keeper:
                         return
         if guards:
             self._guarded(-1)
+
+    def _lend_socket(self, connection: Connection) -> None:
+        """Share a UDP socket: what arrives after the death of this process waits in it for the next one."""
+        descriptor = self._link.descriptor if os.name == "posix" else None
+        connection.send(descriptor is not None)
+        if descriptor is not None:
+            send_handle(connection, descriptor, None)
 
     def _guarded(self, more: int) -> None:
         with self._lock:

@@ -52,7 +52,7 @@ class Keeping:
     request_rates: bool = False
     announce: bool = False
     inherited: int | None = None
-    """File descriptor of the UDP socket that the parent holds, in which packets wait for the next process."""
+    """File descriptor of the UDP socket of an earlier process, in which packets wait; None: open one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,10 @@ class Listen:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """Tells that the sender looks after the process: when it goes without ``Stop``, the process is alone."""
+    """Tells that the sender looks after the process: when it goes without ``Stop``, the process is alone.
+
+    The answer says whether the descriptor of a UDP socket follows.
+    """
 
 
 @dataclass(frozen=True, slots=True)

@@ -152,6 +152,11 @@ class Link:
         """The local network port, which the system chose where the address says 0."""
         return self._transport.port if self._transport is not None else None
 
+    @property
+    def descriptor(self) -> int | None:
+        """File descriptor of a socket that another process can go on with; None where there is none."""
+        return self._transport.descriptor if self._transport is not None else None
+
     catching_up = False
     """A link of this process has no past that a reader would have to catch up with."""
 

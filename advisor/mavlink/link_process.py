@@ -3,21 +3,19 @@
 import contextlib
 import os
 import pickle
-import socket
 import subprocess
 import sys
 import threading
 from dataclasses import replace
 from multiprocessing.connection import Connection
+from multiprocessing.reduction import recv_handle
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from advisor.mavlink.connection import parse_connection
 from advisor.mavlink.keeping import Guard, Keeping, Stop
 from advisor.mavlink.kept_link import KeptLink
 from advisor.mavlink.running import RunningLink
-from advisor.mavlink.sockets import udp_socket
 
 RETRY_EVERY_S = 1.0
 PATIENCE_S = 10.0
@@ -39,7 +37,7 @@ class LinkProcess:
         self._keeping = keeping
         self._running = running
         self._process: subprocess.Popen[bytes] | None = None
-        self._socket: socket.socket | None = None
+        self._socket: int | None = None
         self._guard: Connection | None = None
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._look_after, name="guard", daemon=True)
@@ -70,7 +68,6 @@ class LinkProcess:
             The connection cannot be opened, or the recording cannot be made.
         """
         if self._running is None:
-            self._hold_socket()
             self._start()
             # Started again, the process goes on with the recording that the first one made.
             goes_on = self.recording is not None
@@ -91,16 +88,7 @@ class LinkProcess:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
-        if self._socket is not None:
-            self._socket.close()
-
-    def _hold_socket(self) -> None:
-        """Open a UDP socket here, so that packets wait in the kernel while the process is started again."""
-        address = parse_connection(self._keeping.master)
-        if address.kind.startswith("udp") and os.name == "posix":
-            with contextlib.suppress(OSError):  # the process will meet the same error, and can say so
-                self._socket = udp_socket(address)
-                self._keeping = replace(self._keeping, inherited=self._socket.fileno())
+        self._let_go()
 
     def _start(self) -> None:
         process = subprocess.Popen(
@@ -110,7 +98,7 @@ class LinkProcess:
             stderr=subprocess.DEVNULL,
             # A terminal that is closed, or an interrupt in it, is nothing to the recording.
             start_new_session=True,
-            pass_fds=[self._socket.fileno()] if self._socket else [],
+            pass_fds=[] if self._socket is None else [self._socket],
         )
         assert process.stdin is not None
         assert process.stdout is not None
@@ -127,9 +115,19 @@ class LinkProcess:
         self._process, self.recording = process, answer
 
     def _stand_guard(self) -> Connection:
+        """Tell the process that somebody looks after it, and hold its UDP socket for the next process."""
         connection = self._keeping.door.open()
         connection.send(Guard())
+        if connection.recv():
+            self._let_go()
+            self._socket = recv_handle(connection)
+            self._keeping = replace(self._keeping, inherited=self._socket)
         return connection
+
+    def _let_go(self) -> None:
+        if self._socket is not None:
+            os.close(self._socket)
+            self._socket = None
 
     def _look_after(self) -> None:
         """Wait for the end of the process; unless it was asked for, start the process again."""

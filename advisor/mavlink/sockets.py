@@ -11,25 +11,6 @@ RECEIVE_BUFFER_BYTES = 4 * 1024 * 1024  # at the usual 208 kB a busy machine los
 _MOST_CHUNKS = 512  # taken in one go, so that a flood cannot keep the reader from handing over
 
 
-def udp_socket(address: Address) -> socket.socket:
-    """A socket for UDP, bound where ``udpin`` listens.
-
-    Raises
-    ------
-    OSError
-        The port is taken, or is not this computer's.
-    """
-    end = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    end.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
-    try:
-        if address.kind == "udpin":
-            end.bind((address.host, address.port))
-    except OSError:
-        end.close()
-        raise
-    return end
-
-
 class UdpTransport(Transport):
     """UDP, listening (``udpin``) or calling (``udpout``).
 
@@ -45,8 +26,21 @@ class UdpTransport(Transport):
         self._remote: Peer | None = None
         if address.kind == "udpout":
             self._remote = (socket.gethostbyname(address.host), address.port)
-        self._socket = udp_socket(address) if inherited is None else socket.socket(fileno=inherited)
+        if inherited is None:
+            self._open(address)
+        else:
+            self._socket = socket.socket(fileno=inherited)
         self._socket.setblocking(False)
+
+    def _open(self, address: Address) -> None:
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
+        try:
+            if address.kind == "udpin":
+                self._socket.bind((address.host, address.port))
+        except OSError:
+            self._socket.close()
+            raise
 
     def wait(self, timeout_s: float) -> bool:
         """Whether bytes are there."""
@@ -82,6 +76,11 @@ class UdpTransport(Transport):
     def port(self) -> int | None:
         """The local port."""
         return int(self._socket.getsockname()[1])
+
+    @property
+    def descriptor(self) -> int | None:
+        """The socket's own."""
+        return self._socket.fileno()
 
 
 class StreamTransport(Transport):

@@ -51,3 +51,8 @@ class Transport(ABC):
     def port(self) -> int | None:
         """The local network port; None when there is none."""
         return None
+
+    @property
+    def descriptor(self) -> int | None:
+        """File descriptor of a socket that another process can go on with; None where there is none."""
+        return None

@@ -96,10 +96,22 @@ class Advising:
                 return pid
         return None
 
+    @property
+    def whole(self) -> bool:
+        """Whether all three processes live, and the process of the link is looked after."""
+        return (
+            self.narrator is not None
+            and self.keeper is not None
+            and not self.note_of_keeper().get("alone", True)
+        )
+
     def note_of_keeper(self) -> dict[str, object]:
         """What the process of the link notes of itself."""
         path = self.folder / "data" / "inflight-advisor" / "links" / f"{self.keeper}.json"
-        content: dict[str, object] = json.loads(path.read_text())
+        try:
+            content: dict[str, object] = json.loads(path.read_text())
+        except OSError:  # it has just ended
+            return {}
         return content
 
     def _file(self, kind: str) -> Path:
