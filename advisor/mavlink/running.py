@@ -48,14 +48,13 @@ def running_alone() -> Iterator[RunningLink]:
     for path in sorted(_folder().glob("*.json")):
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
             link = _read(path)
-            if not link.alone:
-                continue
             try:
                 link.door.open().close()
             except OSError:
                 forget(link.pid)
                 continue
-            yield link
+            if link.alone:
+                yield link
 
 
 def _read(path: Path) -> RunningLink:
