@@ -8,13 +8,13 @@ import click
 
 from advisor.aircraft import Rule
 from advisor.commands.options import (
+    NEWEST,
     aircraft_option,
     decided_on,
     no_marks_option,
     rule_option,
     target_system_option,
 )
-from advisor.commands.resuming import NEWEST, start_of, started
 from advisor.commands.screen import advise
 from advisor.problems import ConfigurationError
 
@@ -94,6 +94,7 @@ def command(
     if logs and resume is None:
         raise ConfigurationError("LOG needs --resume: the flight test of these logs is taken up.")
     from advisor.campaign_file import CampaignFile
+    from advisor.commands.resuming import start_of, started
     from advisor.mavlink.connection import parse_connection
     from advisor.mavlink.signing import read_key
     from advisor.tui.live import LinkSource

@@ -21,6 +21,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 USAGE, UNUSABLE, INTERNAL = 2, 3, 70
 """Exit codes: wrong usage or configuration, input that cannot serve, a fault of the advisor itself."""
+NEWEST = "the newest"
+"""Value of ``--resume`` without a recording."""
 RULES = ("continuous", "separate", "information")
 
 

@@ -8,14 +8,12 @@ from pathlib import Path
 import click
 
 from advisor.campaign_file import CampaignFile, read_campaign, write_campaign
+from advisor.commands.options import NEWEST
 from advisor.mavlink.keeping import Keeping, new_door
 from advisor.mavlink.link_process import LinkProcess, end
 from advisor.mavlink.recording_file import default_recording, recordings_folder
 from advisor.mavlink.running import RunningLink, running_alone
 from advisor.problems import ConfigurationError
-
-NEWEST = "the newest"
-"""Value of ``--resume`` without a recording."""
 
 
 @dataclass(frozen=True, slots=True)

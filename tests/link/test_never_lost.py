@@ -76,11 +76,11 @@ def frames_missing(advising: Advising, flight: Sequence[Record]) -> int:
 
 
 def test_each_process_may_die_once_and_no_verdict_is_missed(advising: Advising):
-    flight = until(FLIGHT, 55.0)
+    flight = until(FLIGHT, 44.0)
     survives(advising, flight, 2, ["narrator", "screen", "keeper"], SPEED)
     assert verdicts(advising.said) == analyzed(advising.recording)
     assert all("ACCEPTED" in line for line in verdicts(advising.said))
-    assert frames_missing(advising, flight) <= SPEED * len(flight) / 55.0
+    assert frames_missing(advising, flight) <= SPEED * len(flight) / 44.0
 
 
 @pytest.mark.study
