@@ -72,7 +72,6 @@ class _Found:
     """What the names take away, mean square over the floor's."""
     numbers: WrongNumbers
     bias: Cause | None
-    late: Cause | None
     speed: Cause | None
     """The change of air speed, when ignoring it would cost; a cause only if it stands in ``apart``."""
     speed_outweighs: bool
@@ -119,10 +118,10 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     judge_speed = speed_is_unasked if told else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         apart = (speed, *apart)
-    unknown = e.leftover is not None and late is None
+    unknown = e.leftover is not None
     if unknown and _is_little_beside(numbers, max(removed, 0.0) + left, e):
         unknown = False
-    return _Found(named, left, removed, numbers, bias, late, speed, outweighs, apart, unknown)
+    return _Found(named, left, removed, numbers, bias, speed, outweighs, apart, unknown)
 
 
 def _is_little_beside(numbers: WrongNumbers, rest: float, e: Evidence) -> bool:
@@ -159,7 +158,7 @@ def _verdict(found: _Found, causes: Sequence[Cause]) -> Verdict:
     wrong = numbers.are_wrong and numbers.outweigh_the_air and (mostly or not found.named)
     if found.unknown:
         return "unknown"
-    if wrong and not (found.bias or found.late or found.speed in found.apart):
+    if wrong and not (found.bias or found.speed in found.apart):
         return "parameters"
     return "effect" if any(c.present for c in causes) else "none"
 
