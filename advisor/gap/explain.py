@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import beyond_known
+from advisor.gap.candidates.known import beyond_known, beyond_servo
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.measure import file_model_of
@@ -56,7 +56,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     progress
         Called with a sentence and the share done.
     """
-    variants = beyond_known(aircraft.effects, variants_for(problem.flights))
+    variants = beyond_servo(aircraft.elevator, variants_for(problem.flights))
+    variants = beyond_known(aircraft.effects, variants)
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
     problem, stages, law = _named(problem, baseline, variants, progress)
     progress("looking at the air", 0.7)

@@ -52,6 +52,12 @@ _CHANNELS = {"alpha": "AOA_SSA at 50 Hz", "a_z": "RAW_IMU at 50 Hz", "theta": "A
 _NOT_OF_THE_STICK = frozenset({"ground_effect", "thrust_moment", "airspeed_variation", "alpha_dot"})
 """Effects that the elevator alone cannot show: something else must vary."""
 
+OF_ONE_IMU = ("alpha_lag", "alpha_skew", "alpha_vane_offset", "pitch_rate_scale", "accelerometer_offset")
+"""What an angle of attack cannot show that an autopilot makes of its own pitch rate and accelerations: these
+go with it, and its lateness is its nature."""
+ONE_IMU = ("the angle of attack is made of the same inertial sensors", "a vane")
+"""Why, and what would show it."""
+
 
 def need_of(effect: str, flights: Flights) -> Need:
     """Why these flights cannot show an effect: its channel was not recorded, or did not vary."""

@@ -13,7 +13,7 @@ from advisor.gap.result import Cause, Verdict
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, speed_is_unasked
 from advisor.gap.search.stage import added_in
-from advisor.gap.verdict.apart import air_cause, alpha_bias_cause, alpha_lag_cause
+from advisor.gap.verdict.apart import air_cause, alpha_bias_cause
 from advisor.gap.verdict.causes import causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.wrong_numbers import WrongNumbers, wrong_numbers
@@ -51,7 +51,7 @@ class Judgement:
     causes: tuple[Cause, ...]
     """Likeliest first, at most five."""
     apart: tuple[Cause, ...]
-    """Those of them that no fit judges: the air, the offset, a late angle of attack, the air speed."""
+    """Those of them that no fit judges: the air, the offset, the air speed."""
     speed: Cause | None
     """The change of air speed, when ignoring it would cost, cause or not."""
     bias: Cause | None
@@ -106,15 +106,14 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     # Noise that the air makes hides nothing from a simulator that knows the air's motion.
     still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
     numbers = wrong_numbers(e, named, still)
-    late = alpha_lag_cause(kinematics, problem, named, left)
-    alone = not (named or late or numbers.are_wrong or e.leftover)
+    alone = not (named or numbers.are_wrong or e.leftover)
     bias = alpha_bias_cause(kinematics, named, problem, left, alone)
-    apart = tuple(c for c in (air_cause(e), bias, late) if c is not None)
+    apart = tuple(c for c in (air_cause(e), bias) if c is not None)
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
     outweighs = _speed_outweighs(e, max(numbers.gap, removed))
-    told = (named or bias or late or numbers.are_wrong) and not outweighs
+    told = (named or bias or numbers.are_wrong) and not outweighs
     judge_speed = speed_is_unasked if told else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         apart = (speed, *apart)
