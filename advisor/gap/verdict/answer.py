@@ -32,7 +32,7 @@ from advisor.gap.verdict.numbers import (
     waterfall_of,
 )
 from advisor.gap.verdict.statements import in_simulator
-from advisor.gap.verdict.text import sentence_of
+from advisor.gap.verdict.text import sentence_of, where_of_one
 
 
 def answer(
@@ -71,9 +71,11 @@ def answer(
     present = {c.effect for c in causes if c.present}
     effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
     nobodys_fault = effects.keys() - present if shrink is not None else ()
+    seen_once = len(problem.flights) == 1 and verdict == "unknown"
+    sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
     return Diagnosis(
         verdict=verdict,
-        sentence=sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft)),
+        sentence=where_of_one(where) if seen_once else sentence,
         gap=gap, where=where,
         causes=causes, shrink=shrink, waterfall=waterfall,
         cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), e.floor, present),

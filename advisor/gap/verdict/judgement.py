@@ -107,7 +107,8 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
     numbers = wrong_numbers(e, named, still)
     alone = not (named or numbers.are_wrong or e.leftover)
-    bias = alpha_bias_cause(kinematics, named, problem, left, alone)
+    seen_once = len(problem.flights) == 1
+    bias = None if seen_once else alpha_bias_cause(kinematics, named, problem, left, alone)
     apart = tuple(c for c in (air_cause(e), bias) if c is not None)
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
@@ -118,7 +119,7 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         apart = (speed, *apart)
     unknown = e.leftover is not None
-    if unknown and _is_little_beside(numbers, max(removed, 0.0) + left, e):
+    if unknown and not seen_once and _is_little_beside(numbers, max(removed, 0.0) + left, e):
         unknown = False
     return _Found(named, left, removed, numbers, bias, speed, outweighs, apart, unknown)
 

@@ -124,7 +124,8 @@ def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, V
         each = terms[name] - trims @ d[list(pair)]
         mean_trim = np.mean(trims, axis=0)
         together = mean_trim @ known[np.ix_(pair, pair)] @ mean_trim
-        apart = np.var(each[began] if np.count_nonzero(began) > 1 else each, ddof=1) / np.count_nonzero(began)
+        several = each[began] if np.count_nonzero(began) > 1 else each
+        apart = np.var(several, ddof=min(1, len(several) - 1)) / np.count_nonzero(began)
         values[name] = Value(float(np.mean(each[began])), float(np.sqrt(apart + max(together, 0.0))))
     for k, name in enumerate(DERIVATIVES):
         values[name] = Value(float(d[k]), float(np.sqrt(max(known[k, k], 0.0))))

@@ -25,6 +25,14 @@ def place(block: str) -> str:
     return _BLOCK[block]
 
 
+def where_of_one(where: Where) -> str:
+    """The sentence of a single manoeuvre, which shows where a gap lies and proves no cause of it."""
+    return (
+        f"Something acts {place(where.block)} that the simulator does not have; one manoeuvre cannot prove "
+        "what: fly two more."
+    )
+
+
 def sentence_of(
     verdict: Verdict,
     gap: Gap,
