@@ -79,6 +79,7 @@ def addition(
         variant=variant, fitted=fitted, held_out=held,
         gain=gain,
         removed=difference(problem, seen_before, seen_after, witness),
+        support=support_of(problem, known_before, known),
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant, gain),
         belief=belief, beforehand=beforehand, value=value, witness=witness,
@@ -163,6 +164,21 @@ def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
     return (
         bool(np.all(apart < _OF_PEAK * problem.flights.peaks)) or difference(problem, one, other) < _NOT_SEEN
     )
+
+
+def support_of(problem: Problem, before: HeldOut, after: HeldOut) -> float:
+    """Standard errors over manoeuvres by which the second leaves less of those kept out than the first.
+
+    Only what tells a cause by itself counts; see ``Flights.telling``. 0 for a single manoeuvre.
+    """
+    noise = np.ones(len(problem.channels)) if problem.instruments is None else problem.instruments
+    removed = (before.by_maneuver - after.by_maneuver) / noise**2
+    taken = np.mean(removed[:, problem.flights.telling], axis=1)
+    n = len(taken)
+    if n < 2:
+        return 0.0
+    error = float(np.std(taken, ddof=1)) / np.sqrt(n)
+    return float(np.mean(taken) / max(error, 1e-12))
 
 
 def difference(

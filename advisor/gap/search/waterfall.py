@@ -138,7 +138,8 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
             name: addition(problem, fewer, hold_out(problem, fewer), full, name, independent)
             for name, fewer in without.items()
         }
-        weakest = min(names, key=lambda name: missed[name].gain)
+        # What manoeuvres kept out do not support goes first, whatever it gains.
+        weakest = min(names, key=lambda name: (missed[name].is_supported, missed[name].gain))
         if missed[weakest].worth_naming:
             names.sort(key=lambda name: -missed[name].gain * _rank_of(problem, name))
             break
