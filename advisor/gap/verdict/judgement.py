@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.kinematics import KinematicCheck
+from advisor.gap.decision import Decision
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
@@ -16,6 +17,7 @@ from advisor.gap.search.stage import added_in
 from advisor.gap.verdict.apart import air_cause, alpha_bias_cause
 from advisor.gap.verdict.causes import causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
+from advisor.gap.verdict.ledger import decisions_of
 from advisor.gap.verdict.wrong_numbers import WrongNumbers, wrong_numbers
 
 _ALONE = 0.95
@@ -59,6 +61,8 @@ class Judgement:
     """What the simulator left before anything was added to it."""
     wrong_numbers: bool
     """Whether the file's derivatives are off, by themselves or beside the causes."""
+    decisions: tuple[Decision, ...]
+    """What was asked on the way; see ``ledger``."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,10 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     if e.constant_speed is not None and found.speed in found.apart:
         before = _at_constant_speed(e.problem, before, e.constant_speed, e.stages[-1].held_out)
     causes = _beside(verdict, causes, bool(found.named))
-    return Judgement(verdict, causes, found.apart, found.speed, found.bias, before, found.numbers.are_wrong)
+    return Judgement(
+        verdict, causes, found.apart, found.speed, found.bias, before, found.numbers.are_wrong,
+        decisions_of(e, found.numbers),
+    )  # fmt: skip
 
 
 def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:

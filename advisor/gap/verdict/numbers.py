@@ -45,6 +45,15 @@ def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: Held
     )  # fmt: skip
 
 
+def irreducible(left: FloatArray, floor: FloatArray, gap: Gap) -> float:
+    """Of what the final model leaves on manoeuvres kept out, the share that is noise and air.
+
+    ``left``, shape (channels,), is its mean square with the air's motion in it, which the gap is without.
+    """
+    whole = float(np.mean(np.maximum(left / floor**2, 1.0)))
+    return float(np.clip(1.0 - gap.after / whole, 0.0, 1.0))
+
+
 def shrink_of(
     e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_numbers: bool
 ) -> Shrink:
