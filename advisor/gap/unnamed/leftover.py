@@ -127,6 +127,9 @@ def left_over(
     if not disturbed and np.max(louder) < _RESTLESS:
         return None
     plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
+    if faint and not plain and first is not last:
+        # What no block explains better than any other is the error of the named effects' model.
+        return None
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
     least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else LEAST_OF_GAP
