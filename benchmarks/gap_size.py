@@ -2,10 +2,10 @@
 
     python -m benchmarks.gap_size
 
-Counted over ``advisor/gap``: its lines; its constants, which are names of numbers that decide or shape, outside
-the table of effects; comparisons with the name of an effect or a block outside that table; and how many of its
-functions have a cyclomatic complexity above 15 (McCabe 1976). ``LIMITS`` holds what the tree has. A limit
-falls, never rises: ``make check`` fails above one, and below one too, until the limit is lowered.
+Counted over ``advisor/gap`` are its lines; its constants, which are names of numbers, outside the table of
+effects; comparisons with the name of an effect or a block outside that table; and functions of a cyclomatic
+complexity above 15 (McCabe 1976). ``LIMITS`` holds what the tree has. A limit falls, never rises: ``make
+check`` fails above one, and below one too, until the limit is lowered.
 """
 
 import ast

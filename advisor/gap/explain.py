@@ -59,7 +59,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     progress
         Called with a sentence and the share done.
     """
-    variants = beyond_servo(aircraft.elevator, variants_for(problem.flights))
+    variants = beyond_servo(aircraft, variants_for(problem.flights))
     variants = beyond_known(aircraft.effects, variants)
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
     problem, stages, law = _named(problem, baseline, variants, progress)

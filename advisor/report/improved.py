@@ -15,8 +15,8 @@ from advisor.gap.result import Diagnosis
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
     """The aircraft file with the fitted model and the effects found in it."""
     content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
-    elevator, effects = less_of_the_servo(aircraft.elevator, together(aircraft.effects, diagnosis.effects))
-    kept = replace(aircraft, name=Aircraft().name, model={}, effects={}, elevator=elevator)
+    flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, diagnosis.effects))
+    kept = replace(flown, name=Aircraft().name, model={}, effects={})
     content.update(_beyond(asdict(kept), asdict(Aircraft())))
     if diagnosis.reference_airspeed_m_s is not None:
         content["reference_airspeed_m_s"] = round(diagnosis.reference_airspeed_m_s, 4)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.gap.candidates.traits import OF_ONE_IMU
 from advisor.gap.diagnose import diagnose
-from advisor.gap.foresight.needs import OF_ONE_IMU
 from tests.gap.generator import Setup, fly
 
 

@@ -10,18 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from advisor.aircraft import Elevator
+from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.bent import as_in_file
 from advisor.gap.candidates.moment import PROPELLER
-from advisor.gap.candidates.traits import OF_ONE_FLIGHT
+from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 
 Effects = Mapping[str, Mapping[str, float]]
 """Effect name to its parameters, as the aircraft file has them."""
-_OF_THE_SERVO = {"actuator_lag": "lag_s", "transport_delay": "delay_s"}
-"""Effect to the number of it that the aircraft file states of the elevator's servo."""
 
 
 def with_known(
@@ -52,38 +50,40 @@ def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]
     return left
 
 
-def beyond_servo(elevator: Elevator, variants: Sequence[Variant]) -> list[Variant]:
+def beyond_servo(aircraft: Aircraft, variants: Sequence[Variant]) -> list[Variant]:
     """The candidates, a lag or a delay of the servo counted from what the aircraft file states of it.
 
     A servo may be quicker than the file says, and a stated delay may not be there.
     """
     found = []
     for variant in variants:
-        of_the_servo = None if variant.fixed else _stated(elevator, variant.effect)
-        found.append(_beyond(variant, of_the_servo) if of_the_servo else variant)
+        stated = None if variant.fixed else stated_in(aircraft, variant.effect)
+        found.append(_beyond(variant, stated) if stated else variant)
     return found
 
 
 def less_of_the_servo(
-    elevator: Elevator, effects: Effects
-) -> tuple[Elevator, dict[str, Mapping[str, float]]]:
-    """The servo that is quicker than the aircraft file says, and the effects without what made it so.
+    aircraft: Aircraft, effects: Effects
+) -> tuple[Aircraft, dict[str, Mapping[str, float]]]:
+    """The aircraft whose servo is quicker than its file says, and the effects without what made it so.
 
     No simulator flies an effect of less than nothing: that is taken off the number that the file states.
     """
     rest = dict(effects)
     changed: dict[str, Any] = {}
-    for effect, name in _OF_THE_SERVO.items():
-        less, stated = effects.get(effect, {}).get(name, 0.0), _stated(elevator, effect)
-        if less < 0.0 and stated:
-            changed[name] = max(stated + less, 0.0)
+    for effect, values in effects.items():
+        where, stated = TRAITS[effect].stated, stated_in(aircraft, effect)
+        less = 0.0 if where is None or where[0] != "elevator" else values.get(where[1], 0.0)
+        if where is not None and stated and less < 0.0:
+            changed[where[1]] = max(stated + less, 0.0)
             del rest[effect]
-    return replace(elevator, **changed), rest
+    return replace(aircraft, elevator=replace(aircraft.elevator, **changed)), rest
 
 
-def _stated(elevator: Elevator, effect: str) -> float | None:
-    """What the aircraft file says of its servo, where an effect is more or less of that."""
-    stated: float | None = getattr(elevator, _OF_THE_SERVO[effect]) if effect in _OF_THE_SERVO else None
+def stated_in(aircraft: Aircraft, effect: str) -> float | None:
+    """What the aircraft file states of an effect as a number of its own; None where that is nothing."""
+    where = TRAITS[effect].stated
+    stated: float | None = None if where is None else getattr(getattr(aircraft, where[0]), where[1])
     return stated
 
 

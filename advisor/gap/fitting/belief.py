@@ -70,6 +70,10 @@ def log_belief(derivatives: FloatArray, covariance: FloatArray, believed: FloatA
     return float(np.logaddexp(densities[0], densities[1]) - np.log(2.0))
 
 
+ARMS = frozenset(_BACKWARD)
+"""Effects that are an arm."""
+
+
 @dataclass(frozen=True, slots=True)
 class Distance:
     """How far fitted derivatives are from the file's, beside their tolerance and their errors."""

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.traits import OF_ONE_IMU
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.foresight.marks import Marks
-from advisor.gap.foresight.needs import NEEDS, OF_ONE_IMU, ONE_IMU, OTHERWISE, hidden_from, need_of
+from advisor.gap.foresight.needs import NEEDS, ONE_IMU, OTHERWISE, hidden_from, need_of
 from advisor.gap.records.flights import SPEED_CHANGE
 from advisor.gap.records.floor import doubts
 from advisor.gap.result import Unseen, spelled

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.traits import TAKES
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.decision import Decision
 from advisor.gap.fitting.fit import Fitted
@@ -182,7 +183,5 @@ def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) 
 
 def size_of(variant: Variant, value: FloatArray) -> float:
     """The number of an effect that its physical minimum is about."""
-    if variant.effect == "icing":
-        # Ice takes lift: what leaves the lift slope alone is something else.
-        return float(-value[0])
-    return float(abs(value[0]))
+    # Ice takes lift: what leaves the lift slope alone is something else.
+    return float(-value[0] if variant.effect in TAKES else abs(value[0]))

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from advisor.gap.candidates.traits import LEFT_OPEN
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
@@ -164,7 +165,7 @@ def _rank_of(problem: Problem, effect: str) -> float:
     An accelerometer's place that the file leaves open is something to measure rather: it comes last, unless
     next to nothing else is there.
     """
-    return _OPEN if effect == "accelerometer_offset" and effect not in problem.arms_in_file else 1.0
+    return _OPEN if effect in LEFT_OPEN and effect not in problem.arms_in_file else 1.0
 
 
 def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:
