@@ -39,7 +39,7 @@ run: setup ## the bundled aircraft flies, the advisor advises (HEADLESS=1: as te
 test: .venv/.developed ## run all tests (long studies have their own targets)
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
-check: .venv/.developed format-check lint types imports test ## format, lint, types, import contracts, tests
+check: .venv/.developed format-check lint types imports sizes test ## format, lint, types, import contracts, sizes, tests
 
 format: .venv/.developed ## format the code
 	$(BIN)/ruff format .
@@ -57,6 +57,10 @@ types: .venv/.developed
 
 imports: .venv/.developed ## the walls of the house
 	$(BIN)/lint-imports
+
+.PHONY: sizes
+sizes: .venv/.developed ## lines, constants and names of the gap diagnosis, which may only fall
+	$(BIN)/python -m benchmarks.gap_size
 
 bench: .venv/.developed ## every ratio of speed, each against its goal (about five minutes)
 	$(BIN)/python -m benchmarks.estimate

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
-    "no_marks": "--no-marks",
+    "no_marks": "--no-marks", "why": "--why",
 }  # fmt: skip
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
@@ -47,6 +47,7 @@ _OF_A_PLAN = {
     help="Measure on so many manoeuvres, the last ones, with numbers fitted without them.",
 )
 @click.option("--out", type=click.Path(path_type=Path), help="Where to write the improved simulator.")
+@click.option("--why", is_flag=True, help="Say every decision on the way: a number, its limit, the margin.")
 @click.option("--foresee", is_flag=True, help="No flight: what would this plan show? Needs an aircraft file.")
 @click.option(
     "--plan", default="3211,rev,rev,3211,rev,3211,rev", show_default=True, help="Manoeuvres to fly."
@@ -63,6 +64,7 @@ def command(
     no_marks: bool,
     holdout: int | None,
     out: Path | None,
+    why: bool,
     foresee: bool,
     plan: str,
     rate_hz: float,
@@ -134,7 +136,7 @@ def command(
 
         from advisor.report.gap_screen import GapScreen
 
-        Console(highlight=False).print(GapScreen(found, improved))
+        Console(highlight=False).print(GapScreen(found, improved, why))
     return 0
 
 

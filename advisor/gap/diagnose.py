@@ -6,7 +6,7 @@ from dataclasses import replace
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
-from advisor.gap.explain import explain
+from advisor.gap.explain import explain, seen_once
 from advisor.gap.fitting.filed_speed import filed_speed
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.flights import Flights
@@ -40,7 +40,8 @@ def diagnose(
     Parameters
     ----------
     maneuvers
-        As the segmenter found them; at least two with elevator, α and pitch rate.
+        As the segmenter found them, with elevator, α and pitch rate. A single one tells where the gap lies,
+        not its cause: none is left to keep out of the fit.
     aircraft
         The aircraft file: what the simulator believes today.
     holdout
@@ -52,7 +53,7 @@ def diagnose(
     Raises
     ------
     UnusableInputError
-        Too few manoeuvres, or no angle of attack.
+        No usable manoeuvre, or no angle of attack.
     """
     progress("checking the angle of attack against the motion", 0.0)
     aircraft = _with_speed(usable_of(maneuvers), aircraft)
@@ -101,15 +102,16 @@ def _explained(
         # An indicated air speed changes by less than the accelerometers say.
         flights = prepare(maneuvers, aircraft, over_read)
         problem, baseline = at_another_speed(problem, baseline, flights)
+    if len(flights) == 1:
+        return seen_once(problem, baseline), kinematics
     return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
 
 
 def _refuse(flights: Flights) -> None:
-    if len(flights) < 2:
+    if not len(flights):
         raise UnusableInputError(
             "no_maneuver",
-            f"{len(flights)} usable manoeuvre{'s' if len(flights) != 1 else ''} in the log: "
-            "a cause cannot be proved without manoeuvres kept out of the fit.",
+            "No usable manoeuvre in the log: no simulator can be held against it.",
             "Fly at least three elevator manoeuvres (3-2-1-1 or doublets), better nine.",
         )
     if "alpha" not in flights.channels:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from advisor.gap.decision import Decision
 from advisor.gap.result import Cause, Diagnosis, Value, Yardsticks
 from advisor.problems import Problem
 
@@ -12,6 +13,7 @@ _NOTHING: Mapping[str, Any] = {
     "verdict": None, "sentence": None, "maneuvers": [], "gap": None, "where": None, "causes": [],
     "shrink": None, "waterfall": [], "cannot_see": [], "model": None, "reference_airspeed_m_s": None,
     "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
+    "share_irreducible": None, "decisions": [],
 }  # fmt: skip
 """What stands in a document without a diagnosis."""
 
@@ -66,8 +68,17 @@ def gap_document(
         },
         "notes": list(d.notes),
         "improved_model": improved_model,
+        "share_irreducible": d.share_irreducible,
+        "decisions": [_decision(one) for one in d.decisions],
     }  # fmt: skip
     return {key: _without_nan(value) for key, value in document.items()}
+
+
+def _decision(one: Decision) -> dict[str, Any]:
+    return {
+        "name": f"{one.about} {one.name}", "about": one.about, "statistic": one.statistic,
+        "limit": one.limit, "margin": one.margin, "unit": one.unit, "holds": one.holds,
+    }  # fmt: skip
 
 
 def _cause(c: Cause) -> dict[str, Any]:
@@ -94,5 +105,5 @@ def _without_nan(value: Any) -> Any:
     if isinstance(value, list):
         return [_without_nan(v) for v in value]
     if isinstance(value, float):
-        return value if math.isfinite(value) else None
+        return float(value) if math.isfinite(value) else None
     return value

@@ -7,13 +7,15 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import beyond_known
+from advisor.gap.candidates.known import beyond_known, beyond_servo
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.measure import file_model_of
+from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.fitting.measure import file_model_of, whole_gap
 from advisor.gap.fitting.problem import Problem, counts
-from advisor.gap.fitting.uncertainty import worth
+from advisor.gap.fitting.uncertainty import file_is_off, worth
 from advisor.gap.records.floor import stated_floor
+from advisor.gap.result import VISIBLE
 from advisor.gap.search.air import Air, gust_instead, moving_air, one_stands_out
 from advisor.gap.search.command import (
     is_likelier_held,
@@ -33,6 +35,7 @@ from advisor.gap.search.waterfall import (
     reconsidered,
     reduced_to,
 )
+from advisor.gap.unnamed.leftover import placed
 from advisor.gap.unnamed.remainder import of_the_input
 from advisor.gap.unnamed.search import scene_of, without_a_name
 from advisor.gap.unnamed.tone import ringing_hz
@@ -56,7 +59,8 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     progress
         Called with a sentence and the share done.
     """
-    variants = beyond_known(aircraft.effects, variants_for(problem.flights))
+    variants = beyond_servo(aircraft, variants_for(problem.flights))
+    variants = beyond_known(aircraft.effects, variants)
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
     problem, stages, law = _named(problem, baseline, variants, progress)
     progress("looking at the air", 0.7)
@@ -77,6 +81,23 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     named = file_model_of(problem, stages[-1].fitted) if len(stages) > 1 else None
     speed = at_constant_speed(problem, stages[-1].fitted)
     return Evidence(problem, stages, leftover, scene.air, floor, file_model, named, speed, true_speed)
+
+
+def seen_once(problem: Problem, plain: Fitted) -> Evidence:
+    """What a single manoeuvre tells: where the gap lies. No cause is sought, for nothing could confirm one.
+
+    The gap is what the aircraft file's derivatives leave where they are wrong, or else what fitted ones do.
+    """
+    stage = Stage(plain, hold_out(problem, plain), (), None)
+    scene = scene_of(problem, [stage], None)
+    as_filed, held = plain, stage.held_out
+    is_off = file_is_off(problem, plain, plainly=False)
+    if problem.believed is not None and scene.file_model is not None and is_off:
+        file = replace(plain.point, derivatives=problem.believed)
+        as_filed, held = fit(replace(problem, holds_the_file=True), file, plain.noise), scene.file_model
+    is_gap = whole_gap(held.mean_square, scene.floor) >= VISIBLE
+    leftover = placed(problem, as_filed) if is_gap else None
+    return Evidence(problem, [stage], leftover, None, scene.floor, scene.file_model, None, None)
 
 
 def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> Variant:

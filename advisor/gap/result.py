@@ -6,6 +6,7 @@ from typing import Literal
 
 from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.messages import FloatArray
+from advisor.gap.decision import Decision
 
 Verdict = Literal["none", "parameters", "effect", "unknown"]
 VISIBLE = 0.05
@@ -152,6 +153,10 @@ class Diagnosis:
     """What the improved simulator's file has under ``effects``."""
     yardsticks: Mapping[str, tuple[Yardsticks, Yardsticks]]
     """Channel to before and after."""
+    share_irreducible: float
+    """Of what the final model leaves, the part that is noise and air; the rest is the model's."""
+    decisions: tuple[Decision, ...] = ()
+    """Every number that was held against a limit, in the order of asking."""
     traces: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
     maneuvers: tuple[int, ...] = field(default=())

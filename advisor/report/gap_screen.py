@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
+from advisor.gap.verdict.ledger import in_words
 from advisor.gap.verdict.text import place
 from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, worst_maneuver, yardsticks
@@ -46,8 +47,8 @@ _WORTH_SAYING = 0.005
 class GapScreen:
     """Everything an engineer wants of a diagnosis, readable without colour and at 80 columns."""
 
-    def __init__(self, diagnosis: Diagnosis, improved: str | None = None) -> None:
-        self.diagnosis, self.improved = diagnosis, improved
+    def __init__(self, diagnosis: Diagnosis, improved: str | None = None, why: bool = False) -> None:
+        self.diagnosis, self.improved, self.why = diagnosis, improved, why
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the parts from the verdict to the notes."""
@@ -68,6 +69,9 @@ class GapScreen:
         if d.causes:
             yield ""
             yield from ranking(d.causes)
+        if self.why and d.decisions:
+            lines = [Text(in_words(decision)) for decision in d.decisions]
+            yield Panel(Group(*lines), title="why: every decision on the way", title_align="left")
         title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap (its size, no sign)"
         yield ""
         yield Panel(errors(d, width), title=title, title_align="left")

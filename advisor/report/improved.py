@@ -8,21 +8,21 @@ from typing import Any
 import yaml
 
 from advisor.aircraft import Aircraft
-from advisor.gap.candidates.known import together
+from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis
 
 
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
     """The aircraft file with the fitted model and the effects found in it."""
     content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
-    kept = replace(aircraft, name=Aircraft().name, model={}, effects={})
+    flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, diagnosis.effects))
+    kept = replace(flown, name=Aircraft().name, model={}, effects={})
     content.update(_beyond(asdict(kept), asdict(Aircraft())))
     if diagnosis.reference_airspeed_m_s is not None:
         content["reference_airspeed_m_s"] = round(diagnosis.reference_airspeed_m_s, 4)
     content["model"] = {name: _digits(v.value) for name, v in diagnosis.model.items()}
     content["effects"] = {
-        effect: {name: _digits(value) for name, value in values.items()}
-        for effect, values in together(aircraft.effects, diagnosis.effects).items()
+        effect: {name: _digits(value) for name, value in values.items()} for effect, values in effects.items()
     }
     return content
 

@@ -12,7 +12,7 @@ from advisor.config import parse_aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.document import gap_document
 from advisor.gap.foresight.plan import foresee_plan
-from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.problems import ConfigurationError
 from advisor.report.improved import improved_file, write_improved
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
@@ -266,11 +266,6 @@ def test_the_improved_simulator_is_a_file_with_the_effect_in_it(delayed, tmp_pat
     assert written["effects"]["transport_delay"]["delay_s"] == pytest.approx(0.06, abs=0.003)
     assert set(written["model"]) == set(PARAMETERS)
     assert improved_file(delayed, Aircraft())["name"].endswith("improved")
-
-
-def test_one_manoeuvre_is_refused_with_what_to_fly():
-    with pytest.raises(UnusableInputError, match="at least three"):
-        diagnose(fly(Setup(maneuvers=1)), Aircraft())
 
 
 def test_foreseeing_says_that_without_an_accelerometer_a_lag_must_be_larger_to_be_seen():

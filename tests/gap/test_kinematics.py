@@ -14,7 +14,7 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES
 from advisor.gap.unnamed.wind import blows_along, wind_shear
-from advisor.gap.verdict.apart import alpha_bias_cause, alpha_lag_cause
+from advisor.gap.verdict.apart import alpha_bias_cause
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 
@@ -86,14 +86,6 @@ def test_where_nothing_else_is_a_vane_that_is_plainly_off_is_named_from_a_sixth_
     vane, estimate = Problem(prepare(flown(), Aircraft()), np.zeros(len(ENTRIES))), sparse_estimate()
     assert (alpha_bias_cause(check, [], vane, 0.0, alone=True) is not None) == named
     assert alpha_bias_cause(check, [], estimate, 0.0, alone=True) is None
-
-
-@pytest.mark.parametrize(("lag_s", "named"), [(0.01, False), (0.03, True)])
-def test_an_estimate_every_tenth_of_a_second_is_not_said_to_be_late_by_a_tenth_of_that(lag_s, named):
-    found = alpha_lag_cause(
-        KinematicCheck("late", "", lag_s=lag_s, lag_std_s=1e-3), sparse_estimate(), [], 0.0
-    )
-    assert (found is not None) == named
 
 
 def sparse_estimate():

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft import Aircraft, Elevator
+from advisor.config import parse_aircraft
 from advisor.effects import LEAST, mistakes_in
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, together, with_known
@@ -15,6 +16,7 @@ from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.verdict.causes import parameters_of
+from advisor.report.improved import improved_file
 from sim.effects.terms import problems_with
 from tests.gap.generator import Setup, fly
 
@@ -186,3 +188,23 @@ def test_too_much_of_an_effect_in_the_file_is_said_so():
     found = diagnose(slow, Aircraft(effects={"actuator_lag": {"lag_s": 0.1}}))
     assert found.causes[0].parameters["lag_s"].value == pytest.approx(-0.05, abs=0.01)
     assert "too slow: its servo lags by 5" in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("stated", "effect", "missing_s"),
+    [
+        (Elevator(lag_s=0.1), "actuator_lag", -0.05),
+        (Elevator(lag_s=0.05, delay_s=0.04), "transport_delay", -0.04),
+    ],
+)
+def test_a_servo_may_be_quicker_than_the_file_states_and_the_improved_file_states_less(
+    stated, effect, missing_s
+):
+    slow = fly(Setup(maneuvers=6, switches={"lag": 0.05}, seed=21))
+    found = diagnose(slow, Aircraft(elevator=stated))
+    size = next(iter(found.causes[0].parameters.values())).value
+    assert (found.causes[0].effect, size) == (effect, pytest.approx(missing_s, abs=0.01))
+    improved = parse_aircraft(improved_file(found, Aircraft(elevator=stated)))
+    assert effect not in improved.effects
+    assert improved.elevator.lag_s == pytest.approx(0.05, abs=0.01)
+    assert diagnose(slow, improved).verdict == "none"

@@ -47,7 +47,8 @@ def diagnosis(**changes: object) -> Diagnosis:
             Unseen("alpha_bias", "no climb rate", "VFR_HUD at 10 Hz"),
         ),
         "kinematics": KinematicCheck("consistent", "alpha follows the motion."), "model": {},
-        "reference_airspeed_m_s": 25.0, "effects": {}, "yardsticks": dict.fromkeys(CHANNELS, fit),
+        "reference_airspeed_m_s": 25.0, "effects": {}, "share_irreducible": 0.8,
+        "yardsticks": dict.fromkeys(CHANNELS, fit),
         "traces": tuple(Trace(2, c, t, np.sin(t), np.sin(t - 0.1), np.sin(t)) for c in CHANNELS),
     }  # fmt: skip
     return Diagnosis(**{**content, **changes})  # type: ignore[arg-type]

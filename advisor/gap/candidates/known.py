@@ -6,13 +6,15 @@ and what is found is what is missing beyond it.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.bent import as_in_file
 from advisor.gap.candidates.moment import PROPELLER
-from advisor.gap.candidates.traits import OF_ONE_FLIGHT
+from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 
@@ -46,6 +48,43 @@ def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]
         elif len(variant.names) == 1 and not variant.inverted and _is_meant(variant, known, variants):
             left.append(_beyond(variant, known[variant.names[0]]))
     return left
+
+
+def beyond_servo(aircraft: Aircraft, variants: Sequence[Variant]) -> list[Variant]:
+    """The candidates, a lag or a delay of the servo counted from what the aircraft file states of it.
+
+    A servo may be quicker than the file says, and a stated delay may not be there.
+    """
+    found = []
+    for variant in variants:
+        stated = None if variant.fixed else stated_in(aircraft, variant.effect)
+        found.append(_beyond(variant, stated) if stated else variant)
+    return found
+
+
+def less_of_the_servo(
+    aircraft: Aircraft, effects: Effects
+) -> tuple[Aircraft, dict[str, Mapping[str, float]]]:
+    """The aircraft whose servo is quicker than its file says, and the effects without what made it so.
+
+    No simulator flies an effect of less than nothing: that is taken off the number that the file states.
+    """
+    rest = dict(effects)
+    changed: dict[str, Any] = {}
+    for effect, values in effects.items():
+        where, stated = TRAITS[effect].stated, stated_in(aircraft, effect)
+        less = 0.0 if where is None or where[0] != "elevator" else values.get(where[1], 0.0)
+        if where is not None and stated and less < 0.0:
+            changed[where[1]] = max(stated + less, 0.0)
+            del rest[effect]
+    return replace(aircraft, elevator=replace(aircraft.elevator, **changed)), rest
+
+
+def stated_in(aircraft: Aircraft, effect: str) -> float | None:
+    """What the aircraft file states of an effect as a number of its own; None where that is nothing."""
+    where = TRAITS[effect].stated
+    stated: float | None = None if where is None else getattr(getattr(aircraft, where[0]), where[1])
+    return stated
 
 
 def left_aside(effects: Effects) -> tuple[str, ...]:

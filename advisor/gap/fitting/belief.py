@@ -5,6 +5,8 @@ cent. Both are given the same chance beforehand. Where the data leave a choice (
 elevator power, M_α̇ or three other derivatives), what leaves the file's derivatives alone is likelier.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from advisor.flight.messages import FloatArray
@@ -68,15 +70,35 @@ def log_belief(derivatives: FloatArray, covariance: FloatArray, believed: FloatA
     return float(np.logaddexp(densities[0], densities[1]) - np.log(2.0))
 
 
-def is_off(derivatives: FloatArray, covariance: FloatArray, believed: FloatArray, plainly: bool) -> bool:
-    """Whether the file's derivatives cannot be right within their tolerance.
+ARMS = frozenset(_BACKWARD)
+"""Effects that are an arm."""
 
-    Arguments as ``log_belief``; where they ``plainly`` leave a gap, it is enough that they hardly can.
+
+@dataclass(frozen=True, slots=True)
+class Distance:
+    """How far fitted derivatives are from the file's, beside their tolerance and their errors."""
+
+    statistic: float
+    """Chi square of six degrees of freedom."""
+    limit: float
+
+    @property
+    def is_off(self) -> bool:
+        """Whether the file's cannot be right."""
+        return self.statistic > self.limit
+
+
+def distance_of(
+    derivatives: FloatArray, covariance: FloatArray, believed: FloatArray, plainly: bool
+) -> Distance:
+    """How far fitted derivatives are from the file's.
+
+    Arguments as ``log_belief``; where the file's ``plainly`` leave a gap, a smaller distance is enough.
     """
     scale = scale_of(believed)
     spread = covariance / np.outer(scale, scale) + NARROW**2 * np.eye(6)
     least = _CHI_SQUARE_500 if plainly else _CHI_SQUARE_999
-    return _distance((derivatives - believed) / scale, spread) > least
+    return Distance(_distance((derivatives - believed) / scale, spread), least)
 
 
 def _distance(off: FloatArray, spread: FloatArray) -> float:

@@ -6,7 +6,7 @@ the last: numbers of the trim are some per cent off, all by what the speed makes
 
 import numpy as np
 
-from advisor.gap.fitting.belief import is_off, log_belief
+from advisor.gap.fitting.belief import distance_of, log_belief
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import covariance, file_is_off, worth
@@ -34,6 +34,6 @@ def filed_speed(problem: Problem, plain: Fitted) -> float | None:
     shares = np.linspace(lowest, highest, _TRIED)
     at_speeds = [believed * share**-_POWERS for share in shares]
     best = int(np.argmax([log_belief(plain.point.derivatives, known, there) for there in at_speeds]))
-    if is_off(plain.point.derivatives, known, at_speeds[best], plainly=True):
+    if distance_of(plain.point.derivatives, known, at_speeds[best], plainly=True).is_off:
         return None
     return float(shares[best] * flights.reference_m_s)

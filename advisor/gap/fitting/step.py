@@ -12,6 +12,14 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.linear import Linear
 from advisor.gap.fitting.normal import factored, solved, solved_within
 from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.simulator.layout import DERIVATIVES
+
+_FASTEST_GROWTH = 5.0
+"""Rate in 1/s at which a motion may grow of itself: a double amplitude in 0.14 s, as of the most unstable
+aircraft that computers fly. A fit that grows faster has lost the motion."""
+_GROWS = {"Z_alpha": _FASTEST_GROWTH, "M_q": _FASTEST_GROWTH, "M_alpha": _FASTEST_GROWTH**2}
+_MOST = np.array([_GROWS.get(name, np.inf) for name in DERIVATIVES])
+"""Shape (6,): largest derivatives of an aircraft that grows no faster by any of them alone."""
 
 
 def factor(A: FloatArray, prior: FloatArray) -> FloatArray:
@@ -90,8 +98,8 @@ def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray
 
 
 def bounds_of(point: Point) -> tuple[FloatArray, FloatArray]:
-    """Lower and upper bounds of the shared numbers."""
+    """Lower and upper bounds of the shared numbers; no derivative makes an aircraft that nobody can fly."""
     free = np.full(len(point.derivatives), np.inf)
     lower = np.concatenate([-free, *[np.array([b[0] for b in e.bounds]) for e in point.effects]])
-    upper = np.concatenate([free, *[np.array([b[1] for b in e.bounds]) for e in point.effects]])
+    upper = np.concatenate([_MOST, *[np.array([b[1] for b in e.bounds]) for e in point.effects]])
     return lower, upper

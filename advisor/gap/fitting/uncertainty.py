@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.belief import NARROW, is_off, log_belief, pull_of
+from advisor.gap.fitting.belief import NARROW, Distance, distance_of, log_belief, pull_of
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.records.floor import independent_samples
@@ -33,12 +33,17 @@ def belief_in(problem: Problem, fitted: Fitted, independent: FloatArray) -> floa
 
 
 def file_is_off(problem: Problem, fitted: Fitted, plainly: bool) -> bool:
-    """Whether what was fitted says that the aircraft file's derivatives are wrong; see ``is_off``."""
+    """Whether what was fitted says that the aircraft file's derivatives are wrong; see ``distance_of``."""
+    return distance_from_file(problem, fitted, plainly).is_off
+
+
+def distance_from_file(problem: Problem, fitted: Fitted, plainly: bool) -> Distance:
+    """How far the fitted derivatives are from the aircraft file's; none without a file."""
     if problem.believed is None:
-        return False
+        return Distance(0.0, np.inf)
     n = len(problem.believed)
     known = covariance(problem, fitted, worth(problem, fitted.innovations))[:n, :n]
-    return is_off(fitted.point.derivatives, known, problem.believed, plainly)
+    return distance_of(fitted.point.derivatives, known, problem.believed, plainly)
 
 
 def shared_std(

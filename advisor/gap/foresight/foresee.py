@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.traits import OF_ONE_IMU
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.foresight.marks import Marks
-from advisor.gap.foresight.needs import NEEDS, OTHERWISE, hidden_from, need_of
+from advisor.gap.foresight.needs import NEEDS, ONE_IMU, OTHERWISE, hidden_from, need_of
 from advisor.gap.records.flights import SPEED_CHANGE
 from advisor.gap.records.floor import doubts
 from advisor.gap.result import Unseen, spelled
@@ -126,6 +127,9 @@ def unseen_effects(
         elif twins and seen.effect not in present:
             alike = " or ".join(map(spelled, twins))
             out.append(Unseen(seen.effect, f"when small it looks like {alike}", seen.add))
+    if flights.alpha_is_derived:
+        out = [unseen for unseen in out if unseen.effect not in OF_ONE_IMU]
+        out += [Unseen(effect, *ONE_IMU) for effect in OF_ONE_IMU if effect not in present]
     return tuple(out)
 
 

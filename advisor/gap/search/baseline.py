@@ -8,7 +8,8 @@ from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates import input, moment, sensors, timing
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import with_known
+from advisor.gap.candidates.known import stated_in, with_known
+from advisor.gap.fitting.belief import ARMS
 from advisor.gap.fitting.fit import Fitted, fit, rms_of
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.fitting.regression import regressions
@@ -65,11 +66,7 @@ def believed_derivatives(aircraft: Aircraft) -> FloatArray | None:
 
 def arms_in(aircraft: Aircraft) -> frozenset[str]:
     """Effects whose arm the aircraft file states."""
-    arms = {
-        "alpha_vane_offset": aircraft.alpha.vane_arm_m,
-        "accelerometer_offset": aircraft.accelerometer.arm_m,
-    }
-    return frozenset(effect for effect, arm in arms.items() if arm is not None)
+    return frozenset(effect for effect in ARMS if stated_in(aircraft, effect) is not None)
 
 
 def first_fit(problem: Problem, aircraft: Aircraft) -> Fitted:

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.traits import TAKES
 from advisor.gap.candidates.variant import Variant
+from advisor.gap.decision import Decision
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut
 
@@ -39,6 +41,8 @@ LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
 _SUPPORT = 4.0
 """The same of an effect that is certain anyway."""
+LEAST_SUPPORT = 1.0
+"""Standard errors over manoeuvres by which an effect must lower the gap of those kept out: of two, both."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,8 @@ class Judged:
     """Log probability gained because the derivatives it leaves agree better with the file's."""
     beforehand: float
     """What of ``gain`` is not the motion's: belief, the odds of an arm, less the price of its numbers."""
+    support: float
+    """Gap that it takes away from a manoeuvre kept out, mean over its standard error over manoeuvres."""
     value: FloatArray
     std: FloatArray
     sigmas: float
@@ -86,12 +92,34 @@ class Judged:
     @property
     def worth_naming(self) -> bool:
         """Better on unseen manoeuvres, by more than noise, and not smaller than matters."""
+        return all(decision.holds for decision in self.decisions)
+
+    @property
+    def decisions(self) -> tuple[Decision, ...]:
+        """What is asked of an effect before it has a name; all must hold."""
         certain = self.gain >= _CERTAIN
-        least = self.least_certain if certain else self.least
-        supported = self.belief >= (_SUPPORT if certain else LEAST_BELIEF)
-        if self.gain < self.least_gain or not (supported or self.removed >= least):
-            return False
-        return self.sigmas > LEAST_SIGMA and self.large_enough and not self.at_its_bounds
+        of_the_file = self.belief >= (_SUPPORT if certain else LEAST_BELIEF)
+        change = 0.0 if of_the_file else self.least_certain if certain else self.least
+        asked = [
+            ("likelihood", self.gain, self.least_gain, "log likelihood gained"),
+            ("change", self.removed, change, "mean square change over the noise"),
+            ("significance", self.sigmas, LEAST_SIGMA, "standard deviations"),
+            ("size", size_of(self.variant, self.value), self.least_size, f"of {self.variant.names[0]}"),
+            ("range", 0.0 if self.at_its_bounds else 1.0, 1.0, "inside the searched range"),
+        ]
+        if self.is_foretold:
+            asked.append(("hold-out", self.support, LEAST_SUPPORT, "standard errors of the gap removed"))
+        return tuple(Decision(self.effect, *question) for question in asked)
+
+    @property
+    def is_foretold(self) -> bool:
+        """Whether other manoeuvres foretell its work: neither that of one alone nor the file's numbers."""
+        return self.witness is None and self.belief < LEAST_BELIEF
+
+    @property
+    def is_supported(self) -> bool:
+        """Whether manoeuvres kept out support it, as far as they can foretell its work."""
+        return not self.is_foretold or self.support >= LEAST_SUPPORT
 
     @property
     def least_gain(self) -> float:
@@ -127,10 +155,14 @@ class Judged:
 
     @property
     def large_enough(self) -> bool:
-        """At or above the physical minimum; stamps that jitter hide no time that is plain all the same."""
+        """At or above the physical minimum."""
+        return size_of(self.variant, self.value) >= self.least_size
+
+    @property
+    def least_size(self) -> float:
+        """The physical minimum; stamps that jitter hide no time that is plain all the same."""
         plain = self.gain >= BEYOND_DOUBT and self.removed >= _SEEN_CHANGE * self.least
-        smallest = min(self.smallest, 2.0 * self.variant.smallest) if plain else self.smallest
-        return size_of(self.variant, self.value) >= smallest
+        return min(self.smallest, 2.0 * self.variant.smallest) if plain else self.smallest
 
 
 def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) -> float:
@@ -151,7 +183,5 @@ def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) 
 
 def size_of(variant: Variant, value: FloatArray) -> float:
     """The number of an effect that its physical minimum is about."""
-    if variant.effect == "icing":
-        # Ice takes lift: what leaves the lift slope alone is something else.
-        return float(-value[0])
-    return float(abs(value[0]))
+    # Ice takes lift: what leaves the lift slope alone is something else.
+    return float(-value[0] if variant.effect in TAKES else abs(value[0]))

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from advisor.gap.candidates.traits import HIDES
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
@@ -22,9 +23,6 @@ _SEVERAL = 2
 """... and how many of them, and of numbers, it must have to have more than one optimum."""
 _WILD = 4.0
 """Power that a manoeuvre leaves, beside the median of all, from which on it may nearly have diverged."""
-_HIDES = frozenset({"actuator_deadband"})
-"""Effects that are tried then, too, while nothing was named: where most of the motion is missing, other
-numbers imitate it so well that no screening leads to them."""
 _MISSING = 0.03
 """Share of each channel's peak that the best leaves where so much is missing."""
 
@@ -56,8 +54,12 @@ def from_every_start(
     if explained <= GROSS or np.all(loud <= _LEFT):
         return judged
     missing = is_plain(before) and np.all(left > _MISSING * problem.flights.peaks)
-    hidden = _HIDES if missing else frozenset()
-    alike = _each_once([c.variant for c in candidates if c.variant.effect in {first.effect, *hidden}])
+    asked = [
+        variant
+        for variant in (c.variant for c in candidates)
+        if variant.effect == first.effect or (missing and variant.effect in HIDES)
+    ]
+    alike = _each_once(asked)
     same = [variant for variant in alike if variant.effect == first.effect]
     fits = [
         *_restarted(problem, before, first.fitted, alike),

@@ -11,7 +11,7 @@ from advisor.gap.fitting.holdout import HeldOut, hold_out, lone_witness, mean_sq
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.fitting.uncertainty import belief_in, covariance, sigmas_of
 from advisor.gap.records.floor import doubts
-from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, Judged, size_of
+from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, LEAST_SUPPORT, Judged, size_of
 
 LEAST_GAP = 0.05
 """What it must change there, mean square over the noise of the instruments, averaged over channels."""
@@ -66,7 +66,10 @@ def addition(
         known_before = measured_in(problem, held_before, before, others)
         known = measured_in(problem, held, fitted, others)
     seen_before, seen_after = (before, fitted) if lone else (known_before, known)
-    likelihood = log_likelihood_gained(before, known_before, fitted, known, independent, unconfirmed=lone)
+    support = support_of(problem, known_before, known)
+    likelihood = log_likelihood_gained(
+        before, known_before, fitted, known, independent, None if lone else support
+    )
     likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
     likelihood += 0.5 * (problem.strangeness(before.point) - problem.strangeness(point))
     belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
@@ -79,6 +82,7 @@ def addition(
         variant=variant, fitted=fitted, held_out=held,
         gain=gain,
         removed=difference(problem, seen_before, seen_after, witness),
+        support=support,
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant, gain),
         belief=belief, beforehand=beforehand, value=value, witness=witness,
@@ -112,16 +116,22 @@ def log_likelihood_gained(
     after: Fitted,
     held_after: HeldOut,
     independent: FloatArray,
-    unconfirmed: bool = False,
+    support: float | None = -np.inf,
 ) -> float:
     """What was gained on manoeuvres kept out, but by luck not more than in the fit itself.
 
-    ``unconfirmed``: no other manoeuvre could confirm it, so the fit is asked alone.
+    ``support``: see ``support_of``; a loss within its standard error is none. None: no other manoeuvre could
+    confirm it, so the fit is asked alone.
     """
-    ratios = [np.log((before.noise / after.noise) ** 2)]
-    if not unconfirmed:
-        ratios.append(np.log(held_before.innovation_square / held_after.innovation_square))
-    return min(float(np.sum(independent / 2.0 * r)) for r in ratios)
+    fitted, kept_out = (
+        float(np.sum(independent / 2.0 * np.log(ratio)))
+        for ratio in (
+            (before.noise / after.noise) ** 2, held_before.innovation_square / held_after.innovation_square,
+        )
+    )  # fmt: skip
+    if support is None:
+        return fitted
+    return min(fitted, max(kept_out, 0.0) if support > -LEAST_SUPPORT else kept_out)
 
 
 def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:
@@ -163,6 +173,21 @@ def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
     return (
         bool(np.all(apart < _OF_PEAK * problem.flights.peaks)) or difference(problem, one, other) < _NOT_SEEN
     )
+
+
+def support_of(problem: Problem, before: HeldOut, after: HeldOut) -> float:
+    """Standard errors over manoeuvres by which the second leaves less of those kept out than the first.
+
+    Only what tells a cause by itself counts; see ``Flights.telling``. 0 for a single manoeuvre.
+    """
+    noise = np.ones(len(problem.channels)) if problem.instruments is None else problem.instruments
+    removed = (before.by_maneuver - after.by_maneuver) / noise**2
+    taken = np.mean(removed[:, problem.flights.telling], axis=1)
+    n = len(taken)
+    if n < 2:
+        return 0.0
+    error = float(np.std(taken, ddof=1)) / np.sqrt(n)
+    return float(np.mean(taken) / max(error, 1e-12))
 
 
 def difference(

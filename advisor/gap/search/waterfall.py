@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from advisor.gap.candidates.traits import LEFT_OPEN
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
@@ -138,7 +139,8 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
             name: addition(problem, fewer, hold_out(problem, fewer), full, name, independent)
             for name, fewer in without.items()
         }
-        weakest = min(names, key=lambda name: missed[name].gain)
+        # What manoeuvres kept out do not support goes first, whatever it gains.
+        weakest = min(names, key=lambda name: (missed[name].is_supported, missed[name].gain))
         if missed[weakest].worth_naming:
             names.sort(key=lambda name: -missed[name].gain * _rank_of(problem, name))
             break
@@ -163,7 +165,7 @@ def _rank_of(problem: Problem, effect: str) -> float:
     An accelerometer's place that the file leaves open is something to measure rather: it comes last, unless
     next to nothing else is there.
     """
-    return _OPEN if effect == "accelerometer_offset" and effect not in problem.arms_in_file else 1.0
+    return _OPEN if effect in LEFT_OPEN and effect not in problem.arms_in_file else 1.0
 
 
 def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:

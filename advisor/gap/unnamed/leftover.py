@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.decision import Decision
 from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import Problem
@@ -65,6 +66,8 @@ class Leftover:
     """Shape (channels,): mean square of what it does where nothing is flown, too; None: next to nothing."""
     note: str = ""
     """What is known of it, in a sentence."""
+    decisions: tuple[Decision, ...] = ()
+    """What told it from noise, where numbers were held against limits."""
 
 
 def of_the_wind(found: Leftover | None) -> Leftover:
@@ -124,13 +127,22 @@ def left_over(
     if not disturbed and np.max(louder) < _RESTLESS:
         return None
     plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
+    if faint and not plain and first is not last:
+        # What no block explains better than any other is the error of the named effects' model.
+        return None
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
     least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else LEAST_OF_GAP
     if unexplained < least * taken and not plain:
         return None
     block = _block(problem, last, instruments_of(problem), probes)
-    return Leftover(block, best.explained, ranking_of(probes, block))
+    decisions = (
+        Decision(block, "likelihood", best.gain, LEAST_GAIN, "log likelihood of a disturbance there"),
+        Decision(block, "place", best.explained, least_share, "of what is left"),
+        Decision(block, "unrest", float(np.max(louder)), _RESTLESS, "times the power in quiet"),
+        Decision(block, "size", unexplained, least * taken, "of the power that the names took up"),
+    )
+    return Leftover(block, best.explained, ranking_of(probes, block), decisions=decisions)
 
 
 def is_the_gust(problem: Problem, last: Fitted, leftover: Leftover) -> bool:

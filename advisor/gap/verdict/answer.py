@@ -26,13 +26,14 @@ from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
     fidelity_of,
     gap_numbers,
+    irreducible,
     model_of,
     shrink_of,
     traces_of,
     waterfall_of,
 )
 from advisor.gap.verdict.statements import in_simulator
-from advisor.gap.verdict.text import sentence_of
+from advisor.gap.verdict.text import sentence_of, where_of_one
 
 
 def answer(
@@ -52,6 +53,7 @@ def answer(
         before = with_offset(problem, before, offset_rad)
         problem = as_read(problem, offset_rad)
     before = over_maneuvers(problem, before, kept)
+    with_air = last.mean_square
     if e.air is not None:
         # From here on the air is one of the causes: the floor is the instruments' noise without its motion.
         least = np.maximum(e.air.instruments, tolerance_of(problem.flights))
@@ -71,15 +73,17 @@ def answer(
     present = {c.effect for c in causes if c.present}
     effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
     nobodys_fault = effects.keys() - present if shrink is not None else ()
+    seen_once = len(problem.flights) == 1 and verdict == "unknown"
+    sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
     return Diagnosis(
         verdict=verdict,
-        sentence=sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft)),
+        sentence=where_of_one(where) if seen_once else sentence,
         gap=gap, where=where,
         causes=causes, shrink=shrink, waterfall=waterfall,
         cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), e.floor, present),
         kinematics=kinematics, model=model_of(problem, fitted, known),
         reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
-        effects=effects,
+        effects=effects, share_irreducible=irreducible(with_air, e.floor, gap), decisions=judged.decisions,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         notes=notes_of(e, aircraft, holdout, verdict, nobodys_fault),
         maneuvers=tuple(f.number for f in problem.flights.flights),

@@ -1,4 +1,4 @@
-"""Causes that no fit judges: an offset of α, an α that is late, and the air."""
+"""Causes that no fit judges: an offset of α, and the air."""
 
 from collections.abc import Sequence
 
@@ -15,9 +15,6 @@ from advisor.gap.verdict.kept_out import without_air
 
 _SCALED_BY = 0.2
 """Share of what a scale error makes of the trimmed angle that an offset may depart from it."""
-_BREAK_ALPHA_LAG = "compare the channel's stamps with a vane's; fly at two air speeds"
-_OF_INTERVAL = 0.2
-"""Share of the interval between an estimate's samples that its lag must reach to be named."""
 _AIR_DOUBT = 0.25
 """Relative error of a gust's strength: its course is known to low order only."""
 _WAVES_DOUBT = 0.5
@@ -50,26 +47,6 @@ def alpha_bias_cause(
         "alpha_bias", "alpha_sensor", 0.0, {"bias_rad": Value(check.offset.rad, check.offset.std_rad)},
         ("an offset of the attitude's zero", "steady up- or downwash"),
         "level the attitude reference on the ground; fly in still air", left, True,
-    )  # fmt: skip
-
-
-def alpha_lag_cause(
-    check: KinematicCheck, problem: Problem, named: Sequence[Judged], left: float
-) -> Cause | None:
-    """A late α that the motion shows and the fit cannot: an autopilot's estimate is smooth and coarse.
-
-    A lag far below the interval of its samples is none: their stamps are not known that well.
-    """
-    intervals = [np.diff(f.outputs["alpha"].t) for f in problem.flights.flights if "alpha" in f.outputs]
-    least_s = _OF_INTERVAL * float(np.median(np.concatenate(intervals))) if intervals else 0.0
-    found_there = any(j.block in ("alpha_sensor", "accelerometer") for j in named)
-    if not problem.flights.alpha_is_derived or found_there or check.finding != "late":
-        return None
-    if check.lag_s < least_s:
-        return None
-    return Cause(
-        "alpha_lag", "alpha_sensor", 0.0, {"lag_s": Value(check.lag_s, check.lag_std_s)},
-        ("alpha_skew", "alpha_vane_offset"), _BREAK_ALPHA_LAG, left, True,
     )  # fmt: skip
 
 

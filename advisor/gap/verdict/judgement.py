@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.kinematics import KinematicCheck
+from advisor.gap.decision import Decision
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
@@ -13,9 +14,10 @@ from advisor.gap.result import Cause, Verdict
 from advisor.gap.search.merit import Judged
 from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, speed_is_unasked
 from advisor.gap.search.stage import added_in
-from advisor.gap.verdict.apart import air_cause, alpha_bias_cause, alpha_lag_cause
+from advisor.gap.verdict.apart import air_cause, alpha_bias_cause
 from advisor.gap.verdict.causes import causes_of, with_doubt
 from advisor.gap.verdict.evidence import Evidence
+from advisor.gap.verdict.ledger import decisions_of
 from advisor.gap.verdict.wrong_numbers import WrongNumbers, wrong_numbers
 
 _ALONE = 0.95
@@ -51,7 +53,7 @@ class Judgement:
     causes: tuple[Cause, ...]
     """Likeliest first, at most five."""
     apart: tuple[Cause, ...]
-    """Those of them that no fit judges: the air, the offset, a late angle of attack, the air speed."""
+    """Those of them that no fit judges: the air, the offset, the air speed."""
     speed: Cause | None
     """The change of air speed, when ignoring it would cost, cause or not."""
     bias: Cause | None
@@ -59,6 +61,8 @@ class Judgement:
     """What the simulator left before anything was added to it."""
     wrong_numbers: bool
     """Whether the file's derivatives are off, by themselves or beside the causes."""
+    decisions: tuple[Decision, ...]
+    """What was asked on the way; see ``ledger``."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +76,6 @@ class _Found:
     """What the names take away, mean square over the floor's."""
     numbers: WrongNumbers
     bias: Cause | None
-    late: Cause | None
     speed: Cause | None
     """The change of air speed, when ignoring it would cost; a cause only if it stands in ``apart``."""
     speed_outweighs: bool
@@ -95,7 +98,10 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     if e.constant_speed is not None and found.speed in found.apart:
         before = _at_constant_speed(e.problem, before, e.constant_speed, e.stages[-1].held_out)
     causes = _beside(verdict, causes, bool(found.named))
-    return Judgement(verdict, causes, found.apart, found.speed, found.bias, before, found.numbers.are_wrong)
+    return Judgement(
+        verdict, causes, found.apart, found.speed, found.bias, before, found.numbers.are_wrong,
+        decisions_of(e, found.numbers),
+    )  # fmt: skip
 
 
 def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
@@ -107,22 +113,22 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     # Noise that the air makes hides nothing from a simulator that knows the air's motion.
     still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
     numbers = wrong_numbers(e, named, still)
-    late = alpha_lag_cause(kinematics, problem, named, left)
-    alone = not (named or late or numbers.are_wrong or e.leftover)
-    bias = alpha_bias_cause(kinematics, named, problem, left, alone)
-    apart = tuple(c for c in (air_cause(e), bias, late) if c is not None)
+    alone = not (named or numbers.are_wrong or e.leftover)
+    seen_once = len(problem.flights) == 1
+    bias = None if seen_once else alpha_bias_cause(kinematics, named, problem, left, alone)
+    apart = tuple(c for c in (air_cause(e), bias) if c is not None)
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
     outweighs = _speed_outweighs(e, max(numbers.gap, removed))
-    told = (named or bias or late or numbers.are_wrong) and not outweighs
+    told = (named or bias or numbers.are_wrong) and not outweighs
     judge_speed = speed_is_unasked if told else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         apart = (speed, *apart)
-    unknown = e.leftover is not None and late is None
-    if unknown and _is_little_beside(numbers, max(removed, 0.0) + left, e):
+    unknown = e.leftover is not None
+    if unknown and not seen_once and _is_little_beside(numbers, max(removed, 0.0) + left, e):
         unknown = False
-    return _Found(named, left, removed, numbers, bias, late, speed, outweighs, apart, unknown)
+    return _Found(named, left, removed, numbers, bias, speed, outweighs, apart, unknown)
 
 
 def _is_little_beside(numbers: WrongNumbers, rest: float, e: Evidence) -> bool:
@@ -159,7 +165,7 @@ def _verdict(found: _Found, causes: Sequence[Cause]) -> Verdict:
     wrong = numbers.are_wrong and numbers.outweigh_the_air and (mostly or not found.named)
     if found.unknown:
         return "unknown"
-    if wrong and not (found.bias or found.late or found.speed in found.apart):
+    if wrong and not (found.bias or found.speed in found.apart):
         return "parameters"
     return "effect" if any(c.present for c in causes) else "none"
 

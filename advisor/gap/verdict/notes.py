@@ -151,7 +151,9 @@ def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
     missing = [c for c in ("a_z", "theta") if c not in flights.channels]
     if missing:
         yield f"Without {' and '.join(missing)} several instrument effects cannot be seen."
-    if len(flights) < _FEW:
+    if len(flights) == 1:
+        yield "Only one manoeuvre: none is left to keep out of the fit, so no cause is sought."
+    elif len(flights) < _FEW:
         yield f"Only {len(flights)} manoeuvres: intervals are wide, changes between manoeuvres hard to see."
     yield from unusual_signs(aircraft.model)
     if aircraft.elevator.lag_s is None:

@@ -45,6 +45,15 @@ def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: Held
     )  # fmt: skip
 
 
+def irreducible(left: FloatArray, floor: FloatArray, gap: Gap) -> float:
+    """Of what the final model leaves on manoeuvres kept out, the share that is noise and air.
+
+    ``left``, shape (channels,), is its mean square with the air's motion in it, which the gap is without.
+    """
+    whole = float(np.mean(np.maximum(left / floor**2, 1.0)))
+    return float(np.clip(1.0 - gap.after / whole, 0.0, 1.0))
+
+
 def shrink_of(
     e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_numbers: bool
 ) -> Shrink:
@@ -124,7 +133,8 @@ def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, V
         each = terms[name] - trims @ d[list(pair)]
         mean_trim = np.mean(trims, axis=0)
         together = mean_trim @ known[np.ix_(pair, pair)] @ mean_trim
-        apart = np.var(each[began] if np.count_nonzero(began) > 1 else each, ddof=1) / np.count_nonzero(began)
+        several = each[began] if np.count_nonzero(began) > 1 else each
+        apart = np.var(several, ddof=min(1, len(several) - 1)) / np.count_nonzero(began)
         values[name] = Value(float(np.mean(each[began])), float(np.sqrt(apart + max(together, 0.0))))
     for k, name in enumerate(DERIVATIVES):
         values[name] = Value(float(d[k]), float(np.sqrt(max(known[k, k], 0.0))))

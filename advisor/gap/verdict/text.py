@@ -25,6 +25,14 @@ def place(block: str) -> str:
     return _BLOCK[block]
 
 
+def where_of_one(where: Where) -> str:
+    """The sentence of a single manoeuvre, which shows where a gap lies and proves no cause of it."""
+    return (
+        f"Something acts {place(where.block)} that the simulator does not have; one manoeuvre cannot prove "
+        "what: fly two more."
+    )
+
+
 def sentence_of(
     verdict: Verdict,
     gap: Gap,
@@ -73,8 +81,6 @@ def sentence_of(
         return f"{named}: that is the air, not the simulator{numbers}."
     if shrink is not None and shrink.beyond_air_percent is not None:
         removed = f"{shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
-    if present[0].effect == "alpha_lag" and shrink is not None and round(shrink.percent) <= 0:
-        return f"{named}: the motion itself shows it{also}."
     added = "adding it"
     if shrink is not None and shrink.by_numbers_percent is not None:
         # What the numbers do must not pass for the effect's work.

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.belief import Distance
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.fitting.uncertainty import PLAIN, file_is_off
+from advisor.gap.fitting.uncertainty import PLAIN, distance_from_file
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.merit import Judged
 from advisor.gap.verdict.evidence import Evidence
@@ -24,6 +25,8 @@ class WrongNumbers:
 
     gap: float
     """What they leave beyond fitted ones, mean square over the floor's."""
+    distance: Distance
+    """How far the file's derivatives are from the fitted ones."""
     are_wrong: bool
     are_imitated: bool
     """What was named leaves the file right: that other numbers explain the gap, too, is a likeness."""
@@ -37,9 +40,12 @@ def wrong_numbers(e: Evidence, named: Sequence[Judged], still: FloatArray) -> Wr
     of_the_air = whole_gap(e.stages[0].held_out.mean_square, still) if e.air is not None else 0.0
     # Fitted numbers bend to the air's motion, and take up a part of it.
     plainly = gap > PLAIN and beside_air > _FAR_MORE * of_the_air
-    are_wrong = gap > VISIBLE and file_is_off(e.problem, e.stages[-1].fitted, plainly)
+    distance = distance_from_file(e.problem, e.stages[-1].fitted, plainly)
+    are_wrong = gap > VISIBLE and distance.is_off
     told_by_file = any(judged.variant.twin is not None and judged.belief > 0.0 for judged in named)
-    return WrongNumbers(gap, are_wrong, told_by_file or _need_no_numbers(e), beside_air > of_the_air)
+    return WrongNumbers(
+        gap, distance, are_wrong, told_by_file or _need_no_numbers(e), beside_air > of_the_air
+    )
 
 
 def _beyond_fitted_numbers(e: Evidence, floor: FloatArray) -> float:

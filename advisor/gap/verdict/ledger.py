@@ -1,0 +1,63 @@
+"""The ledger: every number that was held against a limit on the way to a verdict, in the order of asking."""
+
+from advisor.gap.decision import Decision
+from advisor.gap.fitting.uncertainty import PLAIN
+from advisor.gap.result import VISIBLE
+from advisor.gap.search.air import AIR_GAIN
+from advisor.gap.search.merit import Judged
+from advisor.gap.search.stage import Stage
+from advisor.gap.verdict.evidence import Evidence
+from advisor.gap.verdict.wrong_numbers import WrongNumbers
+
+_REFUSED = 3
+"""Likeliest effects of a stage that the ledger tells of though they were refused."""
+
+
+def decisions_of(e: Evidence, numbers: WrongNumbers) -> tuple[Decision, ...]:
+    """What was asked of the names, the air, what has no name, and the aircraft file's numbers."""
+    return (
+        *(decision for stage in e.stages for decision in _of_stage(stage)),
+        *_of_the_air(e),
+        *(() if e.leftover is None else e.leftover.decisions),
+        *_of_the_numbers(e, numbers),
+    )
+
+
+def in_words(decision: Decision) -> str:
+    """One decision as a line for people."""
+    said = "yes" if decision.holds else "no"
+    about = decision.about.replace("_", " ")
+    return (
+        f"{about}, {decision.name}: {decision.statistic:.3g} {decision.unit}, at least "
+        f"{decision.limit:.3g}: {said}, by {abs(decision.margin):.3g}"
+    )
+
+
+def _of_stage(stage: Stage) -> list[Decision]:
+    """Why an effect was added, and what refused those that were likelier, or the likeliest of the rest."""
+    refused = [judged for judged in stage.considered if not judged.worth_naming]
+    told = [decision for judged in refused[:_REFUSED] for decision in _against(judged)]
+    return [*told, *(() if stage.added is None else stage.added.decisions)]
+
+
+def _against(judged: Judged) -> list[Decision]:
+    return [decision for decision in judged.decisions if not decision.holds]
+
+
+def _of_the_air(e: Evidence) -> list[Decision]:
+    if e.air is None:
+        return []
+    about = "gust" if e.air.gust else "turbulence"
+    return [Decision(about, "likelihood", e.air.gain, AIR_GAIN, "log likelihood gained")]
+
+
+def _of_the_numbers(e: Evidence, numbers: WrongNumbers) -> list[Decision]:
+    if e.file_model is None:
+        return []
+    unit = "mean square over the noise, beyond fitted numbers"
+    gap = Decision("parameters", "gap", numbers.gap, VISIBLE, unit)
+    distance = Decision(
+        "parameters", "distance", numbers.distance.statistic, numbers.distance.limit, "chi square of six"
+    )
+    plainly = Decision("parameters", "plain gap", numbers.gap, PLAIN, unit)
+    return [gap, plainly, distance]

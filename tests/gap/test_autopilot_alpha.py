@@ -1,0 +1,46 @@
+"""An autopilot's own angle of attack: late, held and made of its IMU by nature, which is no gap."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.gap.candidates.traits import OF_ONE_IMU
+from advisor.gap.diagnose import diagnose
+from tests.gap.generator import Setup, fly
+
+
+def estimated(maneuvers, late_s=0.025):
+    """The manoeuvres with an angle of attack of 10 Hz, late and smooth, from an estimator."""
+    found = []
+    for m in maneuvers:
+        alpha = m.channels["alpha"]
+        smooth = np.convolve(np.pad(alpha.y, 2, mode="edge"), np.full(5, 0.2), mode="valid")
+        own = replace(
+            alpha, t=alpha.t[::5] + late_s, y=smooth[::5], source="XKF1, XKF2", provenance="derived"
+        )
+        found.append(replace(m, channels={**m.channels, "alpha": own}))
+    return found
+
+
+@pytest.fixture(scope="module")
+def alike():
+    return diagnose(estimated(fly(Setup(maneuvers=6, seed=71))), Aircraft())
+
+
+def test_the_lateness_of_an_autopilots_own_angle_of_attack_is_no_gap(alike):
+    assert alike.kinematics.finding == "late"
+    assert alike.verdict == "none"
+    assert not any(c.present for c in alike.causes)
+
+
+def test_what_one_imu_cannot_show_of_itself_is_said_to_be_unseen(alike):
+    unseen = {u.effect: u.would_need for u in alike.cannot_see}
+    assert {effect: unseen[effect] for effect in OF_ONE_IMU} == dict.fromkeys(OF_ONE_IMU, "a vane")
+
+
+def test_a_lag_of_the_servo_is_told_beside_it():
+    flown = estimated(fly(Setup(maneuvers=6, switches={"lag": 0.08}, seed=71)))
+    found = diagnose(flown, Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["actuator_lag"]

@@ -1,0 +1,42 @@
+"""What a single manoeuvre and what two of them tell of a gap."""
+
+import pytest
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.gap.diagnose import diagnose
+from advisor.problems import UnusableInputError
+from tests.gap.generator import Setup, fly
+
+MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0), strict=True))
+
+
+@pytest.fixture(scope="module")
+def once():
+    """One manoeuvre of an aircraft whose pitching moment is not the simulator's."""
+    return diagnose(fly(Setup(maneuvers=3, seed=4))[:1], Aircraft(model={**MODEL, "M_alpha": -25.0}))
+
+
+def test_one_manoeuvre_tells_where_and_proves_no_cause(once):
+    assert (once.verdict, once.causes, once.shrink) == ("unknown", (), None)
+    assert once.where.block == "moment_equation"
+    assert "in the pitching moment" in once.sentence
+    assert "one manoeuvre cannot prove" in once.sentence
+
+
+def test_one_manoeuvre_shows_whether_its_channels_agree(once):
+    assert once.kinematics.finding == "consistent"
+
+
+def test_one_manoeuvre_that_the_simulator_flies_alike_shows_no_gap():
+    assert diagnose(fly(Setup(maneuvers=3, seed=4))[:1], Aircraft(model=MODEL)).verdict == "none"
+
+
+def test_two_manoeuvres_tell_the_cause_and_how_little_they_are():
+    found = diagnose(fly(Setup(maneuvers=2, switches={"delay": 0.06}, seed=3)), Aircraft(model=MODEL))
+    assert found.causes[0].effect == "transport_delay"
+    assert any("Only 2 manoeuvres" in note for note in found.notes)
+
+
+def test_without_a_manoeuvre_nothing_is_said():
+    with pytest.raises(UnusableInputError, match="No usable manoeuvre"):
+        diagnose([], Aircraft())
