@@ -36,14 +36,14 @@ SPEED = 100.0
 
 
 def again(repeats: int) -> Iterator[list[Columns]]:
-    """The recorded flight one time after the other."""
-    batches = [list(batch) for batch in open_log(LOG)]
-    every = [columns for batch in batches for columns in batch]
+    """The recorded flight one time after the other, second by second."""
+    every = [columns for batch in open_log(LOG) for columns in batch]
+    seconds = _steps(every, 1.0)
     length = round(max(c.arrival_s[-1] for c in every) - min(c.arrival_s[0] for c in every)) + 2
     orders = max(int(c.order[-1]) for c in every) + 1
     for k in range(repeats):
-        for batch in batches:
-            yield [later(columns, float(k * length), k * orders) for columns in batch]
+        for second in seconds:
+            yield [later(columns, float(k * length), k * orders) for columns in second]
 
 
 def ten_hours(flown: Sequence[JudgedManeuver]) -> Iterator[list[Columns]]:
@@ -54,9 +54,9 @@ def ten_hours(flown: Sequence[JudgedManeuver]) -> Iterator[list[Columns]]:
     offset = float(boot.arrival_s[0]) - float(boot.fields["time_boot_ms"][0]) / 1e3
     spans = [judged.maneuver.span for judged in flown]
     joints = [(a.end_s + b.record_from_s) / 2.0 + offset for a, b in pairwise(spans)]
-    quiet = _steps([c for c in (cut(c, last - 29.0, last - 13.0) for c in every) if len(c)])
+    quiet = _steps([c for c in (cut(c, last - 29.0, last - 13.0) for c in every) if len(c)], 0.1 * SPEED)
     parts = [
-        _steps([c for c in (cut(c, a, b) for c in every) if len(c)])
+        _steps([c for c in (cut(c, a, b) for c in every) if len(c)], 0.1 * SPEED)
         for a, b in zip([first, *joints], [*joints, last + 1.0], strict=True)
     ]
     now, order, k = float(first), 0, 0
@@ -73,11 +73,11 @@ def ten_hours(flown: Sequence[JudgedManeuver]) -> Iterator[list[Columns]]:
         k += 1
 
 
-def _steps(pieces: list[Columns]) -> list[list[Columns]]:
+def _steps(pieces: list[Columns], step_s: float) -> list[list[Columns]]:
     first, last = min(c.arrival_s[0] for c in pieces), max(c.arrival_s[-1] for c in pieces)
-    starts = np.arange(first, last + 1e-3, 0.1 * SPEED)
+    starts = np.arange(first, last + 1e-3, step_s)
     steps = [
-        [part for c in pieces if len(part := cut(c, start, start + 0.1 * SPEED))] for start in starts.tolist()
+        [part for c in pieces if len(part := cut(c, start, start + step_s))] for start in starts.tolist()
     ]
     return [sorted(step, key=lambda c: int(c.order[0])) for step in steps if step]
 
@@ -85,13 +85,12 @@ def _steps(pieces: list[Columns]) -> list[list[Columns]]:
 def cost(repeats: int) -> tuple[float, int, list[float]]:
     """Processor seconds of a whole campaign, its manoeuvres, and the seconds of each verdict."""
     campaign, verdicts, total = Campaign(UNKNOWN_SERVO), [], 0.0
-    for batch in again(repeats):
-        for columns in batch:
-            begin = time.process_time()
-            told = campaign.feed([columns])
-            took = time.process_time() - begin
-            total += took
-            verdicts += [took] * any(isinstance(event, ManeuverJudged) for event in told)
+    for second in again(repeats):
+        begin = time.process_time()
+        told = campaign.feed(second)
+        took = time.process_time() - begin
+        total += took
+        verdicts += [took] * any(isinstance(event, ManeuverJudged) for event in told)
     begin = time.process_time()
     campaign.finish()
     maneuvers = len(campaign.state.maneuvers)
@@ -125,8 +124,8 @@ def resident_mb() -> float:
 def hours() -> None:
     """Print what ten hours of flight take, and whether each verdict is that of its piece."""
     alone = Campaign(KNOWN_SERVO)
-    for batch in again(1):
-        alone.feed(batch)
+    for second in again(1):
+        alone.feed(second)
     alone.finish()
     pieces = alone.state.maneuvers
     campaign, told_h = Campaign(KNOWN_SERVO, settle=True), 0.0

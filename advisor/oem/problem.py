@@ -218,7 +218,7 @@ class _Piece:
         begin, end = min(t[0] for t in stamps), max(t[-1] for t in stamps)
         breaks, pace = problem.servo.grid(record.elevator.t)
         inside = breaks[(breaks > begin) & (breaks < end)]
-        t = _merged(np.concatenate([*stamps, inside]), pace)
+        t = merged(np.concatenate([*stamps, inside]), pace)
         step = np.diff(t)
         middle = t[:-1] + step / 2.0
         at_event, start, arrival = problem.servo.move(record.elevator.t, record.elevator.y, t, record.held)
@@ -257,7 +257,7 @@ def _finite(signal: Signal) -> Signal:
     return Signal(np.ascontiguousarray(signal.t[keep], float), np.ascontiguousarray(signal.y[keep], float))
 
 
-def _merged(stamps: FloatArray, pace: float) -> FloatArray:
+def merged(stamps: FloatArray, pace: float) -> FloatArray:
     """Distinct stamps in order, with more between where they lie further apart than ``pace``."""
     ordered = np.sort(stamps)
     t: FloatArray = ordered[np.concatenate([[True], np.diff(ordered) > STAMP_S])]
