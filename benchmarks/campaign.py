@@ -101,7 +101,7 @@ def growth() -> None:
     """Print the cost of campaigns of growing length."""
     print("Campaign of one log, servo's lag unknown, from messages to the final estimate")
     print(f"{'manoeuvres':>10s} {'CPU':>9s} {'each':>8s} {'ratio':>6s} {'goal':>6s}")
-    base = 0.0
+    base, _ = 0.0, cost(1)
     for repeats in (1, 2, 6, 29):
         seconds, maneuvers, verdicts = cost(repeats)
         base = base or seconds / maneuvers
