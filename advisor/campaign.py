@@ -8,10 +8,12 @@ from advisor.aircraft import Aircraft
 from advisor.assessment import assess
 from advisor.by_hand import NOTHING, ByHand, Remark
 from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.decision.course import Course
 from advisor.decision.history import Flown
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
+from advisor.event_log import EventLog
 from advisor.flight.events import (
     Activity,
     FlightEvent,
@@ -27,12 +29,15 @@ from advisor.flight.marks import MARK_NOTICES, Mark
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
 from advisor.learning import learnt as learnt_from
-from advisor.learning import reserved
-from advisor.oem.estimate import Estimate
-from advisor.oem.estimator import estimate_jointly
+from advisor.learning import may_learn, reserved
+from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
 from advisor.problems import Problem
 from advisor.settling import Settling
+from advisor.together import NEWEST, Together
+
+NOTICES = 1000
+"""Sentences kept for the event log, 0.1 kB each: some hundred manoeuvres with all that is said of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,13 +93,15 @@ class Campaign:
         self._to_remark = list(by_hand.remarks)
         self._maneuvers: list[Maneuver] = []
         self._history: list[Flown] = []
-        self._notices: list[str] = []
-        self._mark_notes: list[str] = []
-        self._sensor_notes: list[str] = []
-        self._activity: list[Activity] = []
+        self._notices = EventLog(NOTICES)
+        self._mark_notes: tuple[str, ...] = ()
+        self._sensor_notes: tuple[str, ...] = ()
+        self._activity: tuple[Activity, ...] = ()
         self._judged: tuple[JudgedManeuver, ...] = ()
-        self._flight_test = flight_test((), aircraft.campaign, aircraft)
-        self._model: Estimate | None = None
+        self._course = Course(aircraft.campaign)
+        self._flight_test = flight_test((), aircraft.campaign, aircraft, self._course)
+        self._together = Together(aircraft)
+        self._ended = False
         self._settling = Settling(aircraft) if settle else None
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
@@ -108,7 +115,9 @@ class Campaign:
         if self._stream.marks.by_hand_since_s is not None:
             self.end_maneuver()
         told = self._take(self._stream.finish())
-        self._learn(exactly=True)
+        self._ended = True
+        self._decide()
+        self._learn()
         for problem in self._stream.marks.problems():
             self._log(str(problem))
         return told
@@ -119,6 +128,7 @@ class Campaign:
         stream = self._stream
         flying = stream.so_far()
         settled = self._settling.follow(flying) if self._settling else None
+        joined = self._joined
         return CampaignState(
             vehicle=stream.vehicle,
             now_s=stream.now_s,
@@ -127,17 +137,18 @@ class Campaign:
             channels=stream.channels,
             maneuvers=self._judged,
             flight_test=self._flight_test,
-            model=self._model,
+            model=self._together.estimate([judged.maneuver for judged in joined]),
             flying=flying,
             marking_since_s=stream.marks.by_hand_since_s,
             settling=settled.estimate if settled else None,
             enough=settled.enough if settled else None,
-            estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
+            estimate_from=tuple(judged.maneuver.number for judged in joined),
             elevator_notes=stream.elevator_notes,
-            sensor_notes=tuple(self._sensor_notes),
-            mark_notes=tuple(self._mark_notes),
-            notices=tuple(self._notices),
-            activity=tuple(self._activity),
+            sensor_notes=self._sensor_notes,
+            mark_notes=self._mark_notes,
+            notices=self._notices.lines,
+            notices_before=self._notices.before,
+            activity=self._activity,
         )
 
     @property
@@ -200,15 +211,15 @@ class Campaign:
                     self._log(self._flight_test.sentence, ended_s)
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
-                    self._activity[-1:] = [joined] if joined else [*self._activity[-1:], event]
+                    self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
                 case ModeChanged(mode, at_s):
                     self._log(f"mode {mode}", at_s)
                 case Notice(code, text):
                     self._log(text)
                     if code in MARK_NOTICES:
-                        self._mark_notes.append(text)
+                        self._mark_notes += (text,)
                     if code == SENSOR_NOTICE:
-                        self._sensor_notes.append(text)
+                        self._sensor_notes += (text,)
                 case VehicleFound(vehicle):
                     self._log(f"following {vehicle}")
                 case Rebooted(boot):
@@ -232,8 +243,8 @@ class Campaign:
 
     def _decide(self) -> None:
         plan = self._aircraft.campaign
-        verdicts = judge_campaign(self._history, plan)
-        self._judged = tuple(
+        verdicts = judge_campaign(self._history, plan, self._course)
+        judged = (
             JudgedManeuver(
                 maneuver,
                 flown.estimate,
@@ -243,17 +254,29 @@ class Campaign:
             )
             for maneuver, flown, verdict in zip(self._maneuvers, self._history, verdicts, strict=True)
         )
-        self._flight_test = flight_test(self._history, plan, self._aircraft)
-        model = estimate_jointly([j.maneuver for j in self._judged if j.verdict.accepted], self._aircraft)
-        self._model = model if isinstance(model, Estimate) else None
-        self._judged = tuple(
-            replace(judged, verdict=reserved(judged.verdict, judged.estimate, self._model))
-            for judged in self._judged
-        )
+        self._judged = tuple(judged)
+        self._flight_test = flight_test(self._history, plan, self._aircraft, self._course)
+        if lag_is_unknown(self._learnt):
+            model = self._together.estimate([judged.maneuver for judged in self._joined])
+            self._judged = tuple(
+                replace(judged, verdict=reserved(judged.verdict, judged.estimate, model))
+                for judged in self._judged
+            )
 
-    def _learn(self, exactly: bool = False) -> None:
+    @property
+    def _joined(self) -> Sequence[JudgedManeuver]:
+        """The manoeuvres that are estimated together: the newest accepted ones, at the end all."""
+        accepted = [judged for judged in self._judged if judged.verdict.accepted]
+        return accepted if self._ended else accepted[-NEWEST:]
+
+    def _learn(self) -> None:
         """Examine all manoeuvres again when they have told more of the instruments."""
-        learnt = learnt_from(self._learnt, self._model, exactly=exactly)
+        joined = self._joined
+        all_of_them = len(joined) == sum(judged.verdict.accepted for judged in self._judged)
+        if not may_learn(self._learnt, all_of_them):
+            return
+        model = self._together.estimate([judged.maneuver for judged in joined])
+        learnt = learnt_from(self._learnt, model, exactly=self._ended)
         if learnt is self._learnt:
             return
         self._learnt = learnt
@@ -279,7 +302,7 @@ class Campaign:
         self._learn()
 
     def _log(self, text: str, at_s: float = math.nan) -> None:
-        self._notices.append(f"{at_s:.1f} s: {text}" if math.isfinite(at_s) else text)
+        self._notices.add([f"{at_s:.1f} s: {text}" if math.isfinite(at_s) else text])
 
     def _index(self, number: int) -> int:
         return [maneuver.number for maneuver in self._maneuvers].index(number)

@@ -39,7 +39,7 @@ class CampaignState:
     maneuvers: tuple[JudgedManeuver, ...]
     flight_test: FlightTestVerdict
     model: Estimate | None
-    """Joint estimate over the accepted manoeuvres."""
+    """Joint estimate over the newest accepted manoeuvres; over all of them once the flight has ended."""
     flying: Maneuver | None = None
     """The manoeuvre being flown now, cut so far."""
     marking_since_s: float | None = None
@@ -57,6 +57,8 @@ class CampaignState:
     mark_notes: tuple[str, ...] = ()
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()
-    """Sentences for the event log, oldest first."""
+    """Sentences for the event log, the newest of them, oldest first."""
+    notices_before: int = 0
+    """How many sentences came before ``notices`` and are kept no longer."""
     activity: tuple[Activity, ...] = ()
     """Movements of the elevator that were no test inputs, oldest first; alike neighbours are one."""

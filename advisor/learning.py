@@ -18,6 +18,21 @@ CONTRADICTS = 3.0
 """Standard deviations between two estimates of one derivative that chance does not make."""
 
 
+def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
+    """Whether a joint estimate may tell more of the servo than is known.
+
+    Parameters
+    ----------
+    aircraft
+        As the crew gives it, with what was learnt before.
+    all_of_them
+        Whether the joint estimate is made from all accepted manoeuvres. The newest alone tell a lag that is
+        known already no better.
+    """
+    elevator = aircraft.elevator
+    return elevator.lag_s is None and (elevator.lag_found_s is None or all_of_them)
+
+
 def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False) -> Aircraft:
     """The aircraft with the servo's lag as the joint estimate tells it; the same one when nothing is new.
 

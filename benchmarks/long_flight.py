@@ -24,20 +24,22 @@ def long_flight(log: Path, minutes: float) -> list[Columns]:
     arrival = np.concatenate([p.arrival_s for p in pieces])
     first, last = float(arrival.min()), float(arrival.max())
     last_order = max(int(p.order[-1]) for p in pieces)
-    quiet = [p for p in (_cut(p, last - 29.0, last - 13.0) for p in pieces) if len(p)]
+    quiet = [p for p in (cut(p, last - 29.0, last - 13.0) for p in pieces) if len(p)]
     repeats = int((minutes * 60.0 - (last - first)) / 16.0)
     return pieces + [
-        _later(piece, 29.0 + 16.0 * k, (k + 1) * (last_order + 1)) for k in range(repeats) for piece in quiet
+        later(piece, 29.0 + 16.0 * k, (k + 1) * (last_order + 1)) for k in range(repeats) for piece in quiet
     ]
 
 
-def _cut(piece: Columns, start_s: float, end_s: float) -> Columns:
+def cut(piece: Columns, start_s: float, end_s: float) -> Columns:
+    """What arrived from ``start_s`` until before ``end_s``."""
     wanted = (piece.arrival_s >= start_s) & (piece.arrival_s < end_s)
     fields = {name: np.array(values)[wanted] for name, values in piece.fields.items()}
     return replace(piece, order=piece.order[wanted], arrival_s=piece.arrival_s[wanted], fields=fields)
 
 
-def _later(piece: Columns, seconds: float, order: int) -> Columns:
+def later(piece: Columns, seconds: float, order: int) -> Columns:
+    """The same messages so much later on all clocks, and in the order of arrival."""
     fields = dict(piece.fields)
     for name, per_second in (("time_boot_ms", 1e3), ("time_usec", 1e6)):
         if name in fields:

@@ -7,8 +7,9 @@ import numpy as np
 from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.decision.choice import Choice, best_input
 from advisor.decision.conditions import Conditions, find_conditions
+from advisor.decision.course import Course
 from advisor.decision.history import Flown, usable_ones
-from advisor.decision.information import Knowledge, knowledge
+from advisor.decision.information import Knowledge
 from advisor.decision.inputs import StepInput
 from advisor.decision.judge import accepted_estimates
 from advisor.decision.remaining import by_information, by_scatter, share_after, usable_share
@@ -21,16 +22,19 @@ PASSING = {"separate": 0.5}
 """Share of equally good manoeuvres that pass the rule: Eq. (11) rejects half, Eq. (10) hardly any."""
 
 
-def next_input(history: Sequence[Flown], aircraft: Aircraft, stopped: bool) -> NextInput:
-    """What to fly next, as of the last manoeuvre of ``history``."""
+def next_input(
+    history: Sequence[Flown], aircraft: Aircraft, stopped: bool, course: Course | None = None
+) -> NextInput:
+    """What to fly next, as of the last manoeuvre of ``history``; ``course`` as in ``flight_test``."""
     plan = aircraft.campaign
     if stopped:
         return NextInput("no further manoeuvre needed", Remaining(0, 0))
-    conditions = find_conditions(history, aircraft)
+    course = course or Course(plan)
+    conditions = find_conditions(history, aircraft, course)
     if conditions is None:
         spoken = _same_but_better(history[-1]) if history else _first_input(aircraft)
         return NextInput(f"next: {spoken}", _without_a_model(history, plan))
-    known = knowledge(usable_ones(history), plan)
+    known = course.known(usable_ones(history))
     choice = _choose(conditions, known, plan)
     if choice is None:
         spoken, errors = "the same again", conditions.last_covariance
@@ -42,10 +46,11 @@ def next_input(history: Sequence[Flown], aircraft: Aircraft, stopped: bool) -> N
 
 def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | None:
     """The input that helps most now; None before the first usable manoeuvre."""
-    conditions = find_conditions(history, aircraft)
+    course = Course(aircraft.campaign)
+    conditions = find_conditions(history, aircraft, course)
     if conditions is None:
         return None
-    known = knowledge(usable_ones(history), aircraft.campaign)
+    known = course.known(usable_ones(history))
     choice = _choose(conditions, known, aircraft.campaign)
     return choice[0] if choice else None
 

@@ -18,12 +18,13 @@ from advisor.decision.history import Flown
 from advisor.decision.pooling import (
     DERIVATIVES,
     Belief,
+    Pooled,
     Shared,
     beliefs_at_one_speed,
     disagreement,
-    inconsistency,
     information_of,
-    pool_shared,
+    pooled,
+    pooled_on_both_sides,
 )
 from advisor.flight.messages import FloatArray
 
@@ -75,44 +76,44 @@ def find_change(history: Sequence[Flown]) -> Change | None:
     odd = [k for k in odd_ones(beliefs) if k < len(beliefs) - 1]
     numbers = [i for k, (i, _) in enumerate(flown) if k not in odd]
     beliefs = [belief for k, belief in enumerate(beliefs) if k not in odd]
-    splits = [_compare(beliefs[:k], beliefs[k:]) for k in range(2, len(beliefs))]
-    if not splits:
+    if len(beliefs) < 3:
         return None
-    k = int(np.argmax(splits)) + 2
-    before, after = beliefs[:k], beliefs[k:]
-    if splits[k - 2] <= 1.0:
+    splits = pooled_on_both_sides(beliefs)[1:]
+    apart = [_compare(before, after) for before, after in splits]
+    k = int(np.argmax(apart))
+    if apart[k] <= 1.0:
         return None
-    widening = _widening(before, after)
-    first, second = pool_shared(before), pool_shared(after)
-    moved = _moved(first, second, widening)
-    if not moved or _back_to_normal(before, after):
+    first, second = splits[k]
+    k += 2
+    widening = _widening(first, second)
+    moved = _moved(first.shared, second.shared, widening)
+    if not moved or _back_to_normal(first, beliefs[k:]):
         return None
-    looks_like = _simplest_cause(first, second, widening)
-    return _told(numbers[k - 1], numbers[k], len(after) > 1, moved, looks_like)
+    looks_like = _simplest_cause(first.shared, second.shared, widening)
+    return _told(numbers[k - 1], numbers[k], len(beliefs) > k + 1, moved, looks_like)
 
 
-def _compare(before: Sequence[Belief], after: Sequence[Belief]) -> float:
+def _compare(before: Pooled, after: Pooled) -> float:
     """Distance between both sides over its limit; above 1 noise does not explain it."""
-    distance, dof = disagreement(pool_shared(before), pool_shared(after))
+    distance, dof = disagreement(before.shared, after.shared)
     if dof == 0:
         return 0.0
     return distance / _widening(before, after) / float(chdtri(dof, FALSE_ALARM))
 
 
-def _widening(before: Sequence[Belief], after: Sequence[Belief]) -> float:
+def _widening(before: Pooled, after: Pooled) -> float:
     """Variance ratio of the scatter within both sides to what their intervals say, at least 1."""
-    sides = [inconsistency(before), inconsistency(after)]
-    total, dof = sum(t for t, _ in sides), sum(d for _, d in sides)
-    return max(1.0, total / dof) if dof > 0 else 1.0
+    dof = before.dof + after.dof
+    return max(1.0, (before.inconsistency + after.inconsistency) / dof) if dof > 0 else 1.0
 
 
-def _back_to_normal(before: Sequence[Belief], after: Sequence[Belief]) -> bool:
+def _back_to_normal(before: Pooled, after: Sequence[Belief]) -> bool:
     """Whether the newest manoeuvre is again like those before: then the odd ones were merely poor."""
     if len(after) < 2:
         return False
-    with_old, dof = disagreement(pool_shared(before), after[-1].shared)
-    with_new, _ = disagreement(pool_shared(after[:-1]), after[-1].shared)
-    return with_old < with_new or inconsistency(after)[0] > with_old + float(chdtri(dof, CONSISTENCY))
+    with_old, dof = disagreement(before.shared, after[-1].shared)
+    with_new, _ = disagreement(pooled(after[:-1]).shared, after[-1].shared)
+    return with_old < with_new or pooled(after).inconsistency > with_old + float(chdtri(dof, CONSISTENCY))
 
 
 def _moved(before: Shared, after: Shared, widening: float) -> tuple[Moved, ...]:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft import Aircraft
+from advisor.decision.course import Course
 from advisor.decision.foresight import UNMEASURED, Instruments
 from advisor.decision.history import Flown, usable_ones
-from advisor.decision.information import knowledge
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import response_to, trim_of
 from advisor.flight.maneuver import Maneuver
@@ -50,7 +50,7 @@ class Conditions:
     """(8, 8) of the errors of the last manoeuvre's estimate."""
 
 
-def find_conditions(history: Sequence[Flown], aircraft: Aircraft) -> Conditions | None:
+def find_conditions(history: Sequence[Flown], aircraft: Aircraft, course: Course) -> Conditions | None:
     """What the usable manoeuvres say of trim, instruments and limits; None before the first."""
     flown = [(m, e, m.maneuver) for m in history if (e := m.usable) and m.maneuver is not None]
     if not flown:
@@ -58,7 +58,7 @@ def find_conditions(history: Sequence[Flown], aircraft: Aircraft) -> Conditions 
     _, estimate, last = flown[-1]
     fits = estimate.fits[0]
     span, elevator = last.span, last.channels["elevator"]
-    theta = knowledge(usable_ones(history), aircraft.campaign).belief.theta
+    theta = course.known(usable_ones(history)).belief.theta
     trim = trim_of(last)
     travel = _travel(aircraft, trim)
     largest_seen = max(_excursion(m, e) for m, e, _ in flown)

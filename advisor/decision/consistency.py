@@ -10,10 +10,9 @@ from advisor.decision.pooling import (
     Belief,
     Shared,
     disagreement,
-    inconsistency,
-    inconsistency_without_each,
     pool,
-    pool_shared,
+    pooled,
+    pooled_without_each,
 )
 
 WIDEN_BELOW = 0.05
@@ -46,19 +45,20 @@ def odd_ones(beliefs: Sequence[Belief]) -> Mapping[int, Odd]:
     inside = list(range(len(beliefs)))
     odd: list[int] = []
     while len(inside) >= FEWEST and len(odd) + 1 <= (len(beliefs) - 1) // 3:
-        total, dof = inconsistency([beliefs[i] for i in inside])
+        together = [beliefs[i] for i in inside]
+        _, total, dof = pooled(together)
         if dof < 1 or total < float(chdtri(dof, ODD_BELOW)):
             break
-        remaining = dict(zip(inside, inconsistency_without_each([beliefs[i] for i in inside]), strict=True))
-        candidate = min(remaining, key=lambda i: remaining[i][0])
-        rest, rest_dof = remaining[candidate]
+        remaining = dict(zip(inside, pooled_without_each(together), strict=True))
+        candidate = min(remaining, key=lambda i: remaining[i].inconsistency)
+        _, rest, rest_dof = remaining[candidate]
         if rest_dof < 1 or rest / rest_dof * ODD_IMPROVEMENT > total / dof:
             break
         inside.remove(candidate)
         odd.append(candidate)
     if not odd:
         return {}
-    others = pool_shared([beliefs[i] for i in inside])
+    others = pooled([beliefs[i] for i in inside]).shared
     return {i: _distance(beliefs[i], others) for i in sorted(odd)}
 
 
@@ -75,7 +75,7 @@ def excess(beliefs: Sequence[Belief]) -> float:
     """
     if len(beliefs) < 2:
         return 1.0
-    total, dof = inconsistency(beliefs)
+    _, total, dof = pooled(beliefs)
     return 1.0 if dof < 1 or total < float(chdtri(dof, WIDEN_BELOW)) else total / dof
 
 

@@ -1,7 +1,7 @@
 """What the rules look at: the manoeuvres of a campaign in the order flown, nothing else.
 
-Every rule is a function of the whole history. Nothing is carried from one call to the next,
-so that excluding a manoeuvre by hand recomputes every decision that followed it.
+Every rule is a function of the whole history, so that excluding a manoeuvre by hand decides anew all that
+followed it. What is kept from one decision to the next (``course``) changes no decision.
 """
 
 from collections.abc import Sequence

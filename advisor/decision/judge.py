@@ -1,12 +1,13 @@
 """Was that manoeuvre good: what speaks against it itself, then the rule the crew chose."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from math import floor
 
 from advisor.aircraft import CampaignPlan, Rule
 from advisor.beside import beside
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.consistency import Odd, odd_ones
+from advisor.decision.course import Course
 from advisor.decision.history import Flown
 from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.pooling import beliefs_at_one_speed
@@ -17,18 +18,23 @@ COLOURED = 0.5
 """Lag-1 correlation of a residual below which nothing drives it."""
 
 
-def judge_campaign(history: Sequence[Flown], plan: CampaignPlan) -> tuple[ManeuverVerdict, ...]:
+def judge_campaign(
+    history: Sequence[Flown], plan: CampaignPlan, course: Course | None = None
+) -> tuple[ManeuverVerdict, ...]:
     """Verdicts on all manoeuvres flown so far, in the same order, each with what every rule says.
 
     A verdict depends only on the manoeuvres before it, unless one of them is excluded by hand; under the
-    rule ``information`` later ones may show that it contradicts all the others.
+    rule ``information`` later ones may show that it contradicts all the others. A ``course`` keeps what
+    earlier decisions on this campaign found; the verdicts are those without one.
     """
-    by_rule, odd = rule_results(history), contradicting(history)
+    course = course or Course(plan)
+    odd = contradicting(history)
+    by_rule = {rule: _results(history, rule, odd) for rule in MANEUVER_RULES}
     accepted = [result.accepted for result in by_rule[plan.rule]]
     verdicts = []
     for i, flown in enumerate(history):
         costly = flown.usable is not None and plan.rule != "information" and not accepted[i]
-        larger = larger_and_agreeing(history[: i + 1], accepted, plan) if costly else None
+        larger = larger_and_agreeing(history[: i + 1], accepted, course) if costly else None
         rules = {name: results[i] for name, results in by_rule.items()}
         verdicts.append(_verdict(flown, plan.rule, rules, odd.get(i), larger))
     return tuple(verdicts)
@@ -39,14 +45,17 @@ def judge(flown: Flown, history: Sequence[Flown], plan: CampaignPlan) -> Maneuve
     return judge_campaign([*history, flown], plan)[-1]
 
 
-def rule_results(history: Sequence[Flown]) -> Mapping[Rule, tuple[RuleResult, ...]]:
-    """What every rule says of every manoeuvre."""
+def results_of(history: Sequence[Flown], rule: Rule) -> tuple[RuleResult, ...]:
+    """What one rule says of every manoeuvre."""
+    return _results(history, rule, contradicting(history) if rule == "information" else ())
+
+
+def _results(history: Sequence[Flown], rule: Rule, odd: Container[int]) -> tuple[RuleResult, ...]:
     costs = [estimate.cost if (estimate := flown.usable) else None for flown in history]
-    by_rule = {name: rule(costs) for name, rule in MANEUVER_RULES.items()}
-    odd = contradicting(history)
-    weighed = enumerate(by_rule["information"])
-    by_rule["information"] = tuple(RuleResult(r.accepted and i not in odd, r.limit) for i, r in weighed)
-    return by_rule
+    results = MANEUVER_RULES[rule](costs)
+    if rule != "information":
+        return results
+    return tuple(RuleResult(r.accepted and i not in odd, r.limit) for i, r in enumerate(results))
 
 
 def contradicting(history: Sequence[Flown]) -> Mapping[int, Odd]:
@@ -60,7 +69,7 @@ def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
     """Estimates of the manoeuvres that ``rule`` accepts, in the order flown."""
     return [
         estimate
-        for flown, result in zip(history, rule_results(history)[rule], strict=True)
+        for flown, result in zip(history, results_of(history, rule), strict=True)
         if result.accepted and (estimate := flown.usable)
     ]
 

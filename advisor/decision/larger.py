@@ -11,9 +11,8 @@ from statistics import median
 
 import numpy as np
 
-from advisor.aircraft import CampaignPlan
+from advisor.decision.course import Course
 from advisor.decision.history import Flown, usable_ones
-from advisor.decision.information import knowledge
 from advisor.oem.estimate import Estimate
 
 
@@ -27,15 +26,13 @@ class Larger:
     """Number of the manoeuvre that set the limit; None where it was a median."""
 
 
-def larger_and_agreeing(
-    history: Sequence[Flown], accepted: Sequence[bool], plan: CampaignPlan
-) -> Larger | None:
+def larger_and_agreeing(history: Sequence[Flown], accepted: Sequence[bool], course: Course) -> Larger | None:
     """Whether the newest manoeuvre of ``history`` was larger than what set its limit, and predicted.
 
     Parameters
     ----------
     history
-        Up to and including the manoeuvre that the paper's rule ``plan.rule`` refused.
+        Up to and including the manoeuvre that the paper's rule ``course.plan.rule`` refused.
     accepted
         What that rule says of each.
 
@@ -46,13 +43,13 @@ def larger_and_agreeing(
     """
     before, newest = history[:-1], history[-1]
     setters = [i for i, flown in enumerate(before) if flown.usable]
-    if plan.rule == "continuous":
+    if course.plan.rule == "continuous":
         setters = [i for i in setters if accepted[i]][-1:]
     if not setters or not newest.usable:
         return None
     reference = median(_range(history[i]) for i in setters)
     ratio = _range(newest) / reference if reference > 0.0 else 1.0
-    if round(ratio, 1) <= 1.0 or not knowledge(usable_ones(history), plan).predicted:
+    if round(ratio, 1) <= 1.0 or not course.standing(usable_ones(history)).predicted:
         return None
     return Larger(ratio, setters[0] + 1 if len(setters) == 1 else None)
 

@@ -69,14 +69,32 @@ def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
     of the residuals is a matter of instruments and air, which the manoeuvres share: how much it widens
     the Cramér-Rao bounds is the median over them, steadier than each manoeuvre's own.
     """
-    widening = _widening_by_colour(estimates)
-    reference = common_airspeed(estimates)
+    if not estimates:
+        return []
+    scale, values = _at_one_speed(estimates)
+    factors = _widening_by_colour(estimates) * scale[:, :, None] * scale[:, None, :]
     return [
-        Belief(e.theta, e.covariance_cr * widening)
-        if reference is None or e.airspeed_m_s is None
-        else _at_speed(e, e.airspeed_m_s, reference, widening)
-        for e in estimates
+        Belief(value, e.covariance_cr * factor)
+        for e, value, factor in zip(estimates, values, factors, strict=True)
     ]
+
+
+def values_at_one_speed(estimates: Sequence[Estimate]) -> FloatArray:
+    """Shape (n, 8): the values of ``beliefs_at_one_speed``."""
+    return _at_one_speed(estimates)[1]
+
+
+def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray]:
+    """(n, 8) factors on the parameters of each estimate, gravity's part apart, and (n, 8) the parameters."""
+    theta = np.array([e.theta for e in estimates])
+    reference = common_airspeed(estimates)
+    if reference is None:
+        return np.ones_like(theta), theta
+    speeds = np.array([e.airspeed_m_s for e in estimates])[:, None]
+    gravity = np.zeros(len(PARAMETERS))
+    gravity[PARAMETERS.index("Z_0")] = GRAVITY_M_S2
+    scale = (reference / speeds) ** _SPEED_POWER
+    return scale, (theta - gravity / speeds) * scale + gravity / reference
 
 
 def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
@@ -87,8 +105,6 @@ def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
 
 def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
     """(8, 8) factor on the Cramér-Rao bounds: median ratio of corrected to plain errors, squared."""
-    if not estimates:
-        return np.ones((len(PARAMETERS), len(PARAMETERS)))
     plain = np.array([e.std_cr for e in estimates])
     corrected = np.array([e.std for e in estimates])
     usable = np.isfinite(plain) & np.isfinite(corrected) & (plain > 0.0)
@@ -97,21 +113,9 @@ def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
     return np.outer(median, median)
 
 
-def _at_speed(estimate: Estimate, speed: float, reference: float, widening: FloatArray) -> Belief:
-    scale = (reference / speed) ** _SPEED_POWER
-    gravity = np.zeros(len(PARAMETERS))
-    gravity[PARAMETERS.index("Z_0")] = GRAVITY_M_S2
-    theta = (estimate.theta - gravity / speed) * scale + gravity / reference
-    return Belief(theta, estimate.covariance_cr * widening * np.outer(scale, scale))
-
-
 def pool_shared(beliefs: Sequence[Belief]) -> Shared:
     """The information-weighted mean of the derivatives of at least one estimate."""
-    information = np.sum([belief.information for belief in beliefs], axis=0)
-    weighted = np.sum([b.information @ _finite(b.shared.theta) for b in beliefs], axis=0)
-    covariance = covariance_of(information)
-    known = np.isfinite(np.diag(covariance))
-    return Shared(np.where(known, _finite(covariance) @ weighted, np.nan), covariance)
+    return _Summed.of(beliefs).pooled().shared
 
 
 def pool(beliefs: Sequence[Belief]) -> Belief:
@@ -126,17 +130,16 @@ def pool(beliefs: Sequence[Belief]) -> Belief:
         At least one.
     """
     shared = pool_shared(beliefs)
-    n = len(beliefs)
-    constants, gain, own = np.zeros(len(_C)), np.zeros((len(_C), len(_D))), np.zeros((len(_C), len(_C)))
-    for belief in beliefs:
-        cross = _finite(belief.covariance[_CD])
-        each = cross @ belief.information
-        constants += (belief.theta[_C] + each @ _finite(shared.theta - belief.shared.theta)) / n
-        gain += each / n
-        own += (belief.covariance[_CC] - each @ cross.T) / n**2
+    n, values = len(beliefs), np.array([belief.theta for belief in beliefs])
+    covariances = np.array([belief.covariance for belief in beliefs])
+    cross = _finite(covariances[:, _CD[0], _CD[1]])
+    each = cross @ information_of(covariances[:, _DD[0], _DD[1]])
+    apart = _finite(shared.theta - values[:, _D])
+    gain = each.mean(axis=0)
+    own = np.sum(covariances[:, _CC[0], _CC[1]] - each @ np.swapaxes(cross, 1, 2), axis=0) / n**2
     theta, covariance = np.empty(len(PARAMETERS)), np.empty((len(PARAMETERS), len(PARAMETERS)))
     known = _finite(shared.covariance)
-    theta[_D], theta[_C] = shared.theta, constants
+    theta[_D], theta[_C] = shared.theta, np.mean(values[:, _C] + np.einsum("nij,nj->ni", each, apart), axis=0)
     covariance[_DD], covariance[_CC] = shared.covariance, own + gain @ known @ gain.T
     covariance[_CD] = gain @ known
     covariance[_DC] = covariance[_CD].T
@@ -155,51 +158,99 @@ def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
     return _distance(one.theta - other.theta, information_of(one.covariance + other.covariance))
 
 
-def inconsistency(beliefs: Sequence[Belief]) -> tuple[float, int]:
-    """How far several estimates of the derivatives lie from their pooled value.
+class Pooled(NamedTuple):
+    """Several estimates of the derivatives as one, and how far they lie from that one."""
 
-    Returns
-    -------
-    tuple of float and int
-        χ² and its degrees of freedom: those the estimates have together, less those the pooled value
-        took.
+    shared: Shared
+    inconsistency: float
+    """χ² about the pooled value."""
+    dof: int
+    """Degrees of freedom of χ²: those the estimates have together, less those the pooled value took."""
+
+
+def pooled(beliefs: Sequence[Belief]) -> Pooled:
+    """At least one estimate, pooled."""
+    return _Summed.of(beliefs).pooled()
+
+
+def pooled_without_each(beliefs: Sequence[Belief]) -> list[Pooled]:
+    """All the others, pooled, for each of at least two estimates left out in turn."""
+    return _Summed.of(beliefs).without_each()
+
+
+def pooled_on_both_sides(beliefs: Sequence[Belief]) -> list[tuple[Pooled, Pooled]]:
+    """The estimates before and from each but the first on, pooled."""
+    return _Summed.of(beliefs).both_sides()
+
+
+@dataclass(frozen=True, slots=True)
+class _Summed:
+    """Estimates as the sums from which any of them are pooled.
+
+    χ² about the pooled value is Σ dᵢᵀIᵢdᵢ - vᵀCv with v = Σ Iᵢdᵢ and C = (Σ Iᵢ)⁻¹, d counted from a value
+    near all of them. The sums of some estimates are all that is needed, so that pooling every part of a long
+    campaign costs little more than pooling all of it.
     """
-    centre = pool_shared(beliefs).theta
-    total, dof = 0.0, -int(np.isfinite(centre).sum())
-    for belief in beliefs:
-        distance, size = _distance(belief.shared.theta - centre, belief.information)
-        total, dof = total + distance, dof + size
-    return total, dof
+
+    centre: FloatArray
+    """(6,) what d counts from; 0 where nothing is known."""
+    information: FloatArray
+    """(n, 6, 6) Iᵢ."""
+    pull: FloatArray
+    """(n, 6) Iᵢdᵢ."""
+    own: FloatArray
+    """(n,) dᵢᵀIᵢdᵢ."""
+    known: FloatArray
+    """(n,) how many derivatives each knows."""
+
+    @classmethod
+    def of(cls, beliefs: Sequence[Belief]) -> "_Summed":
+        information = information_of(np.array([belief.covariance for belief in beliefs])[:, _DD[0], _DD[1]])
+        theta = _finite(np.array([belief.theta for belief in beliefs])[:, _D])
+        total, weighted = information.sum(axis=0), np.einsum("nij,nj->i", information, theta)
+        centre = _finite(covariance_of(total)) @ weighted
+        apart = theta - centre
+        pull = np.einsum("nij,nj->ni", information, apart)
+        known = np.count_nonzero(np.diagonal(information, axis1=1, axis2=2) > 0.0, axis=1)
+        return cls(centre, information, pull, np.einsum("ni,ni->n", pull, apart), known)
+
+    def pooled(self) -> Pooled:
+        return self._pooled(*(values.sum(axis=0, keepdims=True) for values in self._values()))[0]
+
+    def without_each(self) -> list[Pooled]:
+        # Sums before and after each, instead of all less one, lose no digits.
+        return self._pooled(*(_before(values) + _after(values) for values in self._values()))
+
+    def both_sides(self) -> list[tuple[Pooled, Pooled]]:
+        before = self._pooled(*(_before(values)[1:] for values in self._values()))
+        after = self._pooled(*(_after(values)[:-1] for values in self._values()))
+        return list(zip(before, after, strict=True))
+
+    def _values(self) -> tuple[FloatArray, ...]:
+        return self.information, self.pull, self.own, self.known
+
+    def _pooled(
+        self, information: FloatArray, pull: FloatArray, own: FloatArray, known: FloatArray
+    ) -> list[Pooled]:
+        covariance = covariance_of(information)
+        told = np.isfinite(np.diagonal(covariance, axis1=1, axis2=2))
+        moved = np.einsum("nij,nj->ni", _finite(covariance), pull)
+        theta = np.where(told, self.centre + moved, np.nan)
+        chi2 = np.maximum(own - np.einsum("ni,ni->n", pull, moved), 0.0)
+        dof = known - told.sum(axis=1)
+        return [
+            Pooled(Shared(theta[k], covariance[k]), float(chi2[k]), int(dof[k])) for k in range(len(theta))
+        ]
 
 
-def inconsistency_without_each(beliefs: Sequence[Belief]) -> list[tuple[float, int]]:
-    """As `inconsistency` of all the others, for each of at least two estimates left out in turn.
-
-    χ² about the pooled value is Σ dᵢᵀIᵢdᵢ - vᵀCv with v = Σ Iᵢdᵢ and C = (Σ Iᵢ)⁻¹. The sums before and
-    after each estimate are kept, so that all the χ² together cost little more than one.
-    """
-    centre = pool_shared(beliefs).theta
-    information = np.array([belief.information for belief in beliefs])
-    apart = np.array([_finite(belief.shared.theta - centre) for belief in beliefs])
-    pull = np.einsum("nij,nj->ni", information, apart)
-    own = np.einsum("ni,ni->n", pull, apart)
-    known = np.count_nonzero(np.diagonal(information, axis1=1, axis2=2) > 0.0, axis=1)
-    others, pulls, owns, sizes = (_sum_of_others(values) for values in (information, pull, own, known))
-    found = []
-    for k in range(len(beliefs)):
-        covariance = covariance_of(others[k])
-        pooled = np.isfinite(np.diag(covariance))
-        explained = float(pulls[k] @ _finite(covariance) @ pulls[k])
-        found.append((max(float(owns[k]) - explained, 0.0), int(sizes[k]) - int(pooled.sum())))
-    return found
+def _before(values: FloatArray) -> FloatArray:
+    """For each entry along the first axis the sum of those before."""
+    return np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)[:-1]])
 
 
-def _sum_of_others(values: FloatArray) -> FloatArray:
-    """For each entry along the first axis the sum of all the others, without cancellation."""
-    nothing = np.zeros_like(values[:1])
-    before = np.concatenate([nothing, np.cumsum(values, axis=0)[:-1]])
-    after = np.concatenate([np.cumsum(values[::-1], axis=0)[::-1][1:], nothing])
-    return np.asarray(before + after)
+def _after(values: FloatArray) -> FloatArray:
+    """For each entry along the first axis the sum of those after."""
+    return _before(values[::-1])[::-1]
 
 
 def _finite(values: FloatArray) -> FloatArray:
@@ -214,33 +265,35 @@ def _distance(difference: FloatArray, information: FloatArray) -> tuple[float, i
 
 
 def information_of(covariance: FloatArray) -> FloatArray:
-    """Inverse of a covariance; zero rows and columns for what is unknown (no finite, positive variance)."""
-    variance = np.diag(covariance)
-    known = np.isfinite(variance) & (variance > 0.0)
-    information = np.zeros_like(covariance)
-    block = np.ix_(known, known)
-    if known.any():
-        information[block] = _inverse(covariance[block])
-    return information
+    """Inverse of covariances (..., n, n); zero rows and columns for what is unknown.
+
+    Unknown is what has no finite, positive variance.
+    """
+    variance = np.diagonal(covariance, axis1=-2, axis2=-1)
+    return _inverse(covariance, np.isfinite(variance) & (variance > 0.0), 0.0)
 
 
 def covariance_of(information: FloatArray) -> FloatArray:
-    """Inverse of an information matrix; infinite variance for what it says nothing about."""
-    known = np.diag(information) > 0.0
-    covariance = np.zeros_like(information)
-    covariance[~known, ~known] = np.inf
-    block = np.ix_(known, known)
-    if known.any():
-        covariance[block] = _inverse(information[block])
-    return covariance
+    """Inverse of information matrices (..., n, n); infinite variance for what they say nothing about."""
+    return _inverse(information, np.diagonal(information, axis1=-2, axis2=-1) > 0.0, np.inf)
 
 
-def _inverse(matrix: FloatArray) -> FloatArray:
-    """Inverse of a symmetric positive semi-definite matrix, scaled so that units do not matter."""
-    scale = 1.0 / np.sqrt(np.diag(matrix))
-    outer = np.outer(scale, scale)
+def _inverse(matrix: FloatArray, known: np.ndarray, unknown: float) -> FloatArray:
+    """Inverse of symmetric positive semi-definite matrices (..., n, n), scaled so that units do not matter.
+
+    Rows and columns that are not ``known`` (..., n) become zero, with ``unknown`` on the diagonal.
+    """
+    inside = known[..., :, None] & known[..., None, :]
+    one = np.eye(matrix.shape[-1])
+    scale = 1.0 / np.sqrt(np.where(known, np.diagonal(matrix, axis1=-2, axis2=-1), 1.0))
+    outer = scale[..., :, None] * scale[..., None, :]
+    scaled = np.where(inside, matrix * outer, one)
     try:
-        half = np.linalg.inv(np.linalg.cholesky(matrix * outer))
+        half = np.linalg.inv(np.linalg.cholesky(scaled))
+        inverse = np.swapaxes(half, -2, -1) @ half
     except np.linalg.LinAlgError:
-        return np.asarray(np.linalg.pinv(matrix * outer, hermitian=True)) * outer
-    return np.asarray(half.T @ half) * outer
+        if matrix.ndim > 2:
+            return np.array([_inverse(m, k, unknown) for m, k in zip(matrix, known, strict=True)])
+        inverse = np.linalg.pinv(scaled, hermitian=True)
+    without = np.where((one > 0.0) & ~known[..., None], unknown, 0.0)
+    return np.where(inside, inverse * outer, without)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, CampaignPlan, Criterion
-from advisor.decision.pooling import beliefs_at_one_speed
+from advisor.decision.pooling import values_at_one_speed
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import Estimate
 
@@ -54,4 +54,4 @@ def window(accepted: Sequence[Estimate], plan: CampaignPlan) -> FloatArray | Non
     """Shape (n, 8): the last n accepted estimates at one air speed; None while there are fewer."""
     if len(accepted) < plan.window:
         return None
-    return np.array([belief.theta for belief in beliefs_at_one_speed(accepted[-plan.window :])])
+    return values_at_one_speed(accepted[-plan.window :])

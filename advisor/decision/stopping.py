@@ -9,10 +9,11 @@ from advisor.aircraft import Aircraft, CampaignPlan, Rule
 from advisor.beside import beside
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
+from advisor.decision.course import Course
 from advisor.decision.evidence import evidence, sentence
 from advisor.decision.history import Flown, estimates_of, usable_ones
-from advisor.decision.information import Knowledge, knowledge
-from advisor.decision.judge import accepted_estimates, rule_results
+from advisor.decision.information import Knowledge
+from advisor.decision.judge import accepted_estimates, results_of
 from advisor.decision.scatter import scatter_percent, scattered_most, window
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, limit_percent
 from advisor.decision.warnings import warnings
@@ -22,19 +23,26 @@ _NO_SCALE_PERCENT = 1000.0
 
 
 def flight_test(
-    history: Sequence[Flown], plan: CampaignPlan, aircraft: Aircraft | None = None
+    history: Sequence[Flown],
+    plan: CampaignPlan,
+    aircraft: Aircraft | None = None,
+    course: Course | None = None,
 ) -> FlightTestVerdict:
     """May we stop testing and what to fly next, as of the last manoeuvre of ``history``.
 
     The decision says whether the chosen rule's criterion holds *now*; ``stopped_at`` keeps when it
     first held. They differ when a later manoeuvre contradicts the earlier ones. ``aircraft`` tells the
-    limits within which the next input is sought.
+    limits within which the next input is sought. A ``course`` keeps what earlier decisions on this campaign
+    found; the verdict is the one without it.
     """
-    by_rule: dict[str, RuleProgress] = {rule: progress(history, rule, plan) for rule in MANEUVER_RULES}
+    course = course or Course(plan)
+    by_rule: dict[str, RuleProgress] = {
+        rule: progress(history, rule, plan, course) for rule in MANEUVER_RULES
+    }
     chosen = by_rule[plan.rule]
     criterion = chosen.history_percent[-1] if chosen.history_percent else None
     usable = usable_ones(history)
-    known = knowledge(usable, plan) if usable else None
+    known = course.known(usable) if usable else None
     stop = _holds_now(known, plan, criterion)
     return FlightTestVerdict(
         rule=plan.rule,
@@ -46,35 +54,37 @@ def flight_test(
         limit_percent=chosen.limit_percent,
         stopped_at=chosen.stopped_at,
         by_rule=by_rule,
-        next=next_input(history, replace(aircraft or Aircraft(), campaign=plan), stop),
-        warnings=warnings(history, plan, chosen, stop),
+        next=next_input(history, replace(aircraft or Aircraft(), campaign=plan), stop, course),
+        warnings=warnings(history, chosen, stop, course),
         evidence=evidence(known) if known else (),
     )
 
 
-def progress(history: Sequence[Flown], rule: Rule, plan: CampaignPlan) -> RuleProgress:
-    """The stop criterion of one rule after each manoeuvre flown."""
-    accepted = [result.accepted for result in rule_results(history)[rule]]
+def progress(
+    history: Sequence[Flown], rule: Rule, plan: CampaignPlan, course: Course | None = None
+) -> RuleProgress:
+    """The stop criterion of one rule after each manoeuvre flown; ``course`` as in ``flight_test``."""
+    course = course or Course(plan)
     limit = limit_percent(rule, plan)
     values: list[float | None] = []
     stopped_at = None
     taken: list[Flown] = []
-    value, sufficient, known = None, False, None
-    for number, (flown, ok) in enumerate(zip(history, accepted, strict=True), start=1):
-        # The rule information weighs all and finds for itself which contradict the others, at every moment.
-        if (ok or rule == "information") and flown.usable:
+    value, sufficient = None, False
+    for number, (flown, ok) in enumerate(zip(history, _weighed(history, rule), strict=True), start=1):
+        if ok:
             taken.append(flown)
             if rule == "information":
-                known = knowledge(taken, plan)
-                value, sufficient = _finite(known.percent), known.sufficient
+                standing = course.standing(taken)
+                value, sufficient = _finite(standing.percent), standing.sufficient
             else:
-                value = _scatter(estimates_of(taken), plan)
+                value = _scatter(estimates_of(taken[-plan.window :]), plan)
                 sufficient = value is not None and value < limit
         values.append(value)
         if sufficient and stopped_at is None:
             stopped_at = number
-    if known is None:
+    if rule != "information" or not taken:
         return RuleProgress(stopped_at, tuple(values), limit)
+    known = course.known(taken)
     shares = {name: _finite(100.0 * share) for name, share in known.share.items()}
     return RuleProgress(
         stopped_at,
@@ -83,6 +93,17 @@ def progress(history: Sequence[Flown], rule: Rule, plan: CampaignPlan) -> RulePr
         {name: _finite(band) for name, band in known.prediction_percent.items()},
         {name: shares[name] for name in known.named},
     )
+
+
+def _weighed(history: Sequence[Flown], rule: Rule) -> list[bool]:
+    """Which manoeuvres a rule's criterion weighs.
+
+    The rule ``information`` weighs all usable ones: at every moment the rule finds those that contradict the
+    others by itself.
+    """
+    if rule == "information":
+        return [flown.usable is not None for flown in history]
+    return [result.accepted for result in results_of(history, rule)]
 
 
 def _scatter(accepted: Sequence[Estimate], plan: CampaignPlan) -> float | None:

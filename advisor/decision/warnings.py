@@ -6,20 +6,18 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.change import find_change
+from advisor.decision.course import Course
 from advisor.decision.history import Flown, usable_ones
-from advisor.decision.information import knowledge
-from advisor.decision.judge import accepted_estimates, rule_results
+from advisor.decision.judge import accepted_estimates, results_of
 from advisor.decision.larger import larger_and_agreeing
 from advisor.decision.scatter import SCATTER_FACTOR, window
 from advisor.decision.verdict import RuleProgress
 from advisor.oem.estimate import Estimate
 
 
-def warnings(
-    history: Sequence[Flown], plan: CampaignPlan, chosen: RuleProgress, stop: bool
-) -> tuple[str, ...]:
+def warnings(history: Sequence[Flown], chosen: RuleProgress, stop: bool, course: Course) -> tuple[str, ...]:
     """Sentences on what the criterion alone does not show."""
-    found = []
+    plan, found = course.plan, []
     if chosen.stopped_at is not None and not stop:
         found.append(
             f"The criterion held after manoeuvre {chosen.stopped_at} and does not hold any more: "
@@ -29,18 +27,18 @@ def warnings(
     if change is not None:
         found.append(change.sentence)
     if plan.rule == "information":
-        found += _left_out(history, plan)
+        found += _left_out(history, course)
     elif not stop:
         found += _cannot_fall(accepted_estimates(history, plan.rule), plan)
-        found += _locked_out(history, plan)
+        found += _locked_out(history, course)
     return tuple(found)
 
 
-def _left_out(history: Sequence[Flown], plan: CampaignPlan) -> list[str]:
+def _left_out(history: Sequence[Flown], course: Course) -> list[str]:
     numbers = [i for i, flown in enumerate(history, start=1) if flown.usable]
     if not numbers:
         return []
-    odd = [str(numbers[k]) for k in knowledge(usable_ones(history), plan).left_out]
+    odd = [str(numbers[k]) for k in course.known(usable_ones(history)).left_out]
     return [f"Manoeuvre {', '.join(odd)} contradicts all the others and is left out."] if odd else []
 
 
@@ -64,14 +62,15 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
     ]
 
 
-def _locked_out(history: Sequence[Flown], plan: CampaignPlan) -> list[str]:
+def _locked_out(history: Sequence[Flown], course: Course) -> list[str]:
     """Manoeuvres that are good in themselves, refused one after another for their cost alone."""
-    accepted = [result.accepted for result in rule_results(history)[plan.rule]]
+    plan = course.plan
+    accepted = [result.accepted for result in results_of(history, plan.rule)]
     refused = 0
     for flown, good in zip(history, accepted, strict=True):
         if flown.usable is not None:
             refused = 0 if good else refused + 1
-    if refused and (larger := larger_and_agreeing(history, accepted, plan)) and larger.setter:
+    if refused and (larger := larger_and_agreeing(history, accepted, course)) and larger.setter:
         return [
             f"Manoeuvre {larger.setter} sets a cost limit that larger ones can hardly meet: the newest moved "
             f"{larger.ratio:.1f} times as much and agrees with it. Exclude manoeuvre {larger.setter}, or use "

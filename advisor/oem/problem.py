@@ -218,25 +218,23 @@ class _Piece:
         begin, end = min(t[0] for t in stamps), max(t[-1] for t in stamps)
         breaks, pace = problem.servo.grid(record.elevator.t)
         inside = breaks[(breaks > begin) & (breaks < end)]
-        t = _merged(np.concatenate([*stamps, inside]), pace)
+        t = merged(np.concatenate([*stamps, inside]), pace)
         step = np.diff(t)
         middle = t[:-1] + step / 2.0
         at_event, start, arrival = problem.servo.move(record.elevator.t, record.elevator.y, t, record.held)
         slope = (arrival - start[:-1]) / step
         ratio, airspeed, acceleration = np.ones(len(step)), np.ones(len(t)), np.zeros(len(t))
+        known = np.zeros(len(step))
         if record.airspeed is not None:
             airspeed = record.airspeed.at(t)
             acceleration = np.gradient(airspeed, t)
+            speed = record.airspeed.at(middle)
+            pull = GRAVITY_M_S2 / speed
             if problem.reference_airspeed_m_s is not None:
-                ratio = record.airspeed.at(middle) / problem.reference_airspeed_m_s
-        known = np.zeros(len(step))
-        if record.airspeed is not None and problem.reference_airspeed_m_s is not None:
-            known = (
-                GRAVITY_M_S2 / record.airspeed.at(middle)
-                - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
-            )
-        if record.airspeed is not None and record.normal_gravity is not None:
-            known += GRAVITY_M_S2 / record.airspeed.at(middle) * (record.normal_gravity.at(middle) - 1.0)
+                ratio = speed / problem.reference_airspeed_m_s
+                known = pull - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
+            if record.normal_gravity is not None:
+                known += pull * (record.normal_gravity.at(middle) - 1.0)
         gravity = np.full(len(t), GRAVITY_M_S2) if record.gravity_z is None else record.gravity_z.at(t)
         return cls(
             t=t,
@@ -257,7 +255,7 @@ def _finite(signal: Signal) -> Signal:
     return Signal(np.ascontiguousarray(signal.t[keep], float), np.ascontiguousarray(signal.y[keep], float))
 
 
-def _merged(stamps: FloatArray, pace: float) -> FloatArray:
+def merged(stamps: FloatArray, pace: float) -> FloatArray:
     """Distinct stamps in order, with more between where they lie further apart than ``pace``."""
     ordered = np.sort(stamps)
     t: FloatArray = ordered[np.concatenate([[True], np.diff(ordered) > STAMP_S])]

@@ -175,7 +175,8 @@ def evaluate(
 def contributions_of(assembly: Assembly, rows: FloatArray, residual: FloatArray) -> FloatArray:
     """(m, 8 + k) share of each manoeuvre in the influence ``rows`` (N, 8 + k) of a ``residual`` (N,)."""
     pull = rows * residual[:, None]
-    return np.array([pull[assembly.owner == m].sum(axis=0) for m in range(assembly.maneuvers)])
+    first = np.searchsorted(assembly.owner, np.arange(assembly.maneuvers))
+    return np.array([part.sum(axis=0) for part in np.split(pull, first[1:])])
 
 
 def reported(shared: FloatArray, local: FloatArray) -> FloatArray:

@@ -11,18 +11,21 @@ from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.record import Channel
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.filter_error import filter_error, moving_air
+from advisor.oem.following import Follower
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.solution import Solution, solve
 
 
 def warm() -> None:
-    """Estimate a small flight in all the ways there are: alone, with others, with moving air allowed for."""
+    """Estimate a small flight in all the ways there are: alone, with others, with moving air
+    allowed for, while it is flown."""
     maneuver = _flown()
     prepared = prepare([maneuver], Aircraft())
     solution = solve(prepared.problem) if isinstance(prepared, Prepared) else None
     if isinstance(solution, Solution):
         filter_error(solution, moving_air(solution, seen_by_alpha=True).air, ())
     estimate_jointly([maneuver, maneuver], Aircraft())
+    Follower(Aircraft()).refresh(maneuver)
 
 
 def _flown() -> Maneuver:

@@ -130,7 +130,7 @@ class Conductor:
 
     def _report(self, campaign: CampaignLike) -> None:
         state = campaign.state
-        self._chronicle.follow(state.notices)
+        self._chronicle.follow(state.notices, state.notices_before)
         self._chronicle.note(self._where_kept)
         self._chronicle.hear(self._source.take_notices())
         playback = self._source.playback() if isinstance(self._source, Playable) else None

@@ -10,11 +10,13 @@ from advisor.decision.pooling import (
     DERIVATIVES,
     INTERCEPTS,
     Belief,
+    Pooled,
     beliefs_at_one_speed,
     disagreement,
-    inconsistency,
-    inconsistency_without_each,
     pool,
+    pooled,
+    pooled_on_both_sides,
+    pooled_without_each,
 )
 from advisor.flight.messages import FloatArray
 from tests.decision.campaigns import THETA, estimate
@@ -85,9 +87,9 @@ def test_distances_between_estimates_are_chi_square_distributed() -> None:
     pairs = [disagreement(random_belief(rng).shared, random_belief(rng).shared) for _ in range(800)]
     assert {dof for _, dof in pairs} == {6}
     assert np.mean([d for d, _ in pairs]) == pytest.approx(6.0, rel=0.08)
-    groups = [inconsistency([random_belief(rng) for _ in range(4)]) for _ in range(400)]
-    assert {dof for _, dof in groups} == {18}
-    assert np.mean([d for d, _ in groups]) == pytest.approx(18.0, rel=0.05)
+    groups = [pooled([random_belief(rng) for _ in range(4)]) for _ in range(400)]
+    assert {group.dof for group in groups} == {18}
+    assert np.mean([group.inconsistency for group in groups]) == pytest.approx(18.0, rel=0.05)
 
 
 def test_estimates_at_different_speeds_are_brought_to_their_mean_speed() -> None:
@@ -130,16 +132,40 @@ def test_the_order_of_parameters_is_that_of_the_house() -> None:
     assert [PARAMETERS[k] for k in INTERCEPTS] == ["Z_0", "M_0"]
 
 
-def test_leaving_out_each_in_turn_equals_pooling_the_others() -> None:
-    rng = np.random.default_rng(6)
+def partly_known(rng: np.random.Generator) -> list[Belief]:
+    """Five beliefs: one derivative that a single one alone knows, another that one does not know."""
     beliefs = [random_belief(rng) for _ in range(5)]
-    # One derivative that a single manoeuvre alone knows, another that one does not know.
-    for belief in beliefs[1:]:
-        belief.covariance[2, :] = belief.covariance[:, 2] = 0.0
-        belief.covariance[2, 2] = np.inf
-    beliefs[3].covariance[6, :] = beliefs[3].covariance[:, 6] = 0.0
-    beliefs[3].covariance[6, 6] = np.inf
-    for k, (distance, dof) in enumerate(inconsistency_without_each(beliefs)):
-        expected, size = inconsistency([b for i, b in enumerate(beliefs) if i != k])
-        assert distance == pytest.approx(expected)
-        assert dof == size
+    for belief, k in [*((belief, 2) for belief in beliefs[1:]), (beliefs[3], 6)]:
+        belief.covariance[k, :] = belief.covariance[:, k] = 0.0
+        belief.covariance[k, k] = np.inf
+    return beliefs
+
+
+def test_inconsistency_is_chi_square_about_the_pooled_value() -> None:
+    beliefs = partly_known(np.random.default_rng(6))
+    whole = pooled(beliefs)
+    direct = 0.0
+    for belief in beliefs:
+        apart = belief.shared.theta - whole.shared.theta
+        direct += float(apart @ belief.information @ apart)
+    assert whole.inconsistency == pytest.approx(direct)
+    assert whole.dof == 5 * 6 - 4 - 1 - 6
+
+
+def assert_alike(one: Pooled, other: Pooled) -> None:
+    np.testing.assert_allclose(one.shared.theta, other.shared.theta)
+    np.testing.assert_allclose(one.shared.covariance, other.shared.covariance)
+    assert (one.inconsistency, one.dof) == pytest.approx((other.inconsistency, other.dof))
+
+
+def test_leaving_out_each_in_turn_equals_pooling_the_others() -> None:
+    beliefs = partly_known(np.random.default_rng(6))
+    for k, others in enumerate(pooled_without_each(beliefs)):
+        assert_alike(others, pooled([b for i, b in enumerate(beliefs) if i != k]))
+
+
+def test_both_sides_of_every_split_equal_pooling_each_side() -> None:
+    beliefs = partly_known(np.random.default_rng(7))
+    for k, (before, after) in enumerate(pooled_on_both_sides(beliefs), start=1):
+        assert_alike(before, pooled(beliefs[:k]))
+        assert_alike(after, pooled(beliefs[k:]))

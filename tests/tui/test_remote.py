@@ -73,6 +73,18 @@ def test_the_samples_of_judged_manoeuvres_are_not_sent_again():
     assert len(pickle.dumps(changes(before, after))) < 2_000
 
 
+def test_a_further_verdict_sends_the_samples_of_no_earlier_manoeuvre():
+    five, six = flights.state(5), flights.state(6)
+    earlier = tuple(replace(judged, notes=("seen again",)) for judged in five.maneuvers)
+    before = Report(five, GOOD, None, ())
+    after = Report(replace(six, maneuvers=(*earlier, six.maneuvers[5])), GOOD, None, ())
+    sent = pickle.dumps(changes(before, after))
+    assert len(sent) < len(pickle.dumps(before)) / 2
+    told = pickle.loads(sent).applied_to(before).state.maneuvers
+    assert [judged.notes for judged in told] == [judged.notes for judged in after.state.maneuvers]
+    assert all(mine.estimate is theirs.estimate for mine, theirs in zip(told, five.maneuvers, strict=False))
+
+
 def test_decisions_by_hand_reach_the_other_process():
     conductor = RemoteConductor(Task(elsewhere.talking, elsewhere.staged))
     conductor.decide(HandDecision("exclude", "a gust", 2))

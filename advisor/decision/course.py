@@ -1,0 +1,68 @@
+"""How far the rule ``information`` was after each manoeuvre, kept from one decision to the next.
+
+What is known after k manoeuvres depends on those k alone. A decision after one more manoeuvre adds one entry.
+A manoeuvre that is excluded, included or assessed again voids its own entry and all later ones.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from operator import is_
+
+from advisor.aircraft import CampaignPlan
+from advisor.decision.history import Flown
+from advisor.decision.information import Knowledge, knowledge
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How the rule ``information`` stood after a number of usable manoeuvres."""
+
+    percent: float
+    """The criterion, as ``Knowledge.percent``."""
+    sufficient: bool
+    """Whether the rule said stop."""
+    predicted: bool
+    """Whether the manoeuvres before predicted the newest."""
+
+
+class Course:
+    """The course of one campaign under one plan: every decision is the one that no course would change.
+
+    Parameters
+    ----------
+    plan
+        What the campaign asks for.
+    """
+
+    def __init__(self, plan: CampaignPlan) -> None:
+        self.plan = plan
+        """What the campaign asks for."""
+        self._flown: list[Flown] = []
+        self._standings: list[Standing] = []
+        self._known: tuple[list[Flown], Knowledge] | None = None
+
+    def standing(self, usable: Sequence[Flown]) -> Standing:
+        """How the rule stands after usable manoeuvres (at least one), in the order flown."""
+        n = len(usable)
+        if n > len(self._standings) or not _same(self._flown[:n], usable):
+            self._follow(usable)
+        return self._standings[n - 1]
+
+    def known(self, usable: Sequence[Flown]) -> Knowledge:
+        """What is known after usable manoeuvres (at least one); the newest answer is kept."""
+        if self._known is None or not _same(self._known[0], usable):
+            self._known = list(usable), knowledge(usable, self.plan)
+        return self._known[1]
+
+    def _follow(self, usable: Sequence[Flown]) -> None:
+        pairs = enumerate(zip(self._flown, usable, strict=False))
+        kept = next((k for k, (mine, theirs) in pairs if mine is not theirs), len(self._flown))
+        del self._flown[kept:], self._standings[kept:]
+        for k in range(kept, len(usable)):
+            known = self.known(usable[: k + 1])
+            self._flown.append(usable[k])
+            self._standings.append(Standing(known.percent, known.sufficient, known.predicted))
+
+
+def _same(mine: Sequence[Flown], theirs: Sequence[Flown]) -> bool:
+    return len(mine) == len(theirs) and all(map(is_, mine, theirs))

@@ -1,0 +1,91 @@
+"""The joint estimate: of the newest accepted manoeuvres during the flight, of all at its end."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft, Elevator
+from advisor.campaign import Campaign
+from advisor.campaign_state import CampaignState
+from advisor.flight.maneuver import Maneuver
+from advisor.learning import may_learn
+from advisor.mavlink.logs import open_log
+from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import estimate_jointly
+from advisor.together import NEWEST, Together
+from sim.scenario import Scenario
+from tests.flights import recorded
+
+KNOWN = Aircraft(elevator=Elevator(lag_s=0.0))
+LEARNT = Aircraft(elevator=Elevator(lag_found_s=0.14))
+LONGER = (*Scenario().maneuvers, *Scenario().maneuvers[:2])
+
+
+def numbers(state: CampaignState) -> tuple[int, ...]:
+    return tuple(judged.maneuver.number for judged in state.maneuvers if judged.verdict.accepted)
+
+
+def joint(state: CampaignState) -> Estimate:
+    wanted: list[Maneuver] = [
+        judged.maneuver for judged in state.maneuvers if judged.maneuver.number in state.estimate_from
+    ]
+    found = estimate_jointly(wanted, KNOWN)
+    assert isinstance(found, Estimate)
+    return found
+
+
+@pytest.fixture(scope="module")
+def states() -> tuple[CampaignState, CampaignState]:
+    """A campaign longer than the newest that are estimated together: before its end, and after it."""
+    campaign = Campaign(KNOWN)
+    for batch in open_log(recorded("linear", 1.0, maneuvers=LONGER)):
+        campaign.feed(batch)
+    before = campaign.state
+    campaign.finish()
+    return before, campaign.state
+
+
+def test_during_the_flight_the_newest_accepted_manoeuvres_are_estimated_together(
+    states: tuple[CampaignState, CampaignState],
+) -> None:
+    flying, _ = states
+    assert flying.estimate_from == numbers(flying)[-NEWEST:] != numbers(flying)
+    assert flying.model is not None
+    np.testing.assert_array_equal(flying.model.theta, joint(flying).theta)
+
+
+def test_at_the_end_all_accepted_manoeuvres_are_estimated_together(
+    states: tuple[CampaignState, CampaignState],
+) -> None:
+    _, ended = states
+    assert ended.estimate_from == numbers(ended)
+    assert ended.model is not None
+    np.testing.assert_array_equal(ended.model.theta, joint(ended).theta)
+
+
+def test_a_joint_estimate_that_was_asked_for_is_kept(states: tuple[CampaignState, CampaignState]) -> None:
+    maneuvers = [judged.maneuver for judged in states[1].maneuvers[:2]]
+    together = Together(KNOWN)
+    first = together.estimate(maneuvers)
+    assert together.estimate(list(maneuvers)) is first
+    assert together.estimate([replace(maneuvers[0]), maneuvers[1]]) is not first
+
+
+def test_without_manoeuvres_there_is_no_joint_estimate() -> None:
+    assert Together(KNOWN).estimate([]) is None
+
+
+def test_the_newest_manoeuvres_alone_do_not_change_a_lag_that_is_learnt() -> None:
+    assert may_learn(Aircraft(), all_of_them=False)
+    assert may_learn(LEARNT, all_of_them=True)
+    assert not may_learn(LEARNT, all_of_them=False)
+    assert not may_learn(KNOWN, all_of_them=True)
+
+
+def test_reading_the_state_again_seeks_no_other_joint_estimate() -> None:
+    campaign = Campaign(KNOWN)
+    for batch in open_log(recorded("linear", 1.0)):
+        campaign.feed(batch)
+    assert campaign.state.model is not None
+    assert campaign.state.model is campaign.state.model
