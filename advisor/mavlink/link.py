@@ -88,7 +88,7 @@ class Link:
         self._patience_s = patience_s
         self._talkers = [*talkers, *([Heartbeat()] if self.address.speaks_first else [])]
         self._packer = Packer(source_system, source_component, key)
-        signatures = SignatureCheck(key, signing_time(time.time())) if key is not None else None
+        signatures = SignatureCheck(key) if key is not None else None
         self._intake = Intake(_CRC_EXTRA, target_system, signatures)
         self._scanner = FrameScanner()
         self._watch = LinkWatch(connection)

@@ -9,7 +9,7 @@ SILENCE_S = 5.0
 _REFUSED = {
     "unsigned": "unsigned packets are refused; the vehicle must sign with this key",
     "forged": "packets signed with another key are refused",
-    "replayed": "signed packets with an old time are refused: a replay, or a vehicle whose clock is not set",
+    "replayed": "signed packets with an old time are refused: a replay, or a sender whose clock was set back",
 }
 
 
