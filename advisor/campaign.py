@@ -14,9 +14,11 @@ from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.events import (
     Activity,
+    DataAgain,
     FlightEvent,
     ManeuverFlown,
     ModeChanged,
+    NoData,
     Notice,
     Rebooted,
     VehicleFound,
@@ -135,6 +137,7 @@ class Campaign:
             estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
             elevator_notes=stream.elevator_notes,
             sensor_notes=tuple(self._sensor_notes),
+            no_data=stream.no_data,
             mark_notes=tuple(self._mark_notes),
             notices=tuple(self._notices),
             activity=tuple(self._activity),
@@ -209,6 +212,11 @@ class Campaign:
                         self._mark_notes.append(text)
                     if code == SENSOR_NOTICE:
                         self._sensor_notes.append(text)
+                case NoData(problems):
+                    for problem in problems:
+                        self._log(f"NO DATA: {problem}", self._stream.now_s)
+                case DataAgain():
+                    self._log("the data serve again", self._stream.now_s)
                 case VehicleFound(vehicle):
                     self._log(f"following {vehicle}")
                 case Rebooted(boot):

@@ -9,6 +9,7 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.problems import Problem
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,8 @@ class CampaignState:
     """What is assumed of the elevator's scale and sense, in sentences."""
     sensor_notes: tuple[str, ...] = ()
     """Which of several like sensors flew, in sentences; empty where the first of each flew throughout."""
+    no_data: tuple[Problem, ...] = ()
+    """Why what arrives at present cannot serve; empty when it can."""
     mark_notes: tuple[str, ...] = ()
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()

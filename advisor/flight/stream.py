@@ -31,17 +31,19 @@ from advisor.flight.events import (
     ModeChanged,
     Notice,
     Rebooted,
+    VehicleFound,
 )
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.markers import HEARD, MarkerWatch
 from advisor.flight.marks import Due, Mark, Marks
-from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.messages import Columns, FloatArray, arrivals
 from advisor.flight.mixing import Mixing
 from advisor.flight.pieces import pieces
 from advisor.flight.record import Channel
 from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.sense import SAID
+from advisor.flight.service import Service
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus, Tracks
@@ -88,6 +90,7 @@ class FlightStream:
         self.seen: set[str] = set()
         """Names of the messages the vehicle has sent."""
         self._best: dict[str, ChannelStatus] = {}
+        self._service = Service(self._wanting)
         self._earlier_s = 0.0
 
     def _start_boot(self) -> None:
@@ -169,6 +172,17 @@ class FlightStream:
             *found,
         ]
 
+    @property
+    def no_data(self) -> tuple[Problem, ...]:
+        """Why what arrives at present cannot serve; empty when it can."""
+        return self._service.problems
+
+    def _wanting(self, channels: Mapping[str, ChannelStatus]) -> list[Problem]:
+        """What keeps a stream with these channels from being used, whatever was flown on it."""
+        wrong = self._mixing.contradiction
+        found = problems(self.vehicle, self.other_systems, self.elevator, channels, 1, {})
+        return [wrong, *found] if wrong and not self._cutting.maneuvers else found
+
     def recent(self, name: str, seconds: float) -> Channel | None:
         """The newest stretch of a channel; None when nothing of it has arrived."""
         return self._tracks.recent(name, seconds)
@@ -195,6 +209,7 @@ class FlightStream:
     def finish(self) -> list[FlightEvent]:
         """No more messages will come: whatever is open is closed."""
         events = self._finish_boot()
+        self._service.end()
         self._over = True
         return events
 
@@ -220,7 +235,9 @@ class FlightStream:
         events = self._who.learn(piece)
         vehicle = self._who.vehicle
         if vehicle is None:
-            return events
+            return [*events, *self._service.advance(piece)]
+        if any(isinstance(event, VehicleFound) for event in events):
+            self._service.begin()
         if self._who.mode != mode:
             events.append(ModeChanged(self._who.mode, self._master_s))
             if np.isfinite(self._master_s):
@@ -242,9 +259,10 @@ class FlightStream:
                 self._start_boot()
                 self.marks.start_boot(self.boot, self._earlier_s)
                 self._markers.start_boot()
+                self._service.begin()
                 events.append(Rebooted(self.boot))
             events += self._feed_part(part, master, vehicle)
-        return events
+        return [*events, *self._service.advance(mine)]
 
     def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
         """Columns of one boot: channels first, then the elevator sample by sample."""
@@ -264,11 +282,14 @@ class FlightStream:
                 self._heartbeat_s = float(t[-1])
             for new in self._decode(columns, t, attitude[now]):
                 self._tracks.append(new)
+                if self._tracks.serves(new):
+                    self._service.take(new.channel, new.source, arrivals(columns, new.order))
             if columns.name in _OUTPUTS:
                 pulses = self._banks.together(columns)
                 for moved in commanded(self._who.surfaces, pulses, t, vehicle.autopilot):
                     if moved.channel == "elevator":
                         elevator.append(moved)
+                        self._service.take(moved.channel, moved.source, arrivals(columns, moved.order))
                     else:
                         self._tracks.append(moved.combined())
         if np.isnan(self._first_s) and len(master.t):

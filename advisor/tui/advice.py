@@ -19,18 +19,21 @@ class Advice:
 
 
 def advise(view: View) -> Advice:
-    """What matters most at this moment: a lost link, then the manoeuvre in the air, then the verdicts."""
+    """What matters most now: a lost link, data that cannot serve, the manoeuvre in the air, the verdicts.
+
+    Once the flight test says stop, no further data are needed.
+    """
     state, verdict = view.state, view.state.flight_test
     if view.health.condition == "lost":
         return Advice("NO LINK", view.health.sentence, "bad")
+    if view.obstacles and verdict.decision != "stop":
+        return Advice("NO DATA", str(view.obstacles[0]), "bad")
     if state.enough:
         return Advice("RECOVER", state.enough, "good")
     if verdict.decision == "stop":
         return Advice("STOP TESTING", verdict.sentence, "good")
     if state.vehicle is None:
         return Advice("WAIT", view.health.sentence, "quiet")
-    if view.obstacle is not None:
-        return Advice("NO DATA", str(view.obstacle), "bad")
     if view.last and not view.last.verdict.accepted:
         return Advice("REPEAT", verdict.sentence, "warn")
     return Advice("CONTINUE", verdict.sentence, "quiet")
