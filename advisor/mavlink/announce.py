@@ -87,6 +87,9 @@ class Announcer:
         self._number += 1
         return status_text(self._waiting.popleft(), self._number)
 
+    def leave(self, now_s: float) -> None:
+        """What waits still is no use to anyone."""
+
     def report(self) -> list[str]:
         """Nothing to report."""
         return []

@@ -88,6 +88,9 @@ class Inquiry:
             questions.append(_ask_for_parameter(vehicle, name))
         return questions
 
+    def leave(self, now_s: float) -> None:
+        """Nothing is left to ask."""
+
     def report(self) -> list[str]:
         """What was found, once everything was asked."""
         if self._told or not self.done:

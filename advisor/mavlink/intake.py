@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from advisor.flight.vehicle import is_aircraft
+from advisor.mavlink.company import is_ground_station
 from advisor.mavlink.framing import Frame, FrameCutter
 from advisor.mavlink.health import LinkCounters
 from advisor.mavlink.signing import RADIO_STATUS, SignatureCheck
@@ -35,6 +36,8 @@ class Intake:
         self._bad_crc = 0
         self._garbage_bytes = 0
         self.counters = LinkCounters()
+        self.ground_stations: set[int] = set()
+        """System ids of ground stations heard."""
         self.vehicle: tuple[int, int] | None = None
         self.vehicle_peer: Peer | None = None
         """Who to answer."""
@@ -89,6 +92,9 @@ class Intake:
         return verdict == "ok"
 
     def _meet(self, heartbeat: Frame) -> None:
+        if is_ground_station(heartbeat):
+            self.ground_stations.add(heartbeat.system)
+            return
         payload = heartbeat.payload.ljust(9, b"\0")
         kind, autopilot = payload[4], payload[5]
         if not is_aircraft(autopilot, kind):

@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from queue import Empty, Full, Queue
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
@@ -24,7 +24,7 @@ from advisor.mavlink.connection import parse_connection
 from advisor.mavlink.frames import FrameScanner
 from advisor.mavlink.framing import Frame
 from advisor.mavlink.health import LinkStatistics, Notice
-from advisor.mavlink.intake import Intake
+from advisor.mavlink.intake import HEARTBEAT, Intake
 from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Packer, Talker
 from advisor.mavlink.recorder import Recorder
 from advisor.mavlink.signing import SignatureCheck, signing_time
@@ -38,6 +38,10 @@ BATCH_S = 0.012
 PAUSE_S = 0.003
 """Rest between two looks at a busy socket, so that several packets share one look."""
 REOPEN_EVERY_S = 1.0
+UNREACHABLE_S = 3.0
+"""Silence of the vehicle after which nothing is sent to it, s: three heartbeats."""
+FAREWELL_S = 0.7
+"""How long quitting may last for the sake of what must be put back on the vehicle, s."""
 QUEUE_LENGTH = 12_000  # batches: more than a minute behind at full load
 
 _HEARD, _SENT_BY_US = 0, 3  # link numbers, the low two bits of a tlog's time stamps
@@ -234,8 +238,24 @@ class Link:
                 batch.clear()
             if batch:
                 self._stop.wait(PAUSE_S)
+        batch += self._take_leave()
         if batch:
             self._hand_over(bytes(batch))
+
+    def _take_leave(self) -> bytes:
+        """Let the talkers end what they began, as long as the vehicle hears us and quitting may last."""
+        records = bytearray()
+        give_up_s = time.monotonic() + FAREWELL_S
+        while (now_s := time.monotonic()) < give_up_s and self._reachable(now_s) is not None:
+            last = [talker.leave(now_s) for talker in self._talkers]
+            if all(messages is None for messages in last):
+                break
+            sent = self._send([message for messages in last for message in messages or ()], now_s)
+            frames = self._take_frames(wait_s=0.02)
+            self._hear(frames, now_s)
+            records += self._records((frame.raw for frame in frames), now_s, _HEARD)
+            records += self._records(sent, now_s, _SENT_BY_US)
+        return bytes(records)
 
     def _take_frames(self, wait_s: float) -> list[Frame]:
         if self._transport is None:
@@ -261,18 +281,31 @@ class Link:
             self._transport = open_transport(self.address)
 
     def _talk(self, frames: list[Frame], now_s: float) -> list[bytes]:
+        self._hear(frames, now_s)
+        vehicle = self._reachable(now_s)
+        return [raw for talker in self._talkers for raw in self._send(talker.speak(vehicle, now_s), now_s)]
+
+    def _hear(self, frames: list[Frame], now_s: float) -> None:
         vehicle = self._intake.vehicle
-        from_vehicle = [frame for frame in frames if vehicle and frame.system == vehicle[0]]
+        system = vehicle[0] if vehicle is not None else None
+        heard = [frame for frame in frames if frame.system == system or frame.message_id == HEARTBEAT]
         for talker in self._talkers:
-            for frame in from_vehicle:
+            for frame in heard:
                 talker.hear(frame, now_s)
             self._say(talker.report(), now_s)
+
+    def _reachable(self, now_s: float) -> tuple[int, int] | None:
+        """The vehicle; None while the link is down, for then nobody hears what is asked."""
+        down = self._transport is None or self._watch.silent_s(now_s) > UNREACHABLE_S
+        return None if down else self._intake.vehicle
+
+    def _send(self, messages: Iterable[Any], now_s: float) -> list[bytes]:
+        """What could be sent of these messages, packed."""
         sent = []
-        for talker in self._talkers:
-            for message in talker.speak(vehicle, now_s):
-                raw = self._packer.pack(message, signing_time(now_s + self._unix_offset_s))
-                if self._transport is not None and self._transport.send(raw, self._intake.vehicle_peer):
-                    sent.append(raw)
+        for message in messages:
+            raw = self._packer.pack(message, signing_time(now_s + self._unix_offset_s))
+            if self._transport is not None and self._transport.send(raw, self._intake.vehicle_peer):
+                sent.append(raw)
         return sent
 
     def _records(self, frames: Iterable[bytes], now_s: float, link_number: int) -> bytes:

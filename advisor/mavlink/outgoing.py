@@ -14,10 +14,13 @@ class Talker(Protocol):
     """Something that speaks with the vehicle over a link: a state machine without a clock."""
 
     def hear(self, frame: Frame, now_s: float) -> None:
-        """Take a frame of the vehicle."""
+        """Take a frame of the vehicle, or a heartbeat of whoever else is on the link."""
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """Messages to send now; no vehicle: none was heard yet."""
+        """Messages to send now; no vehicle: none was heard yet, or none is heard at present."""
+
+    def leave(self, now_s: float) -> list[Any] | None:
+        """Messages to send before the link is closed; None: nothing is left to say or to wait for."""
 
     def report(self) -> list[str]:
         """What the crew should know, once."""
@@ -68,6 +71,9 @@ class Heartbeat:
                 dialect.MAV_TYPE_GCS, dialect.MAV_AUTOPILOT_INVALID, 0, 0, dialect.MAV_STATE_ACTIVE, 3
             )
         ]
+
+    def leave(self, now_s: float) -> None:
+        """Nothing is left to say."""
 
     def report(self) -> list[str]:
         """Nothing to report."""

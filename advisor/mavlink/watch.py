@@ -3,6 +3,7 @@
 from advisor.mavlink.framing import Frame
 from advisor.mavlink.intake import Intake
 from advisor.mavlink.ratewatch import RateWatch
+from advisor.mavlink.reboot import RebootWatch
 
 SILENCE_S = 5.0
 
@@ -24,6 +25,7 @@ class LinkWatch:
         self._others_told: set[int] = set()
         self._refusals_told: set[str] = set()
         self._rates = RateWatch()
+        self._reboots = RebootWatch()
         self.reconnects = 0
 
     def begin(self, now_s: float) -> None:
@@ -47,7 +49,10 @@ class LinkWatch:
         relevant = [frame for frame in frames if vehicle is None or frame.system == vehicle[0]]
         if relevant:
             said += self._heard(now_s)
-            said += self._rates.look(relevant if vehicle else [], now_s)
+            for frame in relevant if vehicle else []:
+                if self._reboots.hear(frame):
+                    self._rates.restart()
+            said += self._rates.look(relevant if vehicle else [], now_s, intake.ground_stations)
         elif not self._silence_told and self._cut_s is None and self.silent_s(now_s) >= SILENCE_S:
             self._silence_told = True
             who = f"vehicle {vehicle[0]} is" if vehicle else f"{self._connection}: no vehicle heard,"
