@@ -42,6 +42,11 @@ if TYPE_CHECKING:
     "--announce", is_flag=True, help="Send each verdict and STOP to the ground stations (STATUSTEXT)."
 )
 @click.option(
+    "--announce-to",
+    metavar="CONN",
+    help="Send them to this connection instead, e.g. to a --master of MAVProxy.",
+)
+@click.option(
     "--signing-key",
     type=click.Path(path_type=Path),
     metavar="FILE",
@@ -60,6 +65,7 @@ def command(
     no_record: bool,
     request_rates: bool,
     announce: bool,
+    announce_to: str | None,
     signing_key: Path | None,
     source_system: int,
     aircraft_file: Path | None,
@@ -87,8 +93,9 @@ def command(
     from advisor.mavlink.signing import read_key
     from advisor.tui.live import LinkSource
 
-    parse_connection(master)
-    announcer = Announcer() if announce else None
+    for connection_string in filter(None, (master, announce_to)):
+        parse_connection(connection_string)
+    announcer = Announcer() if announce or announce_to else None
     connection = _Connection(
         master,
         source_system,
@@ -98,6 +105,7 @@ def command(
         key=read_key(signing_key) if signing_key else None,
         request_rates=request_rates,
         announcer=announcer,
+        announce_to=announce_to,
     )
     tell = partial(_announce, announcer) if announcer else None
     advise(partial(LinkSource, connection), master, aircraft, target_system, tell, by_hand=by_hand)
@@ -115,8 +123,10 @@ class _Connection(AbstractContextManager["Link"]):
     key: bytes | None
     request_rates: bool
     announcer: "Announcer | None"
+    announce_to: str | None
 
     def __enter__(self) -> "Link":
+        from advisor.mavlink.aside import Aside
         from advisor.mavlink.inquiry import Inquiry
         from advisor.mavlink.link import Link
         from advisor.mavlink.outgoing import Talker
@@ -124,6 +134,8 @@ class _Connection(AbstractContextManager["Link"]):
         from advisor.mavlink.recorder import default_recording
 
         talkers: list[Talker] = [self.announcer] if self.announcer else []
+        if self.announcer and self.announce_to:
+            talkers = [Aside(self.announcer, self.announce_to)]
         if self.request_rates:
             talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
         self._link = Link(

@@ -6,6 +6,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.framing import Frame
+from advisor.mavlink.outgoing import Talker
 
 OUTPUTS = range(1, 17)
 PITCH_FUNCTIONS = (19, 77, 78, 79, 80, 16, 17, 86, 87)
@@ -25,7 +26,7 @@ AT_ONCE = 10
 _PARAM_VALUE = dialect.MAVLINK_MSG_ID_PARAM_VALUE
 
 
-class Inquiry:
+class Inquiry(Talker):
     """Reads the parameters that say which output is the elevator and how it moves.
 
     First SERVOn_FUNCTION of every output, the stream rates and the ground station's id in
@@ -87,9 +88,6 @@ class Inquiry:
             self._standing[name] = (now_s, 1)
             questions.append(_ask_for_parameter(vehicle, name))
         return questions
-
-    def leave(self, now_s: float) -> None:
-        """Nothing is left to ask."""
 
     def report(self) -> list[str]:
         """What was found, once everything was asked."""

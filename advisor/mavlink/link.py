@@ -91,7 +91,8 @@ class Link:
         self._record_to = record_to
         self._patience_s = patience_s
         self._talkers = [*talkers, *([Heartbeat()] if self.address.speaks_first else [])]
-        self._packer = Packer(source_system, source_component, key)
+        self._own = (source_system, source_component)
+        self._packer = Packer(key)
         signatures = SignatureCheck(key) if key is not None else None
         self._intake = Intake(_CRC_EXTRA, target_system, signatures)
         self._scanner = FrameScanner()
@@ -192,7 +193,7 @@ class Link:
 
     def _warm_up(self) -> None:
         """Decode a heartbeat of our own, so that no packet waits for the scanner to be compiled."""
-        frames = [self._packer.pack(message, 0) for message in Heartbeat().speak(None, 0.0)]
+        frames = [self._packer.pack(message, self._own, 0) for message in Heartbeat().speak(None, 0.0)]
         FrameScanner().feed(self._records(frames, time.time(), _SENT_BY_US))
 
     def _open_first(self) -> Transport:
@@ -250,7 +251,11 @@ class Link:
             last = [talker.leave(now_s) for talker in self._talkers]
             if all(messages is None for messages in last):
                 break
-            sent = self._send([message for messages in last for message in messages or ()], now_s)
+            sent = [
+                raw
+                for talker, messages in zip(self._talkers, last, strict=True)
+                for raw in self._send(talker, messages or [], now_s)
+            ]
             frames = self._take_frames(wait_s=0.02)
             self._hear(frames, now_s)
             records += self._records((frame.raw for frame in frames), now_s, _HEARD)
@@ -283,7 +288,9 @@ class Link:
     def _talk(self, frames: list[Frame], now_s: float) -> list[bytes]:
         self._hear(frames, now_s)
         vehicle = self._reachable(now_s)
-        return [raw for talker in self._talkers for raw in self._send(talker.speak(vehicle, now_s), now_s)]
+        return [
+            raw for talker in self._talkers for raw in self._send(talker, talker.speak(vehicle, now_s), now_s)
+        ]
 
     def _hear(self, frames: list[Frame], now_s: float) -> None:
         vehicle = self._intake.vehicle
@@ -299,11 +306,12 @@ class Link:
         down = self._transport is None or self._watch.silent_s(now_s) > UNREACHABLE_S
         return None if down else self._intake.vehicle
 
-    def _send(self, messages: Iterable[Any], now_s: float) -> list[bytes]:
-        """What could be sent of these messages, packed."""
+    def _send(self, talker: Talker, messages: Iterable[Any], now_s: float) -> list[bytes]:
+        """What could be sent of a talker's messages, packed."""
+        source = talker.source(self._own, self._intake.vehicle or self._own)
         sent = []
         for message in messages:
-            raw = self._packer.pack(message, signing_time(now_s + self._unix_offset_s))
+            raw = self._packer.pack(message, source, signing_time(now_s + self._unix_offset_s))
             if self._transport is not None and self._transport.send(raw, self._intake.vehicle_peer):
                 sent.append(raw)
         return sent

@@ -10,6 +10,7 @@ from advisor.mavlink.company import is_ground_station, who_sets_rates
 from advisor.mavlink.definitions import DEFINITIONS
 from advisor.mavlink.delivery import Delivery
 from advisor.mavlink.framing import Frame
+from advisor.mavlink.outgoing import Talker
 from advisor.mavlink.reboot import RebootWatch
 from advisor.mavlink.wish import LONGEST_REST_S, MOST_TRIES, Wish
 
@@ -37,7 +38,7 @@ _ANSWERS = {
 }
 
 
-class RateRequest:
+class RateRequest(Talker):
     """Asks for one rate after the other, waits for each answer, then watches what comes.
 
     MAVLink, command protocol: SET_MESSAGE_INTERVAL (511) in a COMMAND_LONG, answered by a
