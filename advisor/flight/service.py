@@ -26,7 +26,7 @@ SERVED_AFTER_S = 5.0
 PAUSE_S = 2.5
 """Silence of the vehicle after which counting begins anew, s: two heartbeats, one of them lost."""
 
-Judge = Callable[[Mapping[str, ChannelStatus]], Sequence[Problem]]
+Judge = Callable[[Mapping[str, ChannelStatus], float], Sequence[Problem]]
 
 
 class Service:
@@ -35,7 +35,8 @@ class Service:
     Parameters
     ----------
     judge
-        What keeps a stream with these channels, as they arrived lately, from being used.
+        What keeps a stream with these channels, as they arrived lately, from being used at this time of
+        arrival, s.
     """
 
     def __init__(self, judge: Judge) -> None:
@@ -80,7 +81,7 @@ class Service:
         return told
 
     def _look(self, now_s: float) -> list[FlightEvent]:
-        found = tuple(self._judge(self._lately(now_s)))
+        found = tuple(self._judge(self._lately(now_s), now_s))
         standing = frozenset(problem.code for problem in found)
         if standing != self._standing or self._since_s is None:
             self._standing, self._since_s = standing, now_s

@@ -31,7 +31,6 @@ from advisor.flight.events import (
     ModeChanged,
     Notice,
     Rebooted,
-    VehicleFound,
 )
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
@@ -42,6 +41,7 @@ from advisor.flight.mixing import Mixing
 from advisor.flight.pieces import pieces
 from advisor.flight.record import Channel
 from advisor.flight.segmentation import LEAD_IN_S
+from advisor.flight.senders import SenderWatch
 from advisor.flight.sense import SAID
 from advisor.flight.service import Service
 from advisor.flight.suitability import problems
@@ -91,6 +91,8 @@ class FlightStream:
         """Names of the messages the vehicle has sent."""
         self._best: dict[str, ChannelStatus] = {}
         self._service = Service(self._wanting)
+        self._senders = SenderWatch()
+        self._system: int | None = None
         self._earlier_s = 0.0
 
     def _start_boot(self) -> None:
@@ -168,6 +170,7 @@ class FlightStream:
         wrong = self._mixing.contradiction
         return [
             *(self.marks.problems() if self._over else ()),
+            *([self.two_senders] if self.two_senders and not flown.maneuvers else ()),
             *([wrong] if wrong and not flown.maneuvers else ()),
             *found,
         ]
@@ -177,11 +180,17 @@ class FlightStream:
         """Why what arrives at present cannot serve; empty when it can."""
         return self._service.problems
 
-    def _wanting(self, channels: Mapping[str, ChannelStatus]) -> list[Problem]:
+    def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
         """What keeps a stream with these channels from being used, whatever was flown on it."""
-        wrong = self._mixing.contradiction
+        wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
+        two = self._senders.problem(self._system, now_s) if self._system is not None else None
         found = problems(self.vehicle, self.other_systems, self.elevator, channels, 1, {})
-        return [wrong, *found] if wrong and not self._cutting.maneuvers else found
+        return [*(problem for problem in (two, wrong) if problem), *found]
+
+    @property
+    def two_senders(self) -> Problem | None:
+        """Two senders under the vehicle's id, where they were seen once."""
+        return self._senders.seen
 
     def recent(self, name: str, seconds: float) -> Channel | None:
         """The newest stretch of a channel; None when nothing of it has arrived."""
@@ -202,7 +211,8 @@ class FlightStream:
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
         """Take messages that have arrived; what became known by them, in order."""
         events: list[FlightEvent] = []
-        for piece in pieces(self._attitudes.of(columns)):
+        several = self._who.may_choose or len({c.system for c in columns if c.name == "HEARTBEAT"}) > 1
+        for piece in pieces(self._attitudes.of(columns), by_second=several):
             events += self._feed_piece(piece)
         return events
 
@@ -236,7 +246,10 @@ class FlightStream:
         vehicle = self._who.vehicle
         if vehicle is None:
             return [*events, *self._service.advance(piece)]
-        if any(isinstance(event, VehicleFound) for event in events):
+        if vehicle.system != self._system:
+            left = self._start_again(BootClock(self.boot + 1)) if self._system is not None else []
+            events = [*left, *events]
+            self._system = vehicle.system
             self._service.begin()
         if self._who.mode != mode:
             events.append(ModeChanged(self._who.mode, self._master_s))
@@ -253,16 +266,22 @@ class FlightStream:
         self.seen.update(c.name for c in mine)
         for part, master in by_boot(mine, vehicle.component, self._clock, self.boot):
             if master.boot != self.boot:
-                events += self._finish_boot()
-                self._earlier_s = self.duration_s
-                self.boot = master.boot
-                self._start_boot()
-                self.marks.start_boot(self.boot, self._earlier_s)
-                self._markers.start_boot()
-                self._service.begin()
-                events.append(Rebooted(self.boot))
+                events += [*self._start_again(self._clock), Rebooted(self.boot)]
             events += self._feed_part(part, master, vehicle)
+        self._senders.hear(mine, vehicle.component)
         return [*events, *self._service.advance(mine)]
+
+    def _start_again(self, clock: BootClock) -> list[FlightEvent]:
+        """What belonged together so far is over: another power-on, or another vehicle."""
+        events = self._finish_boot()
+        self._earlier_s = self.duration_s
+        self._clock = clock
+        self.boot = clock.boot
+        self._start_boot()
+        self.marks.start_boot(self.boot, self._earlier_s)
+        self._markers.start_boot()
+        self._service.begin()
+        return events
 
     def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
         """Columns of one boot: channels first, then the elevator sample by sample."""
