@@ -55,6 +55,8 @@ class CampaignState:
     """What is assumed of the elevator's scale and sense, in sentences."""
     sensor_notes: tuple[str, ...] = ()
     """Which of several like sensors flew, in sentences; empty where the first of each flew throughout."""
+    other_vehicles: tuple[int, ...] = ()
+    """System ids of further vehicles heard, rising."""
     no_data: tuple[Problem, ...] = ()
     """Why what arrives at present cannot serve; empty when it can."""
     mark_notes: tuple[str, ...] = ()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from advisor.aircraft import Rule
+from advisor.aircraft import Elevator, Rule
 from advisor.commands.options import (
     aircraft_option,
     decided_on,
@@ -104,6 +104,7 @@ def command(
         recorded=not no_record,
         key=read_key(signing_key) if signing_key else None,
         request_rates=request_rates,
+        elevator=aircraft.elevator,
         announcer=announcer,
         announce_to=announce_to,
     )
@@ -122,6 +123,7 @@ class _Connection(AbstractContextManager["Link"]):
     recorded: bool
     key: bytes | None
     request_rates: bool
+    elevator: Elevator
     announcer: "Announcer | None"
     announce_to: str | None
 
@@ -145,6 +147,7 @@ class _Connection(AbstractContextManager["Link"]):
             record_to=self.record_to or default_recording() if self.recorded else None,
             key=self.key,
             talkers=talkers,
+            elevator=self.elevator,
         )
         return self._link.start()
 

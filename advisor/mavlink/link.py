@@ -19,11 +19,16 @@ from typing import Any, Self
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
+from advisor.aircraft import Elevator
+from advisor.flight.following import FOLLOW
+from advisor.flight.identity import Identity
 from advisor.flight.messages import Columns
+from advisor.flight.pieces import pieces
 from advisor.mavlink.connection import parse_connection
 from advisor.mavlink.frames import FrameScanner
 from advisor.mavlink.framing import Frame
 from advisor.mavlink.health import LinkStatistics, Notice
+from advisor.mavlink.inquiry import Inquiry
 from advisor.mavlink.intake import HEARTBEAT, Intake
 from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Packer, Talker
 from advisor.mavlink.recorder import Recorder
@@ -66,6 +71,8 @@ class Link:
     talkers
         What may be sent. A connection that must speak first to be heard (``udpout``) adds
         a heartbeat once a second by itself.
+    elevator
+        As the aircraft file has it: it tells which of several vehicles has one. None: by the parameters.
     patience_s
         How long the first connection is tried; later a lost one is tried for ever.
 
@@ -85,6 +92,7 @@ class Link:
         record_to: Path | None = None,
         key: bytes | None = None,
         talkers: Iterable[Talker] = (),
+        elevator: Elevator | None = None,
         patience_s: float = 5.0,
     ) -> None:
         self.address = parse_connection(connection)
@@ -96,6 +104,8 @@ class Link:
         signatures = SignatureCheck(key) if key is not None else None
         self._intake = Intake(_CRC_EXTRA, target_system, signatures)
         self._scanner = FrameScanner()
+        self._who = Identity(elevator or Elevator(), target_system)
+        self._orders: deque[bytes | Talker] = deque()
         self._watch = LinkWatch(connection)
         self._notices: deque[Notice] = deque(maxlen=1000)
         self._queue: Queue[list[Columns]] = Queue(QUEUE_LENGTH)
@@ -159,6 +169,14 @@ class Link:
         if self._failure is not None:
             raise self._failure
         return []
+
+    def follow(self, system: int) -> None:
+        """Let another vehicle be followed; the stream keeps it, and nothing goes on the air."""
+        self._orders.append(FOLLOW + str(system).encode())
+
+    def ask_for_outputs(self) -> None:
+        """Ask the vehicle once which of its outputs is the elevator."""
+        self._orders.append(Inquiry(outputs_only=True))
 
     def take_notices(self) -> list[Notice]:
         """What happened to the link since the last call, oldest first."""
@@ -232,6 +250,7 @@ class Link:
             now_s = time.monotonic()
             since_s = since_s if batch else now_s
             batch += self._records((frame.raw for frame in frames), now_s, _HEARD)
+            batch += self._records(self._obey(), now_s, _SENT_BY_US)
             batch += self._records(self._talk(frames, now_s), now_s, _SENT_BY_US)
             self._say(self._watch.look(self._intake, frames, now_s), now_s)
             if batch and now_s - since_s >= BATCH_S:
@@ -285,6 +304,18 @@ class Link:
         with contextlib.suppress(OSError):  # not yet back: tried again a second later
             self._transport = open_transport(self.address)
 
+    def _obey(self) -> list[bytes]:
+        """What was ordered since the last look: texts for the stream alone; who is to speak from now on."""
+        texts = []
+        while self._orders:
+            order = self._orders.popleft()
+            if isinstance(order, Talker):
+                self._talkers.append(order)
+            else:
+                text = dialect.MAVLink_statustext_message(dialect.MAV_SEVERITY_INFO, order)
+                texts.append(self._packer.pack(text, self._own, signing_time(time.time())))
+        return texts
+
     def _talk(self, frames: list[Frame], now_s: float) -> list[bytes]:
         self._hear(frames, now_s)
         vehicle = self._reachable(now_s)
@@ -325,10 +356,20 @@ class Link:
         if self._recorder is not None:
             self._recorder.write(records)
         columns = self._scanner.feed(records)
+        self._follow(columns)
         while columns and not self._stop.is_set():
             with contextlib.suppress(Full):  # the consumer is a minute behind; the socket's buffer waits
                 self._queue.put(columns, timeout=0.2)
                 return
+
+    def _follow(self, columns: list[Columns]) -> None:
+        """Listen to the vehicle that the flight's own stream follows: both decide by the same messages."""
+        for piece in pieces(columns, by_second=True):
+            self._who.learn(piece)
+        vehicle = self._who.vehicle
+        if vehicle is not None and (vehicle.system, vehicle.component) != self._intake.vehicle:
+            self._intake.follow((vehicle.system, vehicle.component))
+            self._watch.start_again()
 
     def _say(self, texts: Iterable[str], now_s: float) -> None:
         self._notices.extend(Notice(now_s + self._unix_offset_s, text) for text in texts)

@@ -91,6 +91,8 @@ class RateRequest(Talker):
             self._delivery.restart()
             self._asked_s = float("-inf")
             return []
+        if self._vehicle not in (None, vehicle):
+            self._forget()
         self._vehicle = vehicle
         standing = self._standing
         if standing is not None:
@@ -138,12 +140,16 @@ class RateRequest(Talker):
         if now_s - self._began_s < SHORTEST_LIFE_S:
             return
         self._began_s = now_s
+        self._forget()
+        self._said.append("the vehicle rebooted: every rate is asked for again")
+
+    def _forget(self) -> None:
+        """Nothing has been asked of the vehicle yet."""
         for wish in self._wishes.values():
             wish.begin()
         self._standing = None
         self.delivered_hz = {}
         self._delivery.restart()
-        self._said.append("the vehicle rebooted: every rate is asked for again")
 
     def _answered(self, answer: str, now_s: float) -> None:
         if self._put_back:

@@ -32,6 +32,11 @@ class LinkWatch:
         """The connection is open; silence counts from here."""
         self._heard_s = now_s
 
+    def start_again(self) -> None:
+        """Another vehicle is followed: nothing is known of its rates."""
+        self._rates.restart()
+        self._reboots = RebootWatch()
+
     def silent_s(self, now_s: float) -> float:
         """Time since the vehicle, or before it is known anything, was last heard."""
         return max(0.0, now_s - self._heard_s)
@@ -56,7 +61,7 @@ class LinkWatch:
         elif not self._silence_told and self._cut_s is None and self.silent_s(now_s) >= SILENCE_S:
             self._silence_told = True
             who = f"vehicle {vehicle[0]} is" if vehicle else f"{self._connection}: no vehicle heard,"
-            said.append(f"{who} silent for {SILENCE_S:.0f} s")
+            said.append(f"{who} silent for {SILENCE_S:.0f} s{_instead(intake)}")
         for system in sorted(intake.other_vehicles - self._others_told):
             said.append(f"vehicle {system} is heard too and ignored; choose with --target-system")
         self._others_told |= intake.other_vehicles
@@ -76,3 +81,11 @@ class LinkWatch:
         self._silence_told = False
         self._heard_s = now_s
         return said
+
+
+def _instead(intake: Intake) -> str:
+    """How to follow another vehicle that is heard."""
+    others = sorted(intake.other_vehicles)
+    if intake.vehicle is None or not others:
+        return ""
+    return f"; heard is vehicle {', '.join(map(str, others))}: --target-system {others[0]} follows it"

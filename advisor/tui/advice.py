@@ -25,9 +25,9 @@ def advise(view: View) -> Advice:
     """
     state, verdict = view.state, view.state.flight_test
     if view.health.condition == "lost":
-        return Advice("NO LINK", view.health.sentence, "bad")
+        return Advice("NO LINK", f"{view.health.sentence}{_another(view)}", "bad")
     if view.obstacles and verdict.decision != "stop":
-        return Advice("NO DATA", str(view.obstacles[0]), "bad")
+        return Advice("NO DATA", f"{view.obstacles[0]}{_another(view)}", "bad")
     if state.enough:
         return Advice("RECOVER", state.enough, "good")
     if verdict.decision == "stop":
@@ -37,3 +37,11 @@ def advise(view: View) -> Advice:
     if view.last and not view.last.verdict.accepted:
         return Advice("REPEAT", verdict.sentence, "warn")
     return Advice("CONTINUE", verdict.sentence, "quiet")
+
+
+def _another(view: View) -> str:
+    """Which other vehicles a key can follow; nothing once this one has flown, and in a replay."""
+    others = view.state.other_vehicles
+    if not others or view.state.maneuvers or view.tempo is not None:
+        return ""
+    return f" Vehicle {', '.join(map(str, others))} is heard: v follows another."

@@ -17,7 +17,7 @@ from textual.worker import Worker, WorkerState
 
 from advisor.aircraft import Aircraft
 from advisor.problems import UnusableInputError
-from advisor.tui import keys, replay_actions
+from advisor.tui import keys, link_actions, replay_actions
 from advisor.tui.conducting import Conducting, Report
 from advisor.tui.explaining import commands, explanation
 from advisor.tui.garbage import Garbage
@@ -41,7 +41,7 @@ _ANSWER_S = 0.03
 """Reports wait so long behind a key, so that its answer is painted before all that they change."""
 
 
-class AdvisorApp(replay_actions.ReplayActions, HandActions, App[None]):
+class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandActions, App[None]):
     """Shows what a campaign says of a link, a log or a demonstration, until the user leaves.
 
     Parameters
@@ -63,7 +63,11 @@ class AdvisorApp(replay_actions.ReplayActions, HandActions, App[None]):
     CSS_PATH: ClassVar[list[str | PurePath]] = [
         f"styles/{name}.tcss" for name in ("app", "pilot", "engineer", "explain")
     ]
-    BINDINGS: ClassVar[list[BindingType]] = [*keys.EVERYWHERE, *keys.REPLAY, *keys.SELDOM]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *keys.EVERYWHERE,
+        *keys.REPLAY,
+        *keys.SELDOM,
+    ]
     MODES: ClassVar[dict[str, str | Callable[[], Screen[Any]]]] = {
         "pilot": PilotScreen,
         "engineer": EngineerScreen,
@@ -189,8 +193,9 @@ class AdvisorApp(replay_actions.ReplayActions, HandActions, App[None]):
             self.notify(text, timeout=seconds)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer the replay's actions only in a replay."""
-        return action not in replay_actions.ACTIONS or self.view.tempo is not None
+        """Offer the replay's actions only in a replay, the link's only on a link."""
+        only_elsewhere = link_actions.ACTIONS if self.view.tempo is not None else replay_actions.ACTIONS
+        return action not in only_elsewhere
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
         """Every action of the advisor, after those of Textual's own commands that it has not."""

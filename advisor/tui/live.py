@@ -8,7 +8,7 @@ from advisor.by_hand import ByHand
 from advisor.flight.messages import Columns
 from advisor.marks_file import keep_by_hand
 from advisor.mavlink.health import LinkStatistics
-from advisor.tui.source import Condition, LinkHealth
+from advisor.tui.source import Condition, LinkHealth, Order
 
 if TYPE_CHECKING:
     from advisor.mavlink.link import Link
@@ -61,6 +61,15 @@ class LinkSource:
     def take_notices(self) -> Sequence[str]:
         """What the link has to report since the last call."""
         return [notice.text for notice in self._link.take_notices()] if self._link is not None else ()
+
+    def order(self, order: Order) -> None:
+        """Pass on what a crew wants."""
+        if self._link is None:
+            return
+        if order.what == "follow":
+            self._link.follow(order.system)
+        else:
+            self._link.ask_for_outputs()
 
     def keep(self, by_hand: ByHand) -> str:
         """Keep the decisions beside the recording."""

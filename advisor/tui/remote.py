@@ -15,7 +15,7 @@ from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.changes import Changes
 from advisor.tui.conducting import Report, Tell
 from advisor.tui.hand import HandDecision
-from advisor.tui.source import Source, Tempo
+from advisor.tui.source import Order, Source, Tempo
 
 Request = tuple[str, tuple[object, ...]]
 """Name of a method of `Conducting`, and its arguments."""
@@ -71,6 +71,10 @@ class RemoteConductor:
     def decide(self, decision: HandDecision) -> None:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
         self._requests.put(("decide", (decision,)))
+
+    def order(self, order: Order) -> None:
+        """Do what a crew wants of the link."""
+        self._requests.put(("order", (order,)))
 
     def jump(self, number: int) -> None:
         """Play on, or from the beginning, to just before a manoeuvre."""

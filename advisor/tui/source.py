@@ -21,6 +21,16 @@ class LinkHealth:
     """Statistics for the engineer: (name, value with unit)."""
 
 
+@dataclass(frozen=True, slots=True)
+class Order:
+    """Something a crew wants of the link."""
+
+    what: Literal["follow", "outputs"]
+    """Follow another vehicle; ask the vehicle once which output is its elevator."""
+    system: int = 0
+    """The vehicle to follow."""
+
+
 class Source(Protocol):
     """Delivers batches of columns in order of arrival. All calls but ``health`` come from one thread."""
 
@@ -38,6 +48,9 @@ class Source(Protocol):
 
     def take_notices(self) -> Sequence[str]:
         """What happened on the way since the last call: reconnected, rates granted, a second vehicle."""
+
+    def order(self, order: Order) -> None:
+        """Do what a crew wants of the link; what is no link has nothing to do."""
 
     def keep(self, by_hand: ByHand) -> str:
         """Keep what was decided by hand with the data; a sentence says where, or why not."""
