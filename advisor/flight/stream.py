@@ -206,6 +206,8 @@ class FlightStream:
         if marked_s is None and not self._cutting.pilot_flies(onset):
             return None
         span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
+        if marked_s is None and self._cutting.why_on_ground(span) is not None:
+            return None
         return self._cutting.so_far(span, self.boot)
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
