@@ -137,6 +137,7 @@ class Campaign:
             estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
             elevator_notes=stream.elevator_notes,
             sensor_notes=tuple(self._sensor_notes),
+            elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
             other_vehicles=tuple(sorted(stream.other_systems)),
             no_data=stream.no_data,
             mark_notes=tuple(self._mark_notes),

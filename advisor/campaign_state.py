@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
+from advisor.flight.elevator_guess import Guess
 from advisor.flight.events import Activity
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.track import ChannelStatus
@@ -55,6 +56,8 @@ class CampaignState:
     """What is assumed of the elevator's scale and sense, in sentences."""
     sensor_notes: tuple[str, ...] = ()
     """Which of several like sensors flew, in sentences; empty where the first of each flew throughout."""
+    elevator_guess: Guess | None = None
+    """Which output may be the elevator, while nothing says it."""
     other_vehicles: tuple[int, ...] = ()
     """System ids of further vehicles heard, rising."""
     no_data: tuple[Problem, ...] = ()

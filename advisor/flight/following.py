@@ -23,14 +23,17 @@ SERVED_S = 60.0
 FOLLOW = b"Advisor follows vehicle "
 """How the advisor writes into its own stream that a hand chose another vehicle; a number ends the text."""
 
+TAKE = b"Advisor takes for the elevator output "
+"""How the advisor writes into its own stream that a hand took a guess; the output's number ends the text."""
+
 _OUTPUTS = frozenset({"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"})
 _ATTITUDES = frozenset({"ATTITUDE", "ATTITUDE_QUATERNION"})
 
 
-def chosen(text: bytes) -> int | None:
-    """System id that a text of the advisor says to follow; None for any other text."""
-    number = text.removeprefix(FOLLOW)
-    return int(number) if text.startswith(FOLLOW) and number.isdigit() else None
+def chosen(text: bytes, what: bytes) -> int | None:
+    """Number that a text of the advisor, ``FOLLOW`` or ``TAKE``, gives; None for any other text."""
+    number = text.removeprefix(what)
+    return int(number) if text.startswith(what) and number.isdigit() else None
 
 
 class Following:

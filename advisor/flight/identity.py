@@ -1,11 +1,12 @@
 """What the vehicle says of itself: who it is, its firmware, its mode, what its outputs drive."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from advisor.aircraft import Elevator
 from advisor.flight.elevator_outputs import find_elevator
 from advisor.flight.events import FlightEvent, Notice, VehicleFound
-from advisor.flight.following import Following, chosen
+from advisor.flight.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.messages import Columns
 from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_surface
 from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
@@ -39,6 +40,7 @@ class Identity:
         self._finder = VehicleFinder(target_system)
         self._firmware: dict[int, str] = {}
         self._parameters: dict[tuple[int, int], dict[str, float]] = {}
+        self._taken: Elevator | None = None
         self._said = ""
         self._following = Following(self._has_elevator)
         self.mode = ""
@@ -105,6 +107,7 @@ class Identity:
         before = self._finder.vehicle
         assert before is not None
         self._finder.follow(vehicle)
+        self._taken = None
         self.mode = ""
         return [
             VehicleFound(vehicle),
@@ -158,6 +161,8 @@ class Identity:
         assert vehicle is not None
         parameters = self._parameters_of(vehicle)
         self.elevator = find_elevator(self._elevator, parameters)
+        if isinstance(self.elevator, Problem) and self._taken is not None:
+            self.elevator = find_elevator(self._taken, parameters, "by a guess that a hand has taken")
         found = {
             "elevator": self.elevator,
             "aileron": find_surface(AILERON, parameters),
@@ -186,7 +191,11 @@ class Identity:
         text = bytes(columns.fields["text"][0])
         if text.startswith(READER):
             return [Notice(SENSOR_NOTICE, f"{text.removeprefix(READER).decode()}.")]
-        other = self._finder.heard.get(chosen(text) or 0)
+        taken = chosen(text, TAKE)
+        if taken is not None and self._finder.vehicle is not None:
+            self._taken = replace(self._elevator, output=taken)
+            return self._settle_surfaces()
+        other = self._finder.heard.get(chosen(text, FOLLOW) or 0)
         if other is not None and other != self._finder.vehicle:
             return self._follow(other)
         if text.startswith(_BUNDLED):

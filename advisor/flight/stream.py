@@ -24,6 +24,8 @@ from advisor.flight.channels import (
 from advisor.flight.clocks import BootClock
 from advisor.flight.commanded import Commanded, commanded
 from advisor.flight.cutting import Cutting
+from advisor.flight.elevator_guess import EVERY_S, LATE_S, ElevatorGuess, Guess
+from advisor.flight.elevator_guess import KEEP_S as GUESS_S
 from advisor.flight.elevator_watch import SETTLE_S, ElevatorWatch
 from advisor.flight.events import (
     FlightEvent,
@@ -44,7 +46,7 @@ from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.senders import SenderWatch
 from advisor.flight.sense import SAID
 from advisor.flight.service import Service
-from advisor.flight.suitability import problems
+from advisor.flight.suitability import problems, with_guess
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus, Tracks
 from advisor.flight.vehicle import Vehicle, closes_pitch_loop
@@ -92,6 +94,8 @@ class FlightStream:
         self._best: dict[str, ChannelStatus] = {}
         self._service = Service(self._wanting)
         self._senders = SenderWatch()
+        self.guess: Guess | None = None
+        """Which output may be the elevator, while nothing says it."""
         self._system: int | None = None
         self._earlier_s = 0.0
 
@@ -106,6 +110,8 @@ class FlightStream:
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
         self._attitude = np.full((1, 2), np.nan)
+        self._guesses = ElevatorGuess()
+        self._guessed_s = -np.inf
 
     @property
     def vehicle(self) -> Vehicle | None:
@@ -168,6 +174,8 @@ class FlightStream:
             self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.activities
         )
         wrong = self._mixing.contradiction
+        if self.guess is not None and isinstance(self.elevator, Problem):
+            found = [with_guess(problem, self.guess) for problem in found]
         return [
             *(self.marks.problems() if self._over else ()),
             *([self.two_senders] if self.two_senders and not flown.maneuvers else ()),
@@ -306,6 +314,8 @@ class FlightStream:
                 if self._tracks.serves(new):
                     self._service.take(new.channel, new.source, arrivals(columns, new.order))
             if columns.name in _OUTPUTS:
+                if isinstance(self.elevator, Problem):
+                    self._guesses.hear(columns, t)
                 pulses = self._banks.together(columns)
                 for moved in commanded(self._who.surfaces, pulses, t, vehicle.autopilot):
                     if moved.channel == "elevator":
@@ -317,7 +327,21 @@ class FlightStream:
             self._first_s = float(master.t[0])
             self.marks.start_clock(self._first_s)
         self._master_s, self._attitude = float(clock[-1]), attitude[-1:]
-        return self._feed_elevator(elevator)
+        return [*self._feed_elevator(elevator), *self._guess_elevator()]
+
+    def _guess_elevator(self) -> list[FlightEvent]:
+        """Guess at fixed vehicle times, however messages were batched; say a new guess."""
+        if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
+            return []
+        events: list[FlightEvent] = []
+        first_s = max(self._guessed_s + EVERY_S, EVERY_S * np.ceil(self._first_s / EVERY_S))
+        for now_s in np.arange(first_s, self._master_s, EVERY_S).tolist():
+            self._guessed_s = now_s
+            guess = self._guesses.made(self._tracks.cut("q", now_s - GUESS_S, now_s - LATE_S))
+            if guess is not None and (self.guess is None or guess.output != self.guess.output):
+                events.append(Notice("elevator_guess", f"Nothing says which is the elevator; {guess}."))
+            self.guess = guess or self.guess
+        return events
 
     def _decode(self, columns: Columns, t: FloatArray, attitude: FloatArray) -> Iterator[Decoded]:
         yield from quantities(columns, t)

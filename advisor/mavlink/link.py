@@ -20,7 +20,7 @@ from typing import Any, Self
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.aircraft import Elevator
-from advisor.flight.following import FOLLOW
+from advisor.flight.following import FOLLOW, TAKE
 from advisor.flight.identity import Identity
 from advisor.flight.messages import Columns
 from advisor.flight.pieces import pieces
@@ -173,6 +173,10 @@ class Link:
     def follow(self, system: int) -> None:
         """Let another vehicle be followed; the stream keeps it, and nothing goes on the air."""
         self._orders.append(FOLLOW + str(system).encode())
+
+    def take_output(self, output: int) -> None:
+        """Take an output for the elevator; the stream keeps it, and nothing goes on the air."""
+        self._orders.append(TAKE + str(output).encode())
 
     def ask_for_outputs(self) -> None:
         """Ask the vehicle once which of its outputs is the elevator."""

@@ -27,7 +27,7 @@ def advise(view: View) -> Advice:
     if view.health.condition == "lost":
         return Advice("NO LINK", f"{view.health.sentence}{_another(view)}", "bad")
     if view.obstacles and verdict.decision != "stop":
-        return Advice("NO DATA", f"{view.obstacles[0]}{_another(view)}", "bad")
+        return Advice("NO DATA", f"{view.obstacles[0]}{_another(view)}{_elevator(view)}", "bad")
     if state.enough:
         return Advice("RECOVER", state.enough, "good")
     if verdict.decision == "stop":
@@ -45,3 +45,11 @@ def _another(view: View) -> str:
     if not others or view.state.maneuvers or view.tempo is not None:
         return ""
     return f" Vehicle {', '.join(map(str, others))} is heard: v follows another."
+
+
+def _elevator(view: View) -> str:
+    """How keys tell which output is the elevator, where that is what is missing on a live link."""
+    if view.obstacles[0].code != "no_elevator" or view.tempo is not None:
+        return ""
+    guess = view.state.elevator_guess
+    return f" {str(guess).capitalize()}; g takes it." if guess else " a asks the vehicle for it."

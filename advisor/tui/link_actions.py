@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 else:
     Base = object
 
-ACTIONS = ("follow_another", "ask_for_outputs")
+ACTIONS = ("follow_another", "ask_for_outputs", "take_guess")
 
 
 class LinkActions(Base):
@@ -42,6 +42,15 @@ class LinkActions(Base):
         """Ask the vehicle which output is its elevator."""
         self.conductor.order(Order("outputs"))
         self.say("the vehicle is asked for SERVOn_*, which output does what; nothing else is sent", 5.0)
+
+    def action_take_guess(self) -> None:
+        """Take the output that is guessed to be the elevator."""
+        guess = self.view.state.elevator_guess
+        if guess is None:
+            self.say("there is no guess of the elevator's output to take")
+            return
+        self.conductor.order(Order("take", guess.output))
+        self.say(f"output {guess.output} is taken for the elevator, by a guess")
 
     @abstractmethod
     def say(self, text: str, seconds: float = 3.0) -> None:

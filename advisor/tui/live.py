@@ -67,7 +67,9 @@ class LinkSource:
         if self._link is None:
             return
         if order.what == "follow":
-            self._link.follow(order.system)
+            self._link.follow(order.number)
+        elif order.what == "take":
+            self._link.take_output(order.number)
         else:
             self._link.ask_for_outputs()
 

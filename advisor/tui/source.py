@@ -25,10 +25,10 @@ class LinkHealth:
 class Order:
     """Something a crew wants of the link."""
 
-    what: Literal["follow", "outputs"]
-    """Follow another vehicle; ask the vehicle once which output is its elevator."""
-    system: int = 0
-    """The vehicle to follow."""
+    what: Literal["follow", "outputs", "take"]
+    """Follow another vehicle; ask the vehicle once which output is its elevator; take an output for it."""
+    number: int = 0
+    """System id of the vehicle to follow, or number of the output to take."""
 
 
 class Source(Protocol):

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from advisor.flight.elevator_guess import Guess
 from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
 from advisor.tui.explaining import keys_at_hand
@@ -68,7 +69,21 @@ async def test_the_outputs_are_asked_for_by_a_key_and_the_screen_says_what_is_se
         assert "nothing else is sent" in said(here)
 
 
+async def test_a_guess_stands_on_the_screen_as_one_and_a_key_takes_it():
+    source = HandFedSource()
+    missing = Problem(
+        "no_elevator", "Nothing says which servo output is the elevator.", "Set elevator.output."
+    )
+    state = replace(flights.state(0), no_data=(missing,), elevator_guess=Guess(2, 0.31, 0.01))
+    async with stage(state, source=source) as here:
+        await here.until(
+            lambda: "Output 2 is a guess: it explains 31 %" in " ".join(here.words("Why").split())
+        )
+        await here.press("g")
+        await here.until(lambda: source.orders == [Order("take", 2)])
+
+
 async def test_a_replay_has_no_keys_of_a_link():
     player = LogPlayer("a.tlog", lambda: [columns(range(50), [k / 50.0 for k in range(50)])])
     async with stage(flights.state(2), source=player) as here:
-        assert {key.name for key in keys_at_hand(here.app)}.isdisjoint({"follow", "outputs"})
+        assert {key.name for key in keys_at_hand(here.app)}.isdisjoint({"follow", "outputs", "guess"})
