@@ -44,7 +44,7 @@ def _another(view: View) -> str:
     others = view.state.other_vehicles
     if not others or view.state.maneuvers or view.tempo is not None:
         return ""
-    return f" Vehicle {', '.join(map(str, others))} is heard: v follows another."
+    return f" Vehicle {', '.join(map(str, others))} is heard: key v follows another."
 
 
 def _elevator(view: View) -> str:
@@ -52,4 +52,4 @@ def _elevator(view: View) -> str:
     if view.obstacles[0].code != "no_elevator" or view.tempo is not None:
         return ""
     guess = view.state.elevator_guess
-    return f" {str(guess).capitalize()}; g takes it." if guess else " a asks the vehicle for it."
+    return f" {str(guess).capitalize()}; key g takes it." if guess else " Key a asks the vehicle for it."

@@ -51,7 +51,7 @@ async def test_a_lost_vehicle_names_the_key_that_follows_another():
     source.condition = LinkHealth("lost", "Nothing heard for 9 s.")
     async with stage(replace(flights.state(0), other_vehicles=(2,)), source=source) as here:
         await here.until(lambda: here.app.screen.query_one(BigWord).word == "NO LINK")
-        assert "Vehicle 2 is heard: v follows another." in here.words("Why")
+        assert "Vehicle 2 is heard: key v follows another." in here.words("Why")
 
 
 async def test_two_vehicles_under_one_id_stand_on_the_pilots_screen():
