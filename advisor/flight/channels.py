@@ -162,6 +162,18 @@ def derived_alpha(hud: Columns, t: FloatArray, attitude: FloatArray, airspeed: f
     return _decoded("alpha", DERIVED_ALPHA, "derived", t, alpha, hud)
 
 
+def promised(new: Decoded, columns: Columns) -> NDArray[np.int64]:
+    """Orders of the messages that bring samples, or will once the aircraft flies.
+
+    No angle of attack can be derived while the aircraft stands, which is no fault of the stream.
+    """
+    if new.source != DERIVED_ALPHA:
+        return new.order
+    slow = np.asarray(columns.fields["airspeed"]) <= SLOWEST_FLIGHT_M_S
+    stands = slow & (np.asarray(columns.fields.get("groundspeed", np.inf)) <= SLOWEST_FLIGHT_M_S)
+    return columns.order[stands | np.isin(columns.order, new.order)]
+
+
 def _decoded(
     channel: str, source: str, provenance: str, t: FloatArray, y: FloatArray, columns: Columns
 ) -> Decoded:

@@ -18,6 +18,7 @@ from advisor.flight.channels import (
     Decoded,
     derived_alpha,
     named_value,
+    promised,
     quantities,
     stamps,
 )
@@ -312,7 +313,7 @@ class FlightStream:
             for new in self._decode(columns, t, attitude[now]):
                 self._tracks.append(new)
                 if self._tracks.serves(new):
-                    self._service.take(new.channel, new.source, arrivals(columns, new.order))
+                    self._service.take(new.channel, new.source, arrivals(columns, promised(new, columns)))
             if columns.name in _OUTPUTS:
                 if isinstance(self.elevator, Problem):
                     self._guesses.hear(columns, t)

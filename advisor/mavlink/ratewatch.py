@@ -51,17 +51,14 @@ class RateWatch:
             return []
         for frame in from_vehicle:
             self._delivery.hear(frame.message_id, now_s)
-        rates = self._delivery.look(now_s) or {}
-        judged = (self._judge(message, rates[message], stations) for message in _NAMES if message in rates)
-        return [sentence for sentence in judged if sentence]
-
-    def _judge(self, message: int, rate_hz: float, stations: Collection[int]) -> str:
-        best_hz = self._best_hz[message] = max(rate_hz, self._best_hz.get(message, 0.0))
-        name = _NAMES[message]
-        if message not in self._cut and best_hz >= LEAST_HZ and rate_hz < FALLEN * best_hz:
-            self._cut.add(message)
-            return f"{name} fell from {best_hz:.0f} Hz to {rate_hz:.1f} Hz: {who_sets_rates(stations)}"
-        if message in self._cut and rate_hz > RECOVERED * best_hz:
-            self._cut.remove(message)
-            return f"{name} is back at {rate_hz:.0f} Hz"
-        return ""
+        fell, back = [], []
+        for message, rate_hz in (self._delivery.look(now_s) or {}).items():
+            best_hz = self._best_hz[message] = max(rate_hz, self._best_hz.get(message, 0.0))
+            name = _NAMES[message]
+            if message not in self._cut and best_hz >= LEAST_HZ and rate_hz < FALLEN * best_hz:
+                self._cut.add(message)
+                fell.append(f"{name} fell from {best_hz:.0f} Hz to {rate_hz:.1f} Hz")
+            elif message in self._cut and rate_hz > RECOVERED * best_hz:
+                self._cut.remove(message)
+                back.append(f"{name} is back at {rate_hz:.0f} Hz")
+        return [f"{', '.join(fell)}: {who_sets_rates(stations)}", *back] if fell else back

@@ -118,6 +118,28 @@ def test_a_ground_station_alone_is_no_vehicle_and_said_so():
     assert [problem.code for problem in event.problems] == ["no_vehicle"]
 
 
+@pytest.mark.parametrize(("over_ground", "codes"), [(0.2, []), (20.0, ["no_alpha"])])
+def test_an_angle_that_only_flight_can_give_is_missed_in_flight_alone(over_ground, codes):
+    wire = Wire()
+    heartbeat(wire, START_S)
+    plane_parameters(wire, START_S + 1e-3)
+    for k in range(500):
+        t = k / 50
+        attitude(wire, START_S + t, 50.0 + t)
+        servo(wire, START_S + t + 1e-4, 50.0 + t, {1: 1500, 2: 1500})
+        wire.send(
+            "VFR_HUD",
+            START_S + t + 2e-4,
+            airspeed=0.5,
+            groundspeed=over_ground,
+            throttle=0,
+            alt=0.0,
+            climb=0.0,
+        )
+    found = [problem.code for _, event in told(wire) for problem in event.problems]
+    assert found == codes
+
+
 def test_a_log_tells_the_same_as_a_link_however_its_messages_are_batched():
     wire = Wire()
     fly(wire, START_S, 50.0, [4.0], 20.0)
