@@ -16,9 +16,11 @@ from advisor.decision.verdict import FlightTestVerdict
 from advisor.event_log import EventLog
 from advisor.flight.events import (
     Activity,
+    DataAgain,
     FlightEvent,
     ManeuverFlown,
     ModeChanged,
+    NoData,
     Notice,
     Rebooted,
     VehicleFound,
@@ -145,6 +147,9 @@ class Campaign:
             estimate_from=tuple(judged.maneuver.number for judged in joined),
             elevator_notes=stream.elevator_notes,
             sensor_notes=self._sensor_notes,
+            elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
+            other_vehicles=tuple(sorted(stream.other_systems)),
+            no_data=stream.no_data,
             mark_notes=self._mark_notes,
             notices=self._notices.lines,
             notices_before=self._notices.before,
@@ -220,6 +225,11 @@ class Campaign:
                         self._mark_notes += (text,)
                     if code == SENSOR_NOTICE:
                         self._sensor_notes += (text,)
+                case NoData(problems):
+                    for problem in problems:
+                        self._log(f"NO DATA: {problem}", self._stream.now_s)
+                case DataAgain():
+                    self._log("the data serve again", self._stream.now_s)
                 case VehicleFound(vehicle):
                     self._log(f"following {vehicle}")
                 case Rebooted(boot):

@@ -4,11 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
+from advisor.flight.elevator_guess import Guess
 from advisor.flight.events import Activity
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.problems import Problem
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +56,12 @@ class CampaignState:
     """What is assumed of the elevator's scale and sense, in sentences."""
     sensor_notes: tuple[str, ...] = ()
     """Which of several like sensors flew, in sentences; empty where the first of each flew throughout."""
+    elevator_guess: Guess | None = None
+    """Which output may be the elevator, while nothing says it."""
+    other_vehicles: tuple[int, ...] = ()
+    """System ids of further vehicles heard, rising."""
+    no_data: tuple[Problem, ...] = ()
+    """Why what arrives at present cannot serve; empty when it can."""
     mark_notes: tuple[str, ...] = ()
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()

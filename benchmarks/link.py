@@ -86,7 +86,7 @@ def measure(seconds: float, rate: float) -> None:
         LinkProcess(
             Keeping(f"udpin:127.0.0.1:{port}", new_door(), 254, record_to=Path(folder) / "own.tlog")
         ) as process,
-        process.link as link,
+        process.link() as link,
     ):
         assert process.pid is not None
         vehicle = subprocess.Popen(

@@ -49,6 +49,11 @@ if TYPE_CHECKING:
     "--announce", is_flag=True, help="Send each verdict and STOP to the ground stations (STATUSTEXT)."
 )
 @click.option(
+    "--announce-to",
+    metavar="CONN",
+    help="Send them to this connection instead, e.g. to a --master of MAVProxy.",
+)
+@click.option(
     "--signing-key",
     type=click.Path(path_type=Path),
     metavar="FILE",
@@ -69,6 +74,7 @@ def command(
     resume: str | None,
     request_rates: bool,
     announce: bool,
+    announce_to: str | None,
     signing_key: Path | None,
     source_system: int,
     aircraft_file: Path | None,
@@ -103,7 +109,8 @@ def command(
     content = read_yaml(aircraft_file) if aircraft_file else None
     asked = CampaignFile(master or "", rule, target_system, content)
     start = start_of(asked, resume, logs, record_to, recorded=not no_record)
-    parse_connection(start.campaign.master)
+    for connection in filter(None, (start.campaign.master, announce_to)):
+        parse_connection(connection)
     aircraft = start.campaign.parsed_aircraft(str(aircraft_file or start.recording))
     by_hand = decided_on(start.recording, no_marks) if start.goes_on and start.recording else None
     with started(
@@ -112,16 +119,17 @@ def command(
         signing_key=read_key(signing_key) if signing_key else None,
         request_rates=request_rates,
         announce=announce,
+        announce_to=announce_to,
     ) as process:
         said = f"recording to {process.recording}" if process.recording else "nothing is recorded"
         click.echo(said, err=True)
-        link = process.link
+        link = process.link(aircraft.elevator)
         advise(
             partial(LinkSource, link),
             start.campaign.master,
             aircraft,
             start.campaign.target_system,
-            partial(_announce, link) if announce else None,
+            partial(_announce, link) if announce or announce_to else None,
             by_hand=by_hand,
             kept=partial(_kept, process.recording),
         )

@@ -79,7 +79,12 @@ def start_of(
 
 @contextmanager
 def started(
-    start: Start, source_system: int, signing_key: bytes | None, request_rates: bool, announce: bool
+    start: Start,
+    source_system: int,
+    signing_key: bytes | None,
+    request_rates: bool,
+    announce: bool,
+    announce_to: str | None,
 ) -> Iterator[LinkProcess]:
     """Run the process of the link, or take over the one that runs; the process ends with the context.
 
@@ -97,7 +102,8 @@ def started(
         start.goes_on,
         signing_key,
         request_rates,
-        announce,
+        announce or announce_to is not None,
+        announce_to,
     )
     running = _left_alone(start)
     if running is not None:

@@ -14,6 +14,7 @@ from advisor.doctor.instruments import (
     company_limits,
     elevator_limits,
     loss_limits,
+    sender_limits,
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Survey
@@ -52,14 +53,15 @@ class Examiner:
         self._chosen = target_system is not None
         self._stream = FlightStream(aircraft, target_system)
         self._survey: Survey | None = None
+        self._surveyed: int | None = None
         self._maneuvers: list[Maneuver] = []
 
     def feed(self, columns: Sequence[Columns]) -> None:
         """Take the next messages."""
         self._keep(self._stream.feed(columns))
         vehicle = self._stream.vehicle
-        if self._survey is None and vehicle is not None:
-            self._survey = Survey(vehicle.system, vehicle.component)
+        if vehicle is not None and vehicle.system != self._surveyed:
+            self._survey, self._surveyed = Survey(vehicle.system, vehicle.component), vehicle.system
         if self._survey is not None:
             self._survey.feed(columns)
 
@@ -99,6 +101,7 @@ class Examiner:
         elevator = self._elevator()
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
         limits += clock_limits(clocks) if clocks else []
+        limits += sender_limits(self._stream.two_senders)
         limits += company_limits(self._stream.other_systems) if not self._chosen else []
         limits += loss_limits(lost_percent)
         rates = {name: channel.renewed_hz for name, channel in paced.items()}

@@ -9,6 +9,7 @@ from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.survey import Clocks
 from advisor.flight.surfaces import joined_numbers
 from advisor.flight.track import ChannelStatus
+from advisor.problems import Problem
 
 COARSE_DEG = 0.5
 """Resolution of the command beyond which small steps are no longer steps."""
@@ -99,6 +100,13 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
             )
         )
     return limits
+
+
+def sender_limits(two_senders: Problem | None) -> list[Limit]:
+    """Two senders under one system id, as the flight's own stream judges them."""
+    if two_senders is None:
+        return []
+    return [Limit(two_senders.code, two_senders.text.rstrip("."), two_senders.fix.rstrip("."))]
 
 
 def company_limits(other_systems: Collection[int]) -> list[Limit]:

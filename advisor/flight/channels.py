@@ -12,6 +12,8 @@ from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.motion import gravity_in_plane
 from advisor.gravity import GRAVITY_M_S2
 
+_ARMED = 128
+"""MAV_MODE_FLAG_SAFETY_ARMED, MAVLink common.xml."""
 _MILLI_G = GRAVITY_M_S2 / 1000.0
 
 # The counters that stamp messages (field, length of a tick in s); MAVLink common.xml, ardupilotmega.xml.
@@ -64,6 +66,9 @@ READINGS = (
         for channel, field in (("a_x", "xacc"), ("a_z", "zacc"))
     ),
     Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
+    Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
+    Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
+    Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & _ARMED > 0).astype(np.float64)),
 )
 """Best source of a channel first, where several messages carry it."""
 
@@ -120,7 +125,7 @@ def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
 def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
     """Every quantity of ``READINGS`` that these messages carry."""
     for reading in READINGS:
-        if reading.message == columns.name:
+        if reading.message == columns.name and reading.field in columns.fields:
             y = reading.value(columns.fields[reading.field])
             yield _decoded(reading.channel, reading.source, reading.provenance, t, y, columns)
 
@@ -155,6 +160,18 @@ def derived_alpha(hud: Columns, t: FloatArray, attitude: FloatArray, airspeed: f
     path = np.arcsin(np.clip(sine * GRAVITY_M_S2 / size, -1.0, 1.0))
     alpha = np.where(flying, up - path, np.nan)
     return _decoded("alpha", DERIVED_ALPHA, "derived", t, alpha, hud)
+
+
+def promised(new: Decoded, columns: Columns) -> NDArray[np.int64]:
+    """Orders of the messages that bring samples, or will once the aircraft flies.
+
+    No angle of attack can be derived while the aircraft stands, which is no fault of the stream.
+    """
+    if new.source != DERIVED_ALPHA:
+        return new.order
+    slow = np.asarray(columns.fields["airspeed"]) <= SLOWEST_FLIGHT_M_S
+    stands = slow & (np.asarray(columns.fields.get("groundspeed", np.inf)) <= SLOWEST_FLIGHT_M_S)
+    return columns.order[stands | np.isin(columns.order, new.order)]
 
 
 def _decoded(

@@ -37,10 +37,16 @@ class MasterStamps:
 
 
 class BootClock:
-    """Unwraps ``time_boot_ms`` and notices reboots."""
+    """Unwraps ``time_boot_ms`` and notices reboots.
 
-    def __init__(self) -> None:
-        self.boot = 0
+    Parameters
+    ----------
+    boot
+        Number of the first power-on.
+    """
+
+    def __init__(self, boot: int = 0) -> None:
+        self.boot = boot
         """Number of the boot, 0 for the first."""
         self._newest_ms: int | None = None
         self._doubt: list[int] = []

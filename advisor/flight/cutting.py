@@ -2,10 +2,12 @@
 
 from collections import Counter
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from advisor.flight.events import Activity, FlightEvent, ManeuverFlown
+from advisor.flight.ground import why_on_ground
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.marked_input import marked_span
@@ -60,7 +62,7 @@ class Cutting:
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """What a movement that has ended was: a manoeuvre, or an activity with its reason."""
         maneuver = self._cut(span, boot, up_to_order)
-        because = not_an_input(maneuver)
+        because = not_an_input(maneuver, self.why_on_ground(span, up_to_order))
         if because is not None:
             self.activities[because.what] += 1
             stay_s, _ = self._stay(_middle_s(span))
@@ -79,6 +81,10 @@ class Cutting:
             return [ManeuverFlown(maneuver)]
         maneuver, found = self._sense.right(maneuver)
         return [*found, ManeuverFlown(maneuver)]
+
+    def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
+        """What shows that the aircraft did not fly during a movement; None where nothing does."""
+        return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
 
     def pilot_flies(self, at_s: float) -> bool:
         """Whether the pilot moves the elevator at this time, as far as the flight mode tells."""

@@ -44,7 +44,9 @@ _ASSUMED = (
 )
 
 
-def find_elevator(elevator: Elevator, parameters: Parameters) -> Surface | Problem:
+def find_elevator(
+    elevator: Elevator, parameters: Parameters, why: str = "as the aircraft file says"
+) -> Surface | Problem:
     """Which outputs are the elevator, and their scales.
 
     Parameters
@@ -53,17 +55,19 @@ def find_elevator(elevator: Elevator, parameters: Parameters) -> Surface | Probl
         As the aircraft file has it.
     parameters
         What is known of SERVOn_*; may be empty.
+    why
+        Why ``elevator.output`` is what it is, in words.
     """
     if elevator.outputs:
         return _as_listed(elevator.outputs, parameters)
     if elevator.output != "auto":
-        return _as_given(elevator.output, elevator.calibration, parameters)
+        return _as_given(elevator.output, elevator.calibration, parameters, why)
     return _as_found(elevator.calibration, parameters)
 
 
 def _as_listed(outputs: Sequence[ElevatorOutput], parameters: Parameters) -> Surface | Problem:
     if len(outputs) == 1:
-        return _as_given(outputs[0].output, outputs[0].calibration, parameters)
+        return _as_given(outputs[0].output, outputs[0].calibration, parameters, "as the aircraft file says")
     parts = in_shares(
         Part(
             one.output,
@@ -83,7 +87,7 @@ def _as_listed(outputs: Sequence[ElevatorOutput], parameters: Parameters) -> Sur
     return Surface(parts, calibrated, " ".join(said if calibrated else [*said, _ASSUMED]))
 
 
-def _as_given(output: int, calibration: Pairs | None, parameters: Parameters) -> Surface | Problem:
+def _as_given(output: int, calibration: Pairs | None, parameters: Parameters, why: str) -> Surface | Problem:
     mixed, _ = _MIXED.get(functions_of(parameters).get(output, 0), ("", ""))
     if calibration is None:
         if mixed:
@@ -93,7 +97,7 @@ def _as_given(output: int, calibration: Pairs | None, parameters: Parameters) ->
                 "Set elevator.output to auto: both halves are then read together. "
                 "Or list both in elevator.outputs.",
             )
-        return _uncalibrated(Part(output, scale_of(output, parameters)), "as the aircraft file says")
+        return _uncalibrated(Part(output, scale_of(output, parameters)), why)
     said = (
         f"Output {output} is one half of a mixed {mixed} pair, calibrated as an elevator in the aircraft "
         "file: what it does for the other axis counts as elevator, too."

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from advisor.flight.maneuver import InputKind, Maneuver
 from advisor.flight.vehicle import Vehicle
+from advisor.problems import Problem
 
 _SOON_S = 30.0
 """Alike movements at most this far apart, s, are listed as one: a list of single corrections is not read."""
@@ -83,4 +84,27 @@ class Notice:
     text: str
 
 
-FlightEvent = VehicleFound | Rebooted | ModeChanged | ManeuverStarted | ManeuverFlown | Activity | Notice
+@dataclass(frozen=True, slots=True)
+class NoData:
+    """What arrives at present cannot serve."""
+
+    problems: tuple[Problem, ...]
+    """Everything that is missing or too slow, the most fundamental first; at least one."""
+
+
+@dataclass(frozen=True, slots=True)
+class DataAgain:
+    """What arrives can serve again."""
+
+
+FlightEvent = (
+    VehicleFound
+    | Rebooted
+    | ModeChanged
+    | ManeuverStarted
+    | ManeuverFlown
+    | Activity
+    | Notice
+    | NoData
+    | DataAgain
+)

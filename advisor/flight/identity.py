@@ -1,10 +1,12 @@
 """What the vehicle says of itself: who it is, its firmware, its mode, what its outputs drive."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from advisor.aircraft import Elevator
 from advisor.flight.elevator_outputs import find_elevator
 from advisor.flight.events import FlightEvent, Notice, VehicleFound
+from advisor.flight.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.messages import Columns
 from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_surface
 from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
@@ -38,7 +40,9 @@ class Identity:
         self._finder = VehicleFinder(target_system)
         self._firmware: dict[int, str] = {}
         self._parameters: dict[tuple[int, int], dict[str, float]] = {}
+        self._taken: Elevator | None = None
         self._said = ""
+        self._following = Following(self._has_elevator)
         self.mode = ""
         """Flight mode of the newest heartbeat."""
         self.simulated = False
@@ -74,7 +78,7 @@ class Identity:
 
     def learn(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Take messages among which at most the first changes anything."""
-        events: list[FlightEvent] = []
+        events = self._choose(piece)
         for columns in piece:
             if columns.name == "HEARTBEAT":
                 events += self._heartbeat(columns)
@@ -85,6 +89,38 @@ class Identity:
             elif columns.name == "STATUSTEXT":
                 events += self._text(columns)
         return events
+
+    @property
+    def may_choose(self) -> bool:
+        """Whether another vehicle may come to be followed."""
+        return self._finder.may_choose
+
+    def _choose(self, piece: Sequence[Columns]) -> list[FlightEvent]:
+        """Follow another vehicle where the one followed cannot serve and another plainly can."""
+        before = self._finder.vehicle
+        if before is None or not piece:
+            return []
+        better = self._following.better(piece, before, list(self._finder.heard.values()))
+        return self._follow(better) if better is not None and self.may_choose else []
+
+    def _follow(self, vehicle: Vehicle) -> list[FlightEvent]:
+        before = self._finder.vehicle
+        assert before is not None
+        self._finder.follow(vehicle)
+        self._taken = None
+        self.mode = ""
+        return [
+            VehicleFound(vehicle),
+            Notice(
+                "vehicle_changed",
+                f"Vehicle {vehicle.system} is followed from here on in place of vehicle {before.system}; "
+                f"--target-system {before.system} keeps to that one.",
+            ),
+            *self._settle_surfaces(),
+        ]
+
+    def _has_elevator(self, vehicle: Vehicle) -> bool:
+        return isinstance(find_elevator(self._elevator, self._parameters_of(vehicle)), Surface)
 
     def _heartbeat(self, columns: Columns) -> list[FlightEvent]:
         events: list[FlightEvent] = []
@@ -123,10 +159,10 @@ class Identity:
     def _settle_surfaces(self) -> list[FlightEvent]:
         vehicle = self._finder.vehicle
         assert vehicle is not None
-        parameters: dict[str, float] = {}
-        for speaker in _speakers(vehicle):
-            parameters |= self._parameters.get(speaker, {})
+        parameters = self._parameters_of(vehicle)
         self.elevator = find_elevator(self._elevator, parameters)
+        if isinstance(self.elevator, Problem) and self._taken is not None:
+            self.elevator = find_elevator(self._taken, parameters, "by a guess that a hand has taken")
         found = {
             "elevator": self.elevator,
             "aileron": find_surface(AILERON, parameters),
@@ -139,6 +175,12 @@ class Identity:
         self._said = said
         return [Notice("elevator_scale", said)]
 
+    def _parameters_of(self, vehicle: Vehicle) -> dict[str, float]:
+        parameters: dict[str, float] = {}
+        for speaker in _speakers(vehicle):
+            parameters |= self._parameters.get(speaker, {})
+        return parameters
+
     def _version(self, columns: Columns) -> None:
         packed = int(columns.fields["flight_sw_version"][0])
         if packed:
@@ -149,6 +191,13 @@ class Identity:
         text = bytes(columns.fields["text"][0])
         if text.startswith(READER):
             return [Notice(SENSOR_NOTICE, f"{text.removeprefix(READER).decode()}.")]
+        taken = chosen(text, TAKE)
+        if taken is not None and self._finder.vehicle is not None:
+            self._taken = replace(self._elevator, output=taken)
+            return self._settle_surfaces()
+        other = self._finder.heard.get(chosen(text, FOLLOW) or 0)
+        if other is not None and other != self._finder.vehicle:
+            return self._follow(other)
         if text.startswith(_BUNDLED):
             self.simulated = True
         words = text.split()

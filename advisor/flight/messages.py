@@ -35,3 +35,9 @@ class Columns:
 
     def __len__(self) -> int:
         return len(self.order)
+
+
+def arrivals(columns: Columns, order: IntArray) -> FloatArray:
+    """Host time at which the messages with these arrival indices came, shape of ``order``."""
+    times: FloatArray = columns.arrival_s[np.searchsorted(columns.order, order)]
+    return times

@@ -11,8 +11,16 @@ _EVERY = 100_000
 """Longest piece in arrival orders (bytes of a log), so that memory stays bounded whatever the batch."""
 
 
-def pieces(columns: Sequence[Columns]) -> Iterator[list[Columns]]:
-    """The batch in order of arrival, cut before every change of vehicle, mode or parameter."""
+def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list[Columns]]:
+    """The batch in order of arrival, cut before every change of vehicle, mode or parameter.
+
+    Parameters
+    ----------
+    columns
+        Messages of all senders.
+    by_second
+        Whether to cut where a second of arrival begins, too: several vehicles are then weighed.
+    """
     filled = [c for c in columns if len(c)]
     if not filled:
         return
@@ -21,9 +29,20 @@ def pieces(columns: Sequence[Columns]) -> Iterator[list[Columns]]:
     cuts = {first, past, *range(first, past, _EVERY)}
     for c in filled:
         cuts.update(_turning_points(c))
+    if by_second:
+        cuts.update(_seconds(filled))
     edges = sorted(cuts)
     for a, b in pairwise(edges):
         yield between(filled, a, b)
+
+
+def _seconds(columns: Sequence[Columns]) -> list[int]:
+    """Orders of the messages with which a second of arrival begins."""
+    order = np.concatenate([c.order for c in columns])
+    rows = np.argsort(order)
+    second = np.floor(np.concatenate([c.arrival_s for c in columns])[rows])
+    begins = np.concatenate(([False], np.diff(np.maximum.accumulate(second)) > 0))
+    return [int(n) for n in order[rows][begins]]
 
 
 def between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:

@@ -58,14 +58,18 @@ class Because:
         return _WHAT.get(self.reason, self.text)
 
 
-def not_an_input(maneuver: Maneuver) -> Because | None:
+def not_an_input(maneuver: Maneuver, on_ground: str | None = None) -> Because | None:
     """Say why a movement of the elevator is no test input; None where it may be one.
 
     Parameters
     ----------
     maneuver
         The record of the movement. Channels ``q`` and ``airspeed`` are used where they exist.
+    on_ground
+        What else shows that the aircraft did not fly, in words; None: nothing does.
     """
+    if on_ground is not None:
+        return Because("ground", f"the elevator moved on the ground: {on_ground}")
     if _is_on_ground(maneuver):
         return Because("ground", "the elevator moved while the aircraft did not fly")
     because = _tells_nothing(maneuver)

@@ -18,12 +18,15 @@ from advisor.flight.channels import (
     Decoded,
     derived_alpha,
     named_value,
+    promised,
     quantities,
     stamps,
 )
 from advisor.flight.clocks import BootClock
 from advisor.flight.commanded import Commanded, commanded
 from advisor.flight.cutting import Cutting
+from advisor.flight.elevator_guess import EVERY_S, LATE_S, ElevatorGuess, Guess
+from advisor.flight.elevator_guess import KEEP_S as GUESS_S
 from advisor.flight.elevator_watch import SETTLE_S, ElevatorWatch
 from advisor.flight.events import (
     FlightEvent,
@@ -36,13 +39,15 @@ from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.markers import HEARD, MarkerWatch
 from advisor.flight.marks import Due, Mark, Marks
-from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.messages import Columns, FloatArray, arrivals
 from advisor.flight.mixing import Mixing
 from advisor.flight.pieces import pieces
 from advisor.flight.record import Channel
 from advisor.flight.segmentation import LEAD_IN_S
+from advisor.flight.senders import SenderWatch
 from advisor.flight.sense import SAID
-from advisor.flight.suitability import problems
+from advisor.flight.service import Service
+from advisor.flight.suitability import problems, with_guess
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus, Tracks
 from advisor.flight.vehicle import Vehicle, closes_pitch_loop
@@ -88,6 +93,11 @@ class FlightStream:
         self.seen: set[str] = set()
         """Names of the messages the vehicle has sent."""
         self._best: dict[str, ChannelStatus] = {}
+        self._service = Service(self._wanting)
+        self._senders = SenderWatch()
+        self.guess: Guess | None = None
+        """Which output may be the elevator, while nothing says it."""
+        self._system: int | None = None
         self._earlier_s = 0.0
 
     def _start_boot(self) -> None:
@@ -101,6 +111,8 @@ class FlightStream:
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
         self._attitude = np.full((1, 2), np.nan)
+        self._guesses = ElevatorGuess()
+        self._guessed_s = -np.inf
 
     @property
     def vehicle(self) -> Vehicle | None:
@@ -163,11 +175,31 @@ class FlightStream:
             self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.activities
         )
         wrong = self._mixing.contradiction
+        if self.guess is not None and isinstance(self.elevator, Problem):
+            found = [with_guess(problem, self.guess) for problem in found]
         return [
             *(self.marks.problems() if self._over else ()),
+            *([self.two_senders] if self.two_senders and not flown.maneuvers else ()),
             *([wrong] if wrong and not flown.maneuvers else ()),
             *found,
         ]
+
+    @property
+    def no_data(self) -> tuple[Problem, ...]:
+        """Why what arrives at present cannot serve; empty when it can."""
+        return self._service.problems
+
+    def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
+        """What keeps a stream with these channels from being used, whatever was flown on it."""
+        wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
+        two = self._senders.problem(self._system, now_s) if self._system is not None else None
+        found = problems(self.vehicle, self.other_systems, self.elevator, channels, 1, {})
+        return [*(problem for problem in (two, wrong) if problem), *found]
+
+    @property
+    def two_senders(self) -> Problem | None:
+        """Two senders under the vehicle's id, where they were seen once."""
+        return self._senders.seen
 
     def recent(self, name: str, seconds: float) -> Channel | None:
         """The newest stretch of a channel; None when nothing of it has arrived."""
@@ -183,18 +215,22 @@ class FlightStream:
         if marked_s is None and not self._cutting.pilot_flies(onset):
             return None
         span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
+        if marked_s is None and self._cutting.why_on_ground(span) is not None:
+            return None
         return self._cutting.so_far(span, self.boot)
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
         """Take messages that have arrived; what became known by them, in order."""
         events: list[FlightEvent] = []
-        for piece in pieces(self._attitudes.of(columns)):
+        several = self._who.may_choose or len({c.system for c in columns if c.name == "HEARTBEAT"}) > 1
+        for piece in pieces(self._attitudes.of(columns), by_second=several):
             events += self._feed_piece(piece)
         return events
 
     def finish(self) -> list[FlightEvent]:
         """No more messages will come: whatever is open is closed."""
         events = self._finish_boot()
+        self._service.end()
         self._over = True
         return events
 
@@ -220,7 +256,12 @@ class FlightStream:
         events = self._who.learn(piece)
         vehicle = self._who.vehicle
         if vehicle is None:
-            return events
+            return [*events, *self._service.advance(piece)]
+        if vehicle.system != self._system:
+            left = self._start_again(BootClock(self.boot + 1)) if self._system is not None else []
+            events = [*left, *events]
+            self._system = vehicle.system
+            self._service.begin()
         if self._who.mode != mode:
             events.append(ModeChanged(self._who.mode, self._master_s))
             if np.isfinite(self._master_s):
@@ -236,14 +277,21 @@ class FlightStream:
         self.seen.update(c.name for c in mine)
         for part, master in by_boot(mine, vehicle.component, self._clock, self.boot):
             if master.boot != self.boot:
-                events += self._finish_boot()
-                self._earlier_s = self.duration_s
-                self.boot = master.boot
-                self._start_boot()
-                self.marks.start_boot(self.boot, self._earlier_s)
-                self._markers.start_boot()
-                events.append(Rebooted(self.boot))
+                events += [*self._start_again(self._clock), Rebooted(self.boot)]
             events += self._feed_part(part, master, vehicle)
+        self._senders.hear(mine, vehicle.component)
+        return [*events, *self._service.advance(mine)]
+
+    def _start_again(self, clock: BootClock) -> list[FlightEvent]:
+        """What belonged together so far is over: another power-on, or another vehicle."""
+        events = self._finish_boot()
+        self._earlier_s = self.duration_s
+        self._clock = clock
+        self.boot = clock.boot
+        self._start_boot()
+        self.marks.start_boot(self.boot, self._earlier_s)
+        self._markers.start_boot()
+        self._service.begin()
         return events
 
     def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
@@ -264,18 +312,37 @@ class FlightStream:
                 self._heartbeat_s = float(t[-1])
             for new in self._decode(columns, t, attitude[now]):
                 self._tracks.append(new)
+                if self._tracks.serves(new):
+                    self._service.take(new.channel, new.source, arrivals(columns, promised(new, columns)))
             if columns.name in _OUTPUTS:
+                if isinstance(self.elevator, Problem):
+                    self._guesses.hear(columns, t)
                 pulses = self._banks.together(columns)
                 for moved in commanded(self._who.surfaces, pulses, t, vehicle.autopilot):
                     if moved.channel == "elevator":
                         elevator.append(moved)
+                        self._service.take(moved.channel, moved.source, arrivals(columns, moved.order))
                     else:
                         self._tracks.append(moved.combined())
         if np.isnan(self._first_s) and len(master.t):
             self._first_s = float(master.t[0])
             self.marks.start_clock(self._first_s)
         self._master_s, self._attitude = float(clock[-1]), attitude[-1:]
-        return self._feed_elevator(elevator)
+        return [*self._feed_elevator(elevator), *self._guess_elevator()]
+
+    def _guess_elevator(self) -> list[FlightEvent]:
+        """Guess at fixed vehicle times, however messages were batched; say a new guess."""
+        if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
+            return []
+        events: list[FlightEvent] = []
+        first_s = max(self._guessed_s + EVERY_S, EVERY_S * np.ceil(self._first_s / EVERY_S))
+        for now_s in np.arange(first_s, self._master_s, EVERY_S).tolist():
+            self._guessed_s = now_s
+            guess = self._guesses.made(self._tracks.cut("q", now_s - GUESS_S, now_s - LATE_S))
+            if guess is not None and (self.guess is None or guess.output != self.guess.output):
+                events.append(Notice("elevator_guess", f"Nothing says which is the elevator; {guess}."))
+            self.guess = guess or self.guess
+        return events
 
     def _decode(self, columns: Columns, t: FloatArray, attitude: FloatArray) -> Iterator[Decoded]:
         yield from quantities(columns, t)

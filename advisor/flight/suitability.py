@@ -12,6 +12,7 @@ from collections.abc import Collection, Mapping
 from math import isfinite
 
 from advisor.beside import beside
+from advisor.flight.elevator_guess import Guess
 from advisor.flight.surfaces import Surface, joined_numbers
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
@@ -67,6 +68,13 @@ def problems(
     if found and other_systems:
         found.insert(0, _perhaps_another(vehicle, other_systems))
     return found
+
+
+def with_guess(problem: Problem, guess: Guess) -> Problem:
+    """The problem that nothing says which output is the elevator, with a guess; any other as it is."""
+    if problem.code != "no_elevator":
+        return problem
+    return Problem(problem.code, problem.text, f"{problem.fix.rstrip('.')}; {guess}.")
 
 
 def _no_surfaces(vehicle: Vehicle) -> Problem:

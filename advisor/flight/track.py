@@ -132,6 +132,10 @@ class Tracks:
             self._tracks[key] = Track(new.channel, new.source, new.provenance)
         self._tracks[key].append(new.t, new.y, new.order)
 
+    def serves(self, new: Decoded) -> bool:
+        """Whether the channel may come from this source."""
+        return new.source in self._sources.get(new.channel, (new.source,))
+
     def cut(self, name: str, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel | None:
         """A stretch of a channel from its best source that says anything there; None without one."""
         spare = None

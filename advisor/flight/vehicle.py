@@ -70,6 +70,8 @@ class VehicleFinder:
         self.vehicle: Vehicle | None = None
         self.others: set[int] = set()
         """System ids of further vehicles on the same stream."""
+        self.heard: dict[int, Vehicle] = {}
+        """Every vehicle by its system id, as its first heartbeat has it."""
 
     def hear(self, heartbeat: Columns) -> bool:
         """Take the first row of one sender's heartbeats; true when it settles who the vehicle is."""
@@ -77,14 +79,26 @@ class VehicleFinder:
         kind = int(heartbeat.fields["type"][0])
         if not is_aircraft(autopilot, kind):
             return False
+        name = _AUTOPILOTS.get(autopilot, f"autopilot {autopilot}")
+        vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind)
+        self.heard.setdefault(heartbeat.system, vehicle)
         if self.vehicle is None and self._target in (None, heartbeat.system):
-            name = _AUTOPILOTS.get(autopilot, f"autopilot {autopilot}")
-            self.vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind)
-            self.others.discard(heartbeat.system)
+            self.follow(vehicle)
             return True
         if self.vehicle is None or heartbeat.system != self.vehicle.system:
             self.others.add(heartbeat.system)
         return False
+
+    @property
+    def may_choose(self) -> bool:
+        """Whether nobody asked for a vehicle, and there is more than one."""
+        return self._target is None and self.vehicle is not None and bool(self.others)
+
+    def follow(self, vehicle: Vehicle) -> None:
+        """Another vehicle is followed from here on."""
+        self.others |= {other for other in self.heard if self.vehicle is not None}
+        self.others.discard(vehicle.system)
+        self.vehicle = vehicle
 
 
 def closes_pitch_loop(mode: str) -> bool:

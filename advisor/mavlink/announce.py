@@ -6,10 +6,12 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.mavlink.framing import Frame
+from advisor.mavlink.outgoing import Ids, Talker
 
 CHUNK_BYTES = 50
 MOST_CHUNKS = 4
+SPOKEN = "@"
+"""MAVProxy's speech module says a text that begins so, of any component of its vehicle's system."""
 
 _PLAIN = str.maketrans({"°": " deg", "–": "-", "—": "-", "−": "-", "×": "x", "±": "+-", "≤": "<=", "≥": ">="})
 
@@ -42,12 +44,10 @@ def status_text(text: str, number: int) -> list[Any]:
     ]
 
 
-class Announcer:
+class Announcer(Talker):
     """Sends one text for each manoeuvre, never a second one for the same.
 
     ``judged`` may be called from any thread; the link asks for the messages from its own.
-    A ground station shows texts of the system it watches: where it hides those of other
-    system ids, run the advisor with the vehicle's as ``source_system``.
     """
 
     def __init__(self) -> None:
@@ -75,10 +75,11 @@ class Announcer:
         if stop is not None and not self._stop_told:
             self._stop_told = True
             sentence = f"{stop} ({sentence})"
-        self._waiting.append(sentence)
+        self._waiting.append(SPOKEN + sentence)
 
-    def hear(self, frame: Frame, now_s: float) -> None:
-        """Nothing to hear."""
+    def source(self, own: Ids, vehicle: Ids) -> Ids:
+        """A computer on board: ground stations show texts of their vehicle's system only."""
+        return vehicle[0], dialect.MAV_COMP_ID_ONBOARD_COMPUTER
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
         """The next text that waits, once there is a vehicle whose link it can take."""
@@ -86,7 +87,3 @@ class Announcer:
             return []
         self._number += 1
         return status_text(self._waiting.popleft(), self._number)
-
-    def report(self) -> list[str]:
-        """Nothing to report."""
-        return []

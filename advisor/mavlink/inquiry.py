@@ -6,6 +6,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.framing import Frame
+from advisor.mavlink.outgoing import Talker
 
 OUTPUTS = range(1, 17)
 PITCH_FUNCTIONS = (19, 77, 78, 79, 80, 16, 17, 86, 87)
@@ -25,21 +26,33 @@ AT_ONCE = 10
 _PARAM_VALUE = dialect.MAVLINK_MSG_ID_PARAM_VALUE
 
 
-class Inquiry:
+class Inquiry(Talker):
     """Reads the parameters that say which output is the elevator and how it moves.
 
     First SERVOn_FUNCTION of every output, the stream rates and the ground station's id in
     both spellings, then MIN, TRIM, MAX and REVERSED of the outputs that pitch. A few
     questions stand at a time; an unanswered one is repeated, then given up: a vehicle does
     not answer for a parameter it does not have. The answers reach the advisor as every
-    other message of the link does; here they only decide what to ask next.
+    other message of the link does; here they only decide what to ask next. Another vehicle
+    is asked anew.
+
+    Parameters
+    ----------
+    outputs_only
+        Ask for the outputs alone, not for the stream rates, the ground station's id and the firmware.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, outputs_only: bool = False) -> None:
+        self._outputs_only = outputs_only
+        self._vehicle: tuple[int, int] | None = None
+        self._begin()
+
+    def _begin(self) -> None:
         self._to_ask = [f"SERVO{n}_FUNCTION" for n in OUTPUTS]
-        self._to_ask += [name for pair in RENAMED.items() for name in pair]
+        if not self._outputs_only:
+            self._to_ask += [name for pair in RENAMED.items() for name in pair]
         self._standing: dict[str, tuple[float, int]] = {}
-        self._firmware_asked = False
+        self._firmware_asked = self._outputs_only
         self._told = False
         self.parameters: dict[str, float] = {}
         """What was answered."""
@@ -70,6 +83,9 @@ class Inquiry:
         """The questions that are due."""
         if vehicle is None:
             return []
+        if self._vehicle not in (None, vehicle):
+            self._begin()
+        self._vehicle = vehicle
         questions = []
         if not self._firmware_asked:
             self._firmware_asked = True
@@ -93,6 +109,8 @@ class Inquiry:
         if self._told or not self.done:
             return []
         self._told = True
+        if not self.parameters:
+            return ["the vehicle was asked for SERVOn_FUNCTION and did not answer"]
         return [f"{len(self.parameters)} parameters of the vehicle heard"]
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from advisor.flight.vehicle import is_aircraft
+from advisor.mavlink.company import is_ground_station
 from advisor.mavlink.framing import Frame, FrameCutter
 from advisor.mavlink.health import LinkCounters
 from advisor.mavlink.signing import RADIO_STATUS, SignatureCheck
@@ -35,9 +36,10 @@ class Intake:
         self._bad_crc = 0
         self._garbage_bytes = 0
         self.counters = LinkCounters()
+        self.ground_stations: set[int] = set()
+        """System ids of ground stations heard."""
         self.vehicle: tuple[int, int] | None = None
-        self.vehicle_peer: Peer | None = None
-        """Who to answer."""
+        self._peers: dict[int, Peer] = {}
         self.other_vehicles: set[int] = set()
         """System ids of autopilots heard beside the vehicle."""
 
@@ -49,11 +51,22 @@ class Intake:
             for frame in frames:
                 if frame.message_id == HEARTBEAT:
                     self._meet(frame)
-            if self.vehicle and any(frame.system == self.vehicle[0] for frame in frames):
-                self.vehicle_peer = peer
+            self._peers.update((frame.system, peer) for frame in frames)
             taken += frames
         self.counters.add(taken, now_s)
         return taken
+
+    @property
+    def vehicle_peer(self) -> Peer | None:
+        """Who to answer."""
+        return self._peers.get(self.vehicle[0]) if self.vehicle is not None else None
+
+    def follow(self, vehicle: tuple[int, int]) -> None:
+        """Another vehicle is listened to."""
+        if self.vehicle is not None:
+            self.other_vehicles.add(self.vehicle[0])
+        self.other_vehicles.discard(vehicle[0])
+        self.vehicle = vehicle
 
     def forget_pieces(self) -> None:
         """A connection was cut: what was half received will never be whole."""
@@ -89,6 +102,9 @@ class Intake:
         return verdict == "ok"
 
     def _meet(self, heartbeat: Frame) -> None:
+        if is_ground_station(heartbeat):
+            self.ground_stations.add(heartbeat.system)
+            return
         payload = heartbeat.payload.ljust(9, b"\0")
         kind, autopilot = payload[4], payload[5]
         if not is_aircraft(autopilot, kind):

@@ -20,9 +20,10 @@ from threading import Thread
 
 from advisor.mavlink import running
 from advisor.mavlink.announce import Announcer
+from advisor.mavlink.aside import Aside
 from advisor.mavlink.health import Notice
 from advisor.mavlink.inquiry import Inquiry
-from advisor.mavlink.keeping import Door, Guard, Heard, Hello, Judged, Keeping, Listen, Stop, Told
+from advisor.mavlink.keeping import Door, Guard, Heard, Hello, Judged, Keeping, Listen, Order, Stop, Told
 from advisor.mavlink.link import Link
 from advisor.mavlink.outgoing import Talker
 from advisor.mavlink.rates import STREAMS, RateRequest
@@ -191,6 +192,8 @@ class Keeper:
                         self._guarded(+1)
                     case Judged(maneuver, sentence, stop) if self._announcer:
                         self._announcer.judged(maneuver, sentence, stop)
+                    case Order(method, arguments):
+                        getattr(self._link, method)(*arguments)
                     case Stop():
                         self._stop.set()
                         return
@@ -216,6 +219,8 @@ class Keeper:
 
 def _talkers(keeping: Keeping, announcer: Announcer | None) -> list[Talker]:
     talkers: list[Talker] = [announcer] if announcer else []
+    if announcer and keeping.announce_to:
+        talkers = [Aside(announcer, keeping.announce_to)]
     if keeping.request_rates:
         talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
     return talkers

@@ -6,6 +6,7 @@ import tempfile
 from dataclasses import dataclass, field
 from multiprocessing.connection import Client, Connection
 from pathlib import Path
+from typing import Literal
 
 from advisor.mavlink.health import LinkStatistics, Notice
 
@@ -51,6 +52,8 @@ class Keeping:
     signing_key: bytes | None = field(default=None, repr=False)
     request_rates: bool = False
     announce: bool = False
+    announce_to: str | None = None
+    """Connection to a ground station for announcements; None: they go over the link."""
     inherited: int | None = None
     """File descriptor of the UDP socket of an earlier process, in which packets wait; None: open one."""
 
@@ -92,6 +95,14 @@ class Judged:
     maneuver: int
     sentence: str
     stop: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """Asks for a call of one of the link's methods that say what a crew or a reader wants."""
+
+    method: Literal["listen_to", "follow", "take_output", "ask_for_outputs"]
+    arguments: tuple[object, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

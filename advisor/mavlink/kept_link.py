@@ -7,12 +7,13 @@ from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
+from advisor.aircraft import Elevator
 from advisor.flight.messages import Columns
 from advisor.mavlink.health import LinkStatistics, Notice
-from advisor.mavlink.keeping import Door, Heard, Hello, Judged, Listen, Told
+from advisor.mavlink.keeping import Door, Heard, Hello, Judged, Listen, Order, Told
 
 if TYPE_CHECKING:
-    from advisor.mavlink.frames import FrameScanner
+    from advisor.mavlink.decoding import Decoding
 
 PIECE_BYTES = 262_144
 """Bytes of the recording that one ``read`` decodes: some 5,000 messages."""
@@ -29,10 +30,17 @@ class KeptLink:
     ----------
     door
         Where the process is spoken to.
+    elevator
+        As the aircraft file has it: it tells which of several vehicles has one. None: by the parameters.
+    target_system
+        System id of the vehicle; None: the first autopilot heard.
     """
 
-    def __init__(self, door: Door) -> None:
+    def __init__(
+        self, door: Door, elevator: Elevator | None = None, target_system: int | None = None
+    ) -> None:
         self._door = door
+        self._elevator, self._target_system = elevator, target_system
         self._connection: Connection | None = None
         self._past: Iterator[bytes] = iter(())
         self._position = 0
@@ -63,7 +71,12 @@ class KeptLink:
         if piece is None:
             self.catching_up = False
             piece = self._hear(timeout_s)
-        return self._scanner.feed(piece) if piece else []
+        if not piece:
+            return []
+        columns = self._decoding.feed(piece)
+        if (vehicle := self._decoding.newly_followed()) is not None:
+            self._send(Order("listen_to", (vehicle,)))
+        return columns
 
     def take_notices(self) -> list[Notice]:
         """What happened to the link since the last call, oldest first."""
@@ -75,12 +88,24 @@ class KeptLink:
         if self._connection is not None and self._position > self._before:
             self._send(Judged(maneuver, sentence, stop))
 
-    @cached_property
-    def _scanner(self) -> "FrameScanner":
-        # Loaded by the process that reads, not by the one that only names the link.
-        from advisor.mavlink.frames import FrameScanner
+    def follow(self, system: int) -> None:
+        """Let another vehicle be followed; the stream keeps it, and nothing goes on the air."""
+        self._send(Order("follow", (system,)))
 
-        return FrameScanner()
+    def take_output(self, output: int) -> None:
+        """Take an output for the elevator; the stream keeps it, and nothing goes on the air."""
+        self._send(Order("take_output", (output,)))
+
+    def ask_for_outputs(self) -> None:
+        """Ask the vehicle once which of its outputs is the elevator."""
+        self._send(Order("ask_for_outputs"))
+
+    @cached_property
+    def _decoding(self) -> "Decoding":
+        # Loaded by the process that reads, not by the one that only names the link.
+        from advisor.mavlink.decoding import Decoding
+
+        return Decoding(self._elevator, self._target_system)
 
     def _connect(self, timeout_s: float) -> None:
         if time.monotonic() < self._next_try_s:
@@ -100,6 +125,7 @@ class KeptLink:
         self._before = hello.before
         self._past = self._records_of(hello)
         self.catching_up = True
+        self._decoding.forget_followed()
 
     def _records_of(self, hello: Hello) -> Iterator[bytes]:
         """What the recording holds beyond what was read, in pieces."""

@@ -18,27 +18,35 @@ from queue import Empty, Full, Queue
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
+from advisor.aircraft import Elevator
+from advisor.flight.following import FOLLOW, TAKE
 from advisor.flight.messages import Columns
 from advisor.mavlink.connection import parse_connection
+from advisor.mavlink.conversation import Conversation
 from advisor.mavlink.framing import CRC_EXTRA, Frame
 from advisor.mavlink.health import LinkStatistics, Notice
+from advisor.mavlink.inquiry import Inquiry
 from advisor.mavlink.intake import Intake
-from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Packer, Talker
+from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Ids, Talker
 from advisor.mavlink.recorder import Recorder
-from advisor.mavlink.signing import SignatureCheck, signing_time
+from advisor.mavlink.signing import SignatureCheck
 from advisor.mavlink.transport import ConnectionCutError, Transport
 from advisor.mavlink.transports import open_transport
 from advisor.mavlink.watch import LinkWatch
 from advisor.problems import UnusableInputError
 
 if TYPE_CHECKING:
-    from advisor.mavlink.frames import FrameScanner
+    from advisor.mavlink.decoding import Decoding
 
 BATCH_S = 0.012
 """Frames gather this long before they are handed over together."""
 PAUSE_S = 0.003
 """Rest between two looks at a busy socket, so that several packets share one look."""
 REOPEN_EVERY_S = 1.0
+UNREACHABLE_S = 3.0
+"""Silence of the vehicle after which nothing is sent to it, s: three heartbeats."""
+FAREWELL_S = 0.7
+"""How long quitting may last for the sake of what must be put back on the vehicle, s."""
 QUEUE_LENGTH = 12_000  # batches: more than a minute behind at full load
 
 _HEARD, _SENT_BY_US = 0, 3  # link numbers, the low two bits of a tlog's time stamps
@@ -66,6 +74,8 @@ class Link:
         a heartbeat once a second by itself.
     inherited
         File descriptor of a UDP socket that another process has opened for the connection; None: open one.
+    elevator
+        As the aircraft file has it: it tells which of several vehicles has one. None: by the parameters.
     patience_s
         How long the first connection is tried; later a lost one is tried for ever.
 
@@ -87,16 +97,19 @@ class Link:
         key: bytes | None = None,
         talkers: Iterable[Talker] = (),
         inherited: int | None = None,
+        elevator: Elevator | None = None,
         patience_s: float = 5.0,
     ) -> None:
         self.address = parse_connection(connection)
         self._record_to, self._goes_on = record_to, goes_on
         self._inherited = inherited
         self._patience_s = patience_s
-        self._talkers = [*talkers, *([Heartbeat()] if self.address.speaks_first else [])]
-        self._packer = Packer(source_system, source_component, key)
-        signatures = SignatureCheck(key, signing_time(time.time())) if key is not None else None
+        greeting = [Heartbeat()] if self.address.speaks_first else []
+        self._conversation = Conversation([*talkers, *greeting], (source_system, source_component), key)
+        signatures = SignatureCheck(key) if key is not None else None
         self._intake = Intake(CRC_EXTRA, target_system, signatures)
+        self._elevator, self._target_system = elevator, target_system
+        self._orders: deque[bytes | Talker | Ids] = deque()
         self._watch = LinkWatch(connection)
         self._notices: deque[Notice] = deque(maxlen=1000)
         self._queue: Queue[bytes] = Queue(QUEUE_LENGTH)
@@ -163,14 +176,19 @@ class Link:
     def read(self, timeout_s: float = 0.1) -> list[Columns]:
         """The messages of the next micro-batch, or nothing when none came in time."""
         records = self.read_records(timeout_s)
-        return self._scanner.feed(records) if records else []
+        if not records:
+            return []
+        columns = self._decoding.feed(records)
+        if (vehicle := self._decoding.newly_followed()) is not None:
+            self.listen_to(vehicle)
+        return columns
 
     @cached_property
-    def _scanner(self) -> "FrameScanner":
+    def _decoding(self) -> "Decoding":
         # A process that only records needs no decoder, whose kernels take longer to load than all the rest.
-        from advisor.mavlink.frames import FrameScanner
+        from advisor.mavlink.decoding import Decoding
 
-        return FrameScanner()
+        return Decoding(self._elevator, self._target_system)
 
     def read_records(self, timeout_s: float = 0.1) -> bytes:
         """The next micro-batch as records of a tlog, or nothing when none came in time."""
@@ -184,6 +202,22 @@ class Link:
     def recorder(self) -> Recorder | None:
         """Who keeps the recording; None before the start, and where nothing is recorded."""
         return self._recorder
+
+    def listen_to(self, vehicle: Ids) -> None:
+        """Count, watch and answer this vehicle: whoever decodes the stream says whom the flight follows."""
+        self._orders.append(vehicle)
+
+    def follow(self, system: int) -> None:
+        """Let another vehicle be followed; the stream keeps it, and nothing goes on the air."""
+        self._orders.append(FOLLOW + str(system).encode())
+
+    def take_output(self, output: int) -> None:
+        """Take an output for the elevator; the stream keeps it, and nothing goes on the air."""
+        self._orders.append(TAKE + str(output).encode())
+
+    def ask_for_outputs(self) -> None:
+        """Ask the vehicle once which of its outputs is the elevator."""
+        self._orders.append(Inquiry(outputs_only=True))
 
     def take_notices(self) -> list[Notice]:
         """What happened to the link since the last call, oldest first."""
@@ -253,6 +287,7 @@ class Link:
             now_s = time.monotonic()
             since_s = since_s if batch else now_s
             batch += self._records((frame.raw for frame in frames), now_s, _HEARD)
+            batch += self._records(self._obey(), now_s, _SENT_BY_US)
             batch += self._records(self._talk(frames, now_s), now_s, _SENT_BY_US)
             self._say(self._watch.look(self._intake, frames, now_s), now_s)
             self._say(self._recorder.take_notices() if self._recorder else (), now_s)
@@ -261,8 +296,24 @@ class Link:
                 batch.clear()
             if batch:
                 self._stop.wait(PAUSE_S)
+        batch += self._take_leave()
         if batch:
             self._hand_over(bytes(batch))
+
+    def _take_leave(self) -> bytes:
+        """Let the talkers end what they began, as long as the vehicle hears us and quitting may last."""
+        records = bytearray()
+        give_up_s = time.monotonic() + FAREWELL_S
+        while (now_s := time.monotonic()) < give_up_s and self._reachable(now_s):
+            unix_s = now_s + self._unix_offset_s
+            sent = self._conversation.leave(self._intake.vehicle, now_s, unix_s, self._send)
+            if sent is None:
+                break
+            frames = self._take_frames(wait_s=0.02)
+            self._say(self._conversation.hear(frames, self._intake.vehicle, now_s), now_s)
+            records += self._records((frame.raw for frame in frames), now_s, _HEARD)
+            records += self._records(sent, now_s, _SENT_BY_US)
+        return bytes(records)
 
     def _take_frames(self, wait_s: float) -> list[Frame]:
         if self._transport is None:
@@ -287,20 +338,32 @@ class Link:
         with contextlib.suppress(OSError):  # not yet back: tried again a second later
             self._transport = open_transport(self.address)
 
+    def _obey(self) -> list[bytes]:
+        """Do what was ordered since the last look; texts for the stream alone are returned."""
+        texts = []
+        while self._orders:
+            match self._orders.popleft():
+                case Talker() as talker:
+                    self._conversation.join(talker)
+                case bytes() as text:
+                    texts.append(self._conversation.note(text, time.time()))
+                case vehicle if vehicle != self._intake.vehicle:
+                    self._intake.follow(vehicle)
+                    self._watch.start_again()
+        return texts
+
     def _talk(self, frames: list[Frame], now_s: float) -> list[bytes]:
-        vehicle = self._intake.vehicle
-        from_vehicle = [frame for frame in frames if vehicle and frame.system == vehicle[0]]
-        for talker in self._talkers:
-            for frame in from_vehicle:
-                talker.hear(frame, now_s)
-            self._say(talker.report(), now_s)
-        sent = []
-        for talker in self._talkers:
-            for message in talker.speak(vehicle, now_s):
-                raw = self._packer.pack(message, signing_time(now_s + self._unix_offset_s))
-                if self._transport is not None and self._transport.send(raw, self._intake.vehicle_peer):
-                    sent.append(raw)
-        return sent
+        self._say(self._conversation.hear(frames, self._intake.vehicle, now_s), now_s)
+        unix_s, reachable = now_s + self._unix_offset_s, self._reachable(now_s)
+        return self._conversation.speak(self._intake.vehicle, reachable, now_s, unix_s, self._send)
+
+    def _reachable(self, now_s: float) -> bool:
+        """Whether the vehicle is known and hears what is asked."""
+        down = self._transport is None or self._watch.silent_s(now_s) > UNREACHABLE_S
+        return not down and self._intake.vehicle is not None
+
+    def _send(self, raw: bytes) -> bool:
+        return self._transport is not None and self._transport.send(raw, self._intake.vehicle_peer)
 
     def _records(self, frames: Iterable[bytes], now_s: float, link_number: int) -> bytes:
         stamp_us = int((now_s + self._unix_offset_s) * 1e6) & ~3 | link_number

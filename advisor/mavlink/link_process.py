@@ -13,6 +13,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from advisor.aircraft import Elevator
 from advisor.mavlink.keeping import Guard, Keeping, Stop
 from advisor.mavlink.kept_link import KeptLink
 from advisor.mavlink.running import RunningLink
@@ -44,10 +45,15 @@ class LinkProcess:
         self.recording: Path | None = running.recording if running else None
         """File of the recording; None where nothing is recorded."""
 
-    @property
-    def link(self) -> KeptLink:
-        """A new reader of the link; it can be handed to another process before it reads."""
-        return KeptLink(self._keeping.door)
+    def link(self, elevator: Elevator | None = None) -> KeptLink:
+        """A new reader of the link; it can be handed to another process before it reads.
+
+        Parameters
+        ----------
+        elevator
+            As the aircraft file has it: it tells which of several vehicles has one. None: by the parameters.
+        """
+        return KeptLink(self._keeping.door, elevator, self._keeping.target_system)
 
     @property
     def master(self) -> str:

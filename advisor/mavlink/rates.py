@@ -1,44 +1,52 @@
 """Asking the vehicle for message rates, and looking at what it then delivers."""
 
 import struct
-from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
+from advisor.mavlink.company import is_ground_station, who_sets_rates
 from advisor.mavlink.definitions import DEFINITIONS
+from advisor.mavlink.delivery import Delivery
 from advisor.mavlink.framing import Frame
+from advisor.mavlink.outgoing import Talker
+from advisor.mavlink.reboot import RebootWatch
+from advisor.mavlink.wish import LONGEST_REST_S, MOST_TRIES, Wish
 
 STREAMS = ("ATTITUDE", "AOA_SSA", "SERVO_OUTPUT_RAW", "RAW_IMU", "VFR_HUD", "GLOBAL_POSITION_INT")
 """What identification lives on, the indispensable first."""
 
 ANSWER_WITHIN_S = 1.0
-MOST_TRIES = 5
 MEASURE_S = 3.0
-ASK_AGAIN_AFTER_S = 60.0
 ENOUGH = 0.6
 """Share of the requested rate below which a stream counts as fallen."""
+SHORTEST_LIFE_S = 10.0
+"""Least time between two reboots, s: two senders with one system id would seem to reboot in turns."""
+PUT_BACK_AGAIN_S = 0.2
+"""Time that a vehicle has for its answers before rates are put back once more, s."""
+MOST_PUT_BACK = 3
 
 _COMMAND_ACK = dialect.MAVLINK_MSG_ID_COMMAND_ACK
 _SET_INTERVAL = dialect.MAV_CMD_SET_MESSAGE_INTERVAL
-_NAMES = {definition.id: name for name, definition in DEFINITIONS.items()}
 _ANSWERS = {
     dialect.MAV_RESULT_ACCEPTED: "granted",
+    dialect.MAV_RESULT_TEMPORARILY_REJECTED: "rejected for now",
     dialect.MAV_RESULT_DENIED: "denied",
     dialect.MAV_RESULT_UNSUPPORTED: "unsupported",
     dialect.MAV_RESULT_FAILED: "failed",
 }
 
 
-class RateRequest:
-    """Asks for one rate after the other, waits for each answer, then measures what comes.
+class RateRequest(Talker):
+    """Asks for one rate after the other, waits for each answer, then watches what comes.
 
     MAVLink, command protocol: SET_MESSAGE_INTERVAL (511) in a COMMAND_LONG, answered by a
     COMMAND_ACK that does not say which message it is about, so only one is asked at a time;
-    an unanswered one is sent again with its confirmation counted up. Rates are watched
-    afterwards: a reboot or a second ground station can take them away in flight; then they
-    are asked for again, at most once a minute.
+    an unanswered one is sent again with its confirmation counted up. A refused or unanswered
+    request is asked again after a rest that doubles, see `advisor.mavlink.wish`. After a
+    reboot everything is asked again. A granted rate that falls is asked against at once, a
+    few times, then after rests. On leaving every message gets its default rate back.
 
     Parameters
     ----------
@@ -47,99 +55,156 @@ class RateRequest:
     """
 
     def __init__(self, rates_hz: Mapping[str, float]) -> None:
-        self._wanted = {DEFINITIONS[name].id: rate for name, rate in rates_hz.items()}
-        self._to_ask = list(self._wanted)
-        self._tries = 0
-        self._asked_s = float("-inf")
-        self._began_s = float("-inf")
-        self._measured_since_s: float | None = None
-        self._counts: Counter[int] = Counter()
+        self._wishes = {DEFINITIONS[n].id: Wish(n, DEFINITIONS[n].id, hz) for n, hz in rates_hz.items()}
+        self._standing: Wish | None = None
+        self._asked_s = self._began_s = float("-inf")
+        self._vehicle: tuple[int, int] | None = None
+        self._reboots = RebootWatch()
+        self._delivery = Delivery(self._wishes, MEASURE_S)
+        self._stations: set[int] = set()
+        self._put_back_s = float("-inf")
+        self._put_back = self._unanswered = 0
         self._said: list[str] = []
         self.answers: dict[str, str] = {}
-        """Message name to ``granted``, ``denied``, ``unsupported``, ``failed`` or ``no answer``."""
+        """Message name to ``granted``, ``denied``, ``unsupported``, ``failed``, ``rejected for now`` or
+        ``no answer``."""
         self.delivered_hz: dict[str, float] = {}
         """Message name to the rate found over the last ``MEASURE_S``."""
 
     def hear(self, frame: Frame, now_s: float) -> None:
-        """Count what was asked for; take the answer that is waited for."""
-        if frame.message_id in self._wanted:
-            self._counts[frame.message_id] += 1
-        elif frame.message_id == _COMMAND_ACK and self._to_ask and self._tries:
+        """Count what was asked for; take the answer that is waited for; notice who else is there."""
+        if self._vehicle is not None and frame.system != self._vehicle[0]:
+            if is_ground_station(frame):
+                self._stations.add(frame.system)
+            return
+        self._delivery.hear(frame.message_id, now_s)
+        if self._reboots.hear(frame):
+            self._begin_anew(now_s)
+        elif frame.message_id == _COMMAND_ACK:
             command, result = struct.unpack("<HB", frame.payload.ljust(3, b"\0")[:3])
             if command == _SET_INTERVAL and result in _ANSWERS:
-                self._settle(_ANSWERS[result])
+                self._answered(_ANSWERS[result], now_s)
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """The request that is due, if one is."""
+        """The request that is due, if one is; none while the vehicle is not heard."""
         if vehicle is None:
+            self._delivery.restart()
+            self._asked_s = float("-inf")
             return []
-        if not self._to_ask:
-            self._measure(now_s)
-        elif now_s - self._asked_s >= ANSWER_WITHIN_S or not self._tries:
-            if self._tries == MOST_TRIES:
-                self._settle("no answer")
-            if self._to_ask:
-                return [self._request(vehicle, now_s)]
+        if self._vehicle not in (None, vehicle):
+            self._forget()
+        self._vehicle = vehicle
+        standing = self._standing
+        if standing is not None:
+            if now_s - self._asked_s < ANSWER_WITHIN_S:
+                return []
+            if not standing.is_exhausted:
+                return [self._request(standing, now_s)]
+            self._settle("no answer", now_s)
+        due = next((wish for wish in self._wishes.values() if wish.due_s <= now_s), None)
+        if due is not None:
+            self._standing = due
+            return [self._request(due, now_s)]
+        if (rates := self._delivery.look(now_s)) is not None:
+            self._measured(rates, now_s)
         return []
+
+    def leave(self, now_s: float) -> list[Any] | None:
+        """Put every rate back that was asked for; None when the vehicle has answered, or never will."""
+        asked = [wish for wish in self._wishes.values() if wish.answer or wish is self._standing]
+        if self._vehicle is None or not asked:
+            return None
+        if self._put_back and self._unanswered <= 0:
+            return None
+        if now_s - self._put_back_s < PUT_BACK_AGAIN_S:
+            return []
+        if self._put_back == MOST_PUT_BACK:
+            return None
+        self._put_back += 1
+        self._put_back_s, self._unanswered = now_s, len(asked)
+        return [_set_interval(self._vehicle, wish.message, 0.0, self._put_back - 1) for wish in asked]
 
     def report(self) -> list[str]:
         """Answers and delivered rates, once."""
         said, self._said = self._said, []
         return said
 
-    def _request(self, vehicle: tuple[int, int], now_s: float) -> Any:
-        message = self._to_ask[0]
-        if not self._tries:
-            self._began_s = now_s
-        self._tries += 1
+    def _request(self, wish: Wish, now_s: float) -> Any:
+        assert self._vehicle is not None
+        wish.tries += 1
         self._asked_s = now_s
-        return dialect.MAVLink_command_long_message(
-            *vehicle, _SET_INTERVAL, self._tries - 1, message, 1e6 / self._wanted[message], 0, 0, 0, 0, 0
-        )
+        return _set_interval(self._vehicle, wish.message, 1e6 / wish.rate_hz, wish.tries - 1)
 
-    def _settle(self, answer: str) -> None:
-        name = _NAMES[self._to_ask.pop(0)]
-        self._tries = 0
-        self._measured_since_s = None
-        self.answers[name] = answer
+    def _begin_anew(self, now_s: float) -> None:
+        """The vehicle rebooted and has forgotten every rate."""
+        if now_s - self._began_s < SHORTEST_LIFE_S:
+            return
+        self._began_s = now_s
+        self._forget()
+        self._said.append("the vehicle rebooted: every rate is asked for again")
+
+    def _forget(self) -> None:
+        """Nothing has been asked of the vehicle yet."""
+        for wish in self._wishes.values():
+            wish.begin()
+        self._standing = None
+        self.delivered_hz = {}
+        self._delivery.restart()
+
+    def _answered(self, answer: str, now_s: float) -> None:
+        if self._put_back:
+            self._unanswered -= 1
+        elif self._standing is not None and self._standing.tries:
+            self._settle(answer, now_s)
+            # The vehicle can hear us: what it did not answer before need not wait.
+            for wish in self._wishes.values():
+                if wish.answer == "no answer":
+                    wish.due_s = now_s
+
+    def _settle(self, answer: str, now_s: float) -> None:
+        wish, self._standing = self._standing, None
+        assert wish is not None
+        said = self.answers.get(wish.name)
+        wish.settle(answer, now_s)
+        self.answers[wish.name] = answer
+        self._delivery.restart()
+        if answer == said:
+            return
         if answer == "no answer":
             self._said.append(
-                f"{name}: no answer to {MOST_TRIES} requests for its rate; an autopilot told to obey one "
-                "ground station only (SYSID_ENFORCE, MAV_OPTIONS) obeys the system id in SYSID_MYGCS "
-                "(MAV_GCS_SYSID)"
+                f"{wish.name}: no answer to {MOST_TRIES} requests for its rate, asked again after a while; "
+                "an autopilot told to obey one ground station only (SYSID_ENFORCE, MAV_OPTIONS) obeys the "
+                "system id in SYSID_MYGCS (MAV_GCS_SYSID)"
             )
         elif answer != "granted":
-            self._said.append(f"{name}: the vehicle answers '{answer}' to the request for its rate")
+            self._said.append(f"{wish.name}: the vehicle answers '{answer}' to the request for its rate")
 
-    def _measure(self, now_s: float) -> None:
-        if self._measured_since_s is None:
-            self._measured_since_s = now_s
-            self._counts.clear()
-            return
-        elapsed_s = now_s - self._measured_since_s
-        if elapsed_s < MEASURE_S:
-            return
-        first = not self.delivered_hz
-        self.delivered_hz = {_NAMES[m]: self._counts[m] / elapsed_s for m in self._wanted}
-        if first:
-            self._said.append("delivered: " + self._table(self._wanted))
-        fallen = [
-            message
-            for message, rate in self._wanted.items()
-            if self.answers[_NAMES[message]] == "granted"
-            and self._counts[message] / elapsed_s < ENOUGH * rate
-        ]
-        silent = not self._counts
-        if fallen and not silent and not first and now_s - self._began_s >= ASK_AGAIN_AFTER_S:
+    def _measured(self, rates: Mapping[int, float], now_s: float) -> None:
+        before = self.delivered_hz
+        self.delivered_hz = {wish.name: rates[wish.message] for wish in self._wishes.values()}
+        if not before:
+            self._said.append("delivered: " + self._table(self._wishes.values()))
+        granted = [wish for wish in self._wishes.values() if wish.answer == "granted"]
+        fallen = [wish for wish in granted if rates[wish.message] < ENOUGH * wish.rate_hz]
+        for wish in granted:
+            if wish not in fallen:
+                wish.held(now_s)
+        news = [wish for wish in fallen if before.get(wish.name, 0.0) >= ENOUGH * wish.rate_hz]
+        at_once = [wish.fell(now_s) for wish in fallen]
+        if news:
+            how = "at once" if any(at_once) else f"after a rest of up to {LONGEST_REST_S:.0f} s"
             self._said.append(
-                "rates fell (a reboot, or another ground station), asked for again: " + self._table(fallen)
+                f"rates fell, asked for again {how}: {self._table(news)}; {who_sets_rates(self._stations)}"
             )
-            self._to_ask = list(fallen)
-        self._measured_since_s = now_s
-        self._counts.clear()
 
-    def _table(self, messages: Any) -> str:
+    def _table(self, wishes: Iterable[Wish]) -> str:
         return ", ".join(
-            f"{_NAMES[m]} {self.delivered_hz[_NAMES[m]]:.1f} Hz of {self._wanted[m]:g} asked"
-            for m in messages
+            f"{wish.name} {self.delivered_hz[wish.name]:.1f} Hz of {wish.rate_hz:g} asked" for wish in wishes
         )
+
+
+def _set_interval(vehicle: tuple[int, int], message: int, interval_us: float, confirmation: int) -> Any:
+    """SET_MESSAGE_INTERVAL; an interval of 0 gives the message its default rate (MAVLink common.xml)."""
+    return dialect.MAVLink_command_long_message(
+        *vehicle, _SET_INTERVAL, confirmation, message, interval_us, 0, 0, 0, 0, 0
+    )

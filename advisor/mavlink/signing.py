@@ -3,6 +3,11 @@
 Source: MAVLink guide, "Message signing": the last 13 bytes of a signed frame are a link
 id, a 48-bit time in 10 us since 2015-01-01 that only rises, and the first 48 bits of
 SHA-256 over key, frame, link id and time.
+
+The guide has a new stream refused when its time lies more than a minute behind the local one. An
+autopilot without GPS counts on from the time it stored last, which may lie months behind this
+host's clock. The host's clock therefore judges nobody: each sender is held against its own newest
+time. What was recorded before this session can be replayed until its sender is heard.
 """
 
 import hashlib
@@ -18,7 +23,8 @@ EPOCH_2015_S = 1_420_070_400
 RADIO_STATUS = 109
 """Injected by the radios themselves, which hold no key: always unsigned."""
 
-_NEW_STREAM_MAY_LAG = 6_000_000  # one minute in units of 10 us
+_NEW_STREAM_MAY_LAG = 6_000_000
+"""How far a new stream may lie behind other streams of its sender: one minute, in 10 us (MAVLink guide)."""
 
 Verdict = Literal["ok", "unsigned", "forged", "replayed"]
 
@@ -58,16 +64,14 @@ class SignatureCheck:
     ----------
     key
         32 bytes.
-    not_before
-        The time now, 10 us since 2015: a stream that begins more than a minute earlier is
-        a replay. 0 for a log, whose time is long past.
     """
 
-    def __init__(self, key: bytes, not_before: int = 0) -> None:
+    def __init__(self, key: bytes) -> None:
         self._key = key
         self._newest: dict[tuple[int, int, int], int] = {}
-        self.newest = not_before
-        """Newest time seen in any good signature, 10 us since 2015."""
+        """Newest time of a stream (system, component, link id), 10 us since 2015."""
+        self._sender: dict[tuple[int, int], int] = {}
+        """Newest time of a sender (system, component) on any of its links, 10 us since 2015."""
 
     def verdict(self, frame: bytes) -> Verdict:
         """Whether one whole frame may be believed.
@@ -81,12 +85,12 @@ class SignatureCheck:
         expected = hashlib.sha256(self._key + signed_part).digest()[:6]
         if not hmac.compare_digest(expected, signature):
             return "forged"
-        link = frame[-SIGNATURE_LENGTH]
         time = int.from_bytes(frame[-SIGNATURE_LENGTH + 1 : -6], "little")
-        stream = (link, frame[5], frame[6])
-        oldest_allowed = self._newest.get(stream, self.newest - _NEW_STREAM_MAY_LAG - 1)
-        if time <= oldest_allowed:
+        sender = (frame[5], frame[6])
+        stream = (*sender, frame[-SIGNATURE_LENGTH])
+        newest = self._sender.get(sender, 0)
+        if time <= self._newest.get(stream, newest - _NEW_STREAM_MAY_LAG - 1):
             return "replayed"
         self._newest[stream] = time
-        self.newest = max(self.newest, time)
+        self._sender[sender] = max(newest, time)
         return "ok"

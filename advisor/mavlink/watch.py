@@ -3,13 +3,14 @@
 from advisor.mavlink.framing import Frame
 from advisor.mavlink.intake import Intake
 from advisor.mavlink.ratewatch import RateWatch
+from advisor.mavlink.reboot import RebootWatch
 
 SILENCE_S = 5.0
 
 _REFUSED = {
     "unsigned": "unsigned packets are refused; the vehicle must sign with this key",
     "forged": "packets signed with another key are refused",
-    "replayed": "signed packets with an old time are refused: a replay, or a vehicle whose clock is not set",
+    "replayed": "signed packets with an old time are refused: a replay, or a sender whose clock was set back",
 }
 
 
@@ -24,11 +25,17 @@ class LinkWatch:
         self._others_told: set[int] = set()
         self._refusals_told: set[str] = set()
         self._rates = RateWatch()
+        self._reboots = RebootWatch()
         self.reconnects = 0
 
     def begin(self, now_s: float) -> None:
         """The connection is open; silence counts from here."""
         self._heard_s = now_s
+
+    def start_again(self) -> None:
+        """Another vehicle is followed: nothing is known of its rates."""
+        self._rates.restart()
+        self._reboots = RebootWatch()
 
     def silent_s(self, now_s: float) -> float:
         """Time since the vehicle, or before it is known anything, was last heard."""
@@ -47,11 +54,14 @@ class LinkWatch:
         relevant = [frame for frame in frames if vehicle is None or frame.system == vehicle[0]]
         if relevant:
             said += self._heard(now_s)
-            said += self._rates.look(relevant if vehicle else [], now_s)
+            for frame in relevant if vehicle else []:
+                if self._reboots.hear(frame):
+                    self._rates.restart()
+            said += self._rates.look(relevant if vehicle else [], now_s, intake.ground_stations)
         elif not self._silence_told and self._cut_s is None and self.silent_s(now_s) >= SILENCE_S:
             self._silence_told = True
             who = f"vehicle {vehicle[0]} is" if vehicle else f"{self._connection}: no vehicle heard,"
-            said.append(f"{who} silent for {SILENCE_S:.0f} s")
+            said.append(f"{who} silent for {SILENCE_S:.0f} s{_instead(intake)}")
         for system in sorted(intake.other_vehicles - self._others_told):
             said.append(f"vehicle {system} is heard too and ignored; choose with --target-system")
         self._others_told |= intake.other_vehicles
@@ -71,3 +81,11 @@ class LinkWatch:
         self._silence_told = False
         self._heard_s = now_s
         return said
+
+
+def _instead(intake: Intake) -> str:
+    """How to follow another vehicle that is heard."""
+    others = sorted(intake.other_vehicles)
+    if intake.vehicle is None or not others:
+        return ""
+    return f"; heard is vehicle {', '.join(map(str, others))}: --target-system {others[0]} follows it"

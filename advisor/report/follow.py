@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from advisor.campaign import Campaign, CampaignEvent, ManeuverJudged
 from advisor.campaign_state import CampaignState
-from advisor.flight.events import Notice, VehicleFound
+from advisor.flight.events import DataAgain, NoData, Notice, VehicleFound
 from advisor.flight.messages import Columns
 from advisor.report.text import maneuver_line, next_line, stop_line
 
@@ -35,6 +35,11 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
             say(f"following {vehicle}")
         case Notice(_, text):
             say(f"note: {text}")
+        case NoData(problems):
+            for problem in problems:
+                say(f"NO DATA: {problem}")
+        case DataAgain():
+            say("DATA AGAIN: what arrives can serve.")
         case ManeuverJudged(judged, verdict):
             say(maneuver_line(judged))
             say(f"    {stop_line(verdict)}")

@@ -19,18 +19,37 @@ class Advice:
 
 
 def advise(view: View) -> Advice:
-    """What matters most at this moment: a lost link, then the manoeuvre in the air, then the verdicts."""
+    """What matters most now: a lost link, data that cannot serve, the manoeuvre in the air, the verdicts.
+
+    Once the flight test says stop, no further data are needed.
+    """
     state, verdict = view.state, view.state.flight_test
     if view.health.condition == "lost":
-        return Advice("NO LINK", view.health.sentence, "bad")
+        return Advice("NO LINK", f"{view.health.sentence}{_another(view)}", "bad")
+    if view.obstacles and verdict.decision != "stop":
+        return Advice("NO DATA", f"{view.obstacles[0]}{_another(view)}{_elevator(view)}", "bad")
     if state.enough:
         return Advice("RECOVER", state.enough, "good")
     if verdict.decision == "stop":
         return Advice("STOP TESTING", verdict.sentence, "good")
     if state.vehicle is None:
         return Advice("WAIT", view.health.sentence, "quiet")
-    if view.obstacle is not None:
-        return Advice("NO DATA", str(view.obstacle), "bad")
     if view.last and not view.last.verdict.accepted:
         return Advice("REPEAT", verdict.sentence, "warn")
     return Advice("CONTINUE", verdict.sentence, "quiet")
+
+
+def _another(view: View) -> str:
+    """Which other vehicles a key can follow; nothing once this one has flown, and in a replay."""
+    others = view.state.other_vehicles
+    if not others or view.state.maneuvers or view.tempo is not None:
+        return ""
+    return f" Vehicle {', '.join(map(str, others))} is heard: key v follows another."
+
+
+def _elevator(view: View) -> str:
+    """How keys tell which output is the elevator, where that is what is missing on a live link."""
+    if view.obstacles[0].code != "no_elevator" or view.tempo is not None:
+        return ""
+    guess = view.state.elevator_guess
+    return f" {str(guess).capitalize()}; key g takes it." if guess else " Key a asks the vehicle for it."

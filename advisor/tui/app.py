@@ -17,9 +17,9 @@ from textual.worker import Worker, WorkerState
 
 from advisor.aircraft import Aircraft
 from advisor.problems import UnusableInputError
-from advisor.tui import keys, replay_actions
+from advisor.tui import keys, link_actions, replay_actions
 from advisor.tui.conducting import Conducting, Report
-from advisor.tui.explaining import explanation, keys_at_hand
+from advisor.tui.explaining import commands, explanation
 from advisor.tui.garbage import Garbage
 from advisor.tui.hand_actions import HandActions
 from advisor.tui.screens.engineer import EngineerScreen
@@ -41,7 +41,7 @@ _ANSWER_S = 0.03
 """Reports wait so long behind a key, so that its answer is painted before all that they change."""
 
 
-class AdvisorApp(replay_actions.ReplayActions, HandActions, App[None]):
+class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandActions, App[None]):
     """Shows what a campaign says of a link, a log or a demonstration, until the user leaves.
 
     Parameters
@@ -63,7 +63,11 @@ class AdvisorApp(replay_actions.ReplayActions, HandActions, App[None]):
     CSS_PATH: ClassVar[list[str | PurePath]] = [
         f"styles/{name}.tcss" for name in ("app", "pilot", "engineer", "explain")
     ]
-    BINDINGS: ClassVar[list[BindingType]] = [*keys.EVERYWHERE, *keys.REPLAY, *keys.SELDOM]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *keys.EVERYWHERE,
+        *keys.REPLAY,
+        *keys.SELDOM,
+    ]
     MODES: ClassVar[dict[str, str | Callable[[], Screen[Any]]]] = {
         "pilot": PilotScreen,
         "engineer": EngineerScreen,
@@ -182,19 +186,23 @@ class AdvisorApp(replay_actions.ReplayActions, HandActions, App[None]):
                 screen.show(self.view)
 
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something on the last line of the screen, for a while."""
+        """Tell something on the last line of the screen, for a while; over a dialog, beside it."""
         if isinstance(self.screen, Face):
             self.screen.say(text, seconds)
+        else:
+            self.notify(text, timeout=seconds)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer the replay's actions only in a replay."""
-        return action not in replay_actions.ACTIONS or self.view.tempo is not None
+        """Offer the replay's actions only in a replay, the link's only on a link."""
+        only_elsewhere = link_actions.ACTIONS if self.view.tempo is not None else replay_actions.ACTIONS
+        return action not in only_elsewhere
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
-        """Every action that has a key, after Textual's own commands."""
-        yield from super().get_system_commands(screen)
-        for key in keys_at_hand(self):
-            yield SystemCommand(key.does, f"key: {key.shown}", key.run)
+        """Every action of the advisor, after those of Textual's own commands that it has not."""
+        mine = commands(self, screen)
+        names = {command.title for command in mine}
+        yield from (own for own in super().get_system_commands(screen) if own.title not in names)
+        yield from mine
 
     async def action_face(self, name: str) -> None:
         """Switch to the pilot's or the engineer's screen."""
@@ -220,6 +228,14 @@ class AdvisorApp(replay_actions.ReplayActions, HandActions, App[None]):
     def action_explain(self) -> None:
         """Help for what has the focus."""
         self.push_screen(Explain(explanation(self)))
+
+    async def action_quit(self) -> None:
+        """Quit as the advisor does: Textual's own ctrl+q and palette would leave a live link at once."""
+        self.action_leave()
+
+    def action_help_quit(self) -> None:
+        """Quit by ctrl+c too, which Textual only explains."""
+        self.action_leave()
 
     def action_leave(self) -> None:
         """Quit; on a live link only when asked twice."""

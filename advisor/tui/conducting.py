@@ -7,7 +7,7 @@ from typing import Protocol
 from advisor.campaign_state import CampaignState
 from advisor.problems import Problem
 from advisor.tui.hand import HandDecision
-from advisor.tui.source import LinkHealth, Playback, Tempo
+from advisor.tui.source import LinkHealth, Order, Playback, Tempo
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,6 +43,9 @@ class Conducting(Protocol):
 
     def decide(self, decision: HandDecision) -> None:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
+
+    def order(self, order: Order) -> None:
+        """Do what a crew wants of the link."""
 
     def jump(self, number: int) -> None:
         """Play on, or from the beginning, to just before a manoeuvre."""

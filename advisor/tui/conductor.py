@@ -16,7 +16,7 @@ from advisor.tui.chronicle import Chronicle
 from advisor.tui.conducting import Report, Tell
 from advisor.tui.goal import Goal
 from advisor.tui.hand import HandDecision
-from advisor.tui.source import Playable, Source, Tempo
+from advisor.tui.source import Order, Playable, Source, Tempo
 
 REPORT_EVERY_S = 0.1
 _READ_TIMEOUT_S = 0.05
@@ -80,6 +80,10 @@ class Conductor:
     def decide(self, decision: HandDecision) -> None:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
         self._requests.put(lambda campaign: self._decide(campaign, decision))
+
+    def order(self, order: Order) -> None:
+        """Do what a crew wants of the link."""
+        self._requests.put(lambda campaign: self._source.order(order))
 
     def jump(self, number: int) -> None:
         """Play on, or from the beginning, to just before a manoeuvre."""

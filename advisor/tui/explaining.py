@@ -6,10 +6,12 @@ from functools import partial
 from typing import Any
 
 from rich.text import Text
-from textual.app import App
+from textual.app import App, SystemCommand
+from textual.binding import Binding
+from textual.screen import Screen
 
 from advisor.tui.help_page import help_page
-from advisor.tui.keys import ACTIONS
+from advisor.tui.keys import ACTIONS, ENGINEER
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +25,8 @@ class KeyAtHand:
     run: Callable[[], Awaitable[Any]]
 
 
-def keys_at_hand(app: App[None]) -> list[KeyAtHand]:
-    """The keys of the table in `advisor.tui.keys` that are active."""
+def keys_at_hand(app: App[None], screen: Screen[Any] | None = None) -> list[KeyAtHand]:
+    """The keys of the table in `advisor.tui.keys` that are active on a screen; None: on the newest one."""
     return [
         KeyAtHand(
             app.get_key_display(active.binding),
@@ -32,9 +34,35 @@ def keys_at_hand(app: App[None]) -> list[KeyAtHand]:
             active.binding.id or "",
             partial(app.run_action, active.binding.action, active.node),
         )
-        for active in app.screen.active_bindings.values()
+        for active in (screen or app.screen).active_bindings.values()
         if active.binding.id in ACTIONS and active.enabled
     ]
+
+
+def commands(app: App[None], screen: Screen[Any]) -> list[SystemCommand]:
+    """Every action of the advisor for the palette: those at hand, then those of the engineer's screen.
+
+    An action of the engineer's screen that is chosen elsewhere shows that screen first.
+    """
+    at_hand = keys_at_hand(app, screen)
+    names = {key.name for key in at_hand}
+    elsewhere = [b for b in ENGINEER if isinstance(b, Binding) and b.id not in names]
+    return [
+        *(SystemCommand(key.does, f"key: {key.shown}", key.run) for key in at_hand),
+        *(
+            SystemCommand(
+                binding.description,
+                f"engineer's screen, key: {app.get_key_display(binding)}",
+                partial(_on_engineers_screen, app, binding.action),
+            )
+            for binding in elsewhere
+        ),
+    ]
+
+
+async def _on_engineers_screen(app: App[None], action: str) -> None:
+    await app.run_action("face('engineer')")
+    await app.run_action(action, app.screen)
 
 
 def explanation(app: App[None]) -> Text:

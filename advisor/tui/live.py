@@ -8,7 +8,7 @@ from advisor.by_hand import ByHand
 from advisor.flight.messages import Columns
 from advisor.marks_file import keep_by_hand
 from advisor.mavlink.health import LinkStatistics, Notice
-from advisor.tui.source import Condition, LinkHealth
+from advisor.tui.source import Condition, LinkHealth, Order
 
 SILENT_S = 2.0
 LOSS_PERCENT = 5.0
@@ -30,6 +30,15 @@ class LinkLike(Protocol):
 
     def take_notices(self) -> list[Notice]:
         """What happened to the link since the last call, oldest first."""
+
+    def follow(self, system: int) -> None:
+        """Let another vehicle be followed."""
+
+    def take_output(self, output: int) -> None:
+        """Take an output for the elevator."""
+
+    def ask_for_outputs(self) -> None:
+        """Ask the vehicle once which of its outputs is the elevator."""
 
 
 class LinkSource:
@@ -78,6 +87,17 @@ class LinkSource:
     def take_notices(self) -> Sequence[str]:
         """What the link has to report since the last call."""
         return [notice.text for notice in self._link.take_notices()] if self._link is not None else ()
+
+    def order(self, order: Order) -> None:
+        """Pass on what a crew wants."""
+        if self._link is None:
+            return
+        if order.what == "follow":
+            self._link.follow(order.number)
+        elif order.what == "take":
+            self._link.take_output(order.number)
+        else:
+            self._link.ask_for_outputs()
 
     def keep(self, by_hand: ByHand) -> str:
         """Keep the decisions beside the recording."""

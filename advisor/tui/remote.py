@@ -14,7 +14,7 @@ from advisor.tui.changes import Changes
 from advisor.tui.conducting import Report, Tell
 from advisor.tui.hand import HandDecision
 from advisor.tui.offspring import offspring, pause_s, said_of
-from advisor.tui.source import LinkHealth, Source, Tempo
+from advisor.tui.source import LinkHealth, Order, Source, Tempo
 
 Request = tuple[str, tuple[object, ...]]
 """Name of a method of `Conducting`, and its arguments."""
@@ -82,6 +82,10 @@ class RemoteConductor:
     def decide(self, decision: HandDecision) -> None:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
         self._requests.put(("decide", (decision,)))
+
+    def order(self, order: Order) -> None:
+        """Do what a crew wants of the link."""
+        self._requests.put(("order", (order,)))
 
     def jump(self, number: int) -> None:
         """Play on, or from the beginning, to just before a manoeuvre."""

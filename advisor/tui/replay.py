@@ -8,7 +8,7 @@ from threading import Event
 from advisor.by_hand import ByHand
 from advisor.flight.messages import Columns
 from advisor.marks_file import keep_by_hand
-from advisor.tui.source import LinkHealth, Playback, Tempo
+from advisor.tui.source import LinkHealth, Order, Playback, Tempo
 from advisor.tui.timeline import Timeline
 
 STEP_S = 0.1
@@ -121,6 +121,9 @@ class LogPlayer:
     def take_notices(self) -> Sequence[str]:
         """Nothing happens on the way from a file."""
         return ()
+
+    def order(self, order: Order) -> None:
+        """A log has been flown: nothing can be asked of its vehicle."""
 
     def keep(self, by_hand: ByHand) -> str:
         """Keep the decisions beside the log."""

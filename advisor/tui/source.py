@@ -23,6 +23,16 @@ class LinkHealth:
     """What is being lost at this moment; empty while nothing is."""
 
 
+@dataclass(frozen=True, slots=True)
+class Order:
+    """Something a crew wants of the link."""
+
+    what: Literal["follow", "outputs", "take"]
+    """Follow another vehicle; ask the vehicle once which output is its elevator; take an output for it."""
+    number: int = 0
+    """System id of the vehicle to follow, or number of the output to take."""
+
+
 class Source(Protocol):
     """Delivers batches of columns in order of arrival. All calls but ``health`` come from one thread."""
 
@@ -40,6 +50,9 @@ class Source(Protocol):
 
     def take_notices(self) -> Sequence[str]:
         """What happened on the way since the last call: reconnected, rates granted, a second vehicle."""
+
+    def order(self, order: Order) -> None:
+        """Do what a crew wants of the link; what is no link has nothing to do."""
 
     def keep(self, by_hand: ByHand) -> str:
         """Keep what was decided by hand with the data; a sentence says where, or why not."""

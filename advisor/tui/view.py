@@ -8,9 +8,6 @@ from advisor.decision.verdict import FlightTestVerdict, limit_percent
 from advisor.problems import Problem
 from advisor.tui.source import LinkHealth, Playback, Tempo
 
-PATIENCE_S = 15.0
-"""So long may the parameters and streams of a vehicle take to arrive before it is called a problem."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
@@ -28,15 +25,14 @@ class View:
     log: tuple[str, ...] = ()
     """What happened so far, oldest first."""
     problems: tuple[Problem, ...] = ()
-    """Why nothing can be judged, while nothing has been."""
+    """Why nothing can be judged of the whole stream, while nothing has been."""
     selected: int | None = None
     """Number of the manoeuvre chosen by hand; None: always the newest."""
 
     @property
-    def obstacle(self) -> Problem | None:
-        """The first problem, once the stream has had time to show what it brings."""
-        heard_enough = self.health.condition == "ended" or self.state.duration_s > PATIENCE_S
-        return self.problems[0] if self.problems and heard_enough else None
+    def obstacles(self) -> tuple[Problem, ...]:
+        """Why nothing can be judged: of what arrives at present; at the end, of the whole stream."""
+        return self.problems if self.health.condition == "ended" else self.state.no_data
 
     @property
     def judged(self) -> JudgedManeuver | None:

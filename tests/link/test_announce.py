@@ -2,6 +2,7 @@ from pathlib import Path
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.announce import CHUNK_BYTES, MOST_CHUNKS, Announcer, status_text
 from advisor.mavlink.frames import FrameScanner
@@ -48,10 +49,10 @@ def test_each_manoeuvre_is_announced_once_and_stop_with_the_verdict_that_brought
     announcer.judged(2, "ACCEPTED", stop="STOP TESTING")
     announcer.judged(3, "ACCEPTED", stop="STOP TESTING")
     assert announcer.speak(None, 0.0) == []
-    assert joined(announcer) == ["1 ACCEPTED", "STOP TESTING (2 ACCEPTED)", "3 ACCEPTED"]
+    assert joined(announcer) == ["@1 ACCEPTED", "@STOP TESTING (2 ACCEPTED)", "@3 ACCEPTED"]
 
 
-def test_the_crew_hears_it_under_the_advisors_own_ids_and_the_recording_keeps_it(tmp_path: Path) -> None:
+def test_the_crew_hears_it_as_of_a_computer_on_board_and_the_recording_keeps_it(tmp_path: Path) -> None:
     port = free_port()
     vehicle = UdpVehicle(port)
     announcer = Announcer()
@@ -60,13 +61,14 @@ def test_the_crew_hears_it_under_the_advisors_own_ids_and_the_recording_keeps_it
         vehicle.send(heartbeat())
         heard = vehicle.hear()
         read_all(link)
-    assert (heard.get_type(), heard.get_srcSystem(), heard.text) == (
+    assert (heard.get_type(), heard.get_srcSystem(), heard.get_srcComponent(), heard.text) == (
         "STATUSTEXT",
-        254,
-        "1 ACCEPTED: good manoeuvre",
+        1,
+        dialect.MAV_COMP_ID_ONBOARD_COMPUTER,
+        "@1 ACCEPTED: good manoeuvre",
     )
     recorded = FrameScanner(["STATUSTEXT"]).feed((tmp_path / "a.tlog").read_bytes())
     assert [(part.system, part.fields["text"].tolist()) for part in recorded] == [
-        (254, [b"1 ACCEPTED: good manoeuvre"])
+        (1, [b"@1 ACCEPTED: good manoeuvre"])
     ]
     vehicle.close()

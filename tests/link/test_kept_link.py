@@ -53,7 +53,7 @@ def heard(link: KeptLink, count: int) -> list[float]:
 def test_a_reader_that_comes_late_hears_everything_once_and_in_order(
     process: LinkProcess, vehicle: UdpVehicle
 ) -> None:
-    with process.link as early, process.link as late:
+    with process.link() as early, process.link() as late:
         vehicle.send(*(attitude(i) for i in range(300)))
         assert heard(early, 300) == list(range(300))
         vehicle.send(*(attitude(i) for i in range(300, 400)))
@@ -66,7 +66,7 @@ def test_a_reader_that_comes_late_hears_everything_once_and_in_order(
 def test_what_arrives_while_the_process_is_dead_is_heard_by_the_next_one(
     process: LinkProcess, vehicle: UdpVehicle
 ) -> None:
-    with process.link as link:
+    with process.link() as link:
         vehicle.send(*(attitude(i) for i in range(100)))
         assert heard(link, 100) == list(range(100))
         time.sleep(2 * WRITE_EVERY_S)
@@ -89,7 +89,7 @@ def test_a_connection_that_cannot_be_opened_is_refused_with_what_to_do(tmp_path:
 
 def test_the_recording_is_whole_after_an_orderly_end(tmp_path: Path) -> None:
     process = LinkProcess(keeping(free_port(), tmp_path / "b.tlog"))
-    with process, process.link as link:
+    with process, process.link() as link:
         vehicle = UdpVehicle(int(process.master.rpartition(":")[2]))
         vehicle.send(heartbeat(), *(attitude(i) for i in range(50)))
         heard(link, 50)

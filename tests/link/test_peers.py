@@ -16,6 +16,8 @@ from advisor.aircraft import Aircraft
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
+from advisor.mavlink.announce import Announcer
+from advisor.mavlink.aside import Aside
 from advisor.mavlink.inquiry import Inquiry
 from advisor.mavlink.link import Link
 from advisor.mavlink.logs import open_log
@@ -127,6 +129,37 @@ def test_through_mavproxy_the_flight_arrives_and_requests_reach_the_aircraft(tmp
     assert 18.0 < rates.delivered_hz["AOA_SSA"] < 22.0
     assert inquiry.parameters["SERVO2_FUNCTION"] == 19.0
     assert {"SERVO2_MIN", "SERVO2_TRIM", "SERVO2_MAX", "SERVO2_REVERSED"} <= inquiry.parameters.keys()
+
+
+def test_mavproxy_shows_whole_an_announcement_that_comes_in_by_its_master(tmp_path: Path) -> None:
+    vehicle_port, advisor_port = free_port(), free_port()
+    announcer = Announcer()
+    proxy = (
+        str(TOOLS / "mavproxy.py"),
+        f"--master=udpin:127.0.0.1:{vehicle_port}",
+        f"--out=udpout:127.0.0.1:{advisor_port}",
+        "--non-interactive",
+        "--streamrate=-1",
+        "--default-modules=link",
+        f"--state-basedir={tmp_path}",
+        f"--logfile={tmp_path / 'proxy.tlog'}",
+    )
+    sentence = "REPEAT: too gentle, pitch rate 3 deg/s (at least 5); use about 1.5 times the stick"
+    aside = Aside(announcer, f"udpout:127.0.0.1:{vehicle_port}")
+    with (
+        Link(f"udpin:127.0.0.1:{advisor_port}", talkers=[aside]) as link,
+        running(*proxy, folder=tmp_path),
+    ):
+        wait_for_udp(vehicle_port)
+        with running(*aircraft(f"udpout:127.0.0.1:{vehicle_port}", tmp_path, 1.0), folder=tmp_path):
+            wait_until(lambda: link.statistics.vehicle == (1, 1), timeout_s=30.0)
+            announcer.judged(1, sentence)
+            wait_until(lambda: f"@1 {sentence}".encode() in said_in(tmp_path), timeout_s=20.0)
+
+
+def said_in(folder: Path) -> bytes:
+    """What the processes that run in a folder have printed."""
+    return b"".join(file.read_bytes() for file in folder.glob("*.out"))
 
 
 def wait_for_udp(port: int) -> None:

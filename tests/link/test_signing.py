@@ -7,6 +7,7 @@ from advisor.mavlink.signing import SignatureCheck, read_key
 from advisor.problems import ConfigurationError
 from tests.link.builders import Sender, attitude
 
+DAY, MINUTE = 86_400 * 100_000, 60 * 100_000
 KEY = hashlib.sha256(b"secret").digest()
 
 
@@ -66,10 +67,39 @@ def test_a_forged_frame_from_the_future_does_not_silence_the_real_sender() -> No
     assert check.verdict(genuine.pack(attitude(1))) == "ok"
 
 
-def test_a_live_link_refuses_a_recording_of_yesterday() -> None:
+def signed_at(sender: Sender, time: int, link_id: int = 0) -> bytes:
+    sender.mavlink.signing.timestamp = time
+    sender.mavlink.signing.link_id = link_id
+    return sender.pack(attitude(1))
+
+
+def test_the_first_stamp_of_a_sender_is_believed_however_far_behind_the_hosts_clock() -> None:
+    sender = Sender(key=KEY)
+    months_ago = sender.mavlink.signing.timestamp - 100 * DAY
+    assert SignatureCheck(KEY).verdict(signed_at(sender, months_ago)) == "ok"
+
+
+def test_a_sender_whose_clock_is_right_does_not_silence_one_whose_clock_is_months_behind() -> None:
+    ground, vehicle = Sender(255, 190, key=KEY), Sender(key=KEY)
+    now = ground.mavlink.signing.timestamp
+    check = SignatureCheck(KEY)
+    assert check.verdict(signed_at(ground, now)) == "ok"
+    assert check.verdict(signed_at(vehicle, now - 100 * DAY)) == "ok"
+
+
+def test_yesterdays_recording_is_refused_once_its_sender_was_heard_even_under_another_link_id() -> None:
     sender = Sender(key=KEY)
     now = sender.mavlink.signing.timestamp
-    sender.mavlink.signing.timestamp -= 86_400 * 100_000
-    yesterday = sender.pack(attitude(1))
-    assert SignatureCheck(KEY, not_before=now).verdict(yesterday) == "replayed"
-    assert SignatureCheck(KEY).verdict(yesterday) == "ok"  # a log: it may be old
+    check = SignatureCheck(KEY)
+    assert check.verdict(signed_at(sender, now)) == "ok"
+    assert check.verdict(signed_at(sender, now - DAY)) == "replayed"
+    assert check.verdict(signed_at(sender, now - DAY, link_id=5)) == "replayed"
+
+
+def test_a_second_link_of_one_sender_may_lie_up_to_a_minute_behind() -> None:
+    sender = Sender(key=KEY)
+    now = sender.mavlink.signing.timestamp
+    check = SignatureCheck(KEY)
+    assert check.verdict(signed_at(sender, now)) == "ok"
+    assert check.verdict(signed_at(sender, now - MINUTE, link_id=1)) == "ok"
+    assert check.verdict(signed_at(sender, now - MINUTE - 2, link_id=2)) == "replayed"

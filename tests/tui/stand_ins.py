@@ -12,7 +12,7 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import Mark
 from advisor.flight.messages import Columns
 from advisor.problems import Problem
-from advisor.tui.source import LinkHealth
+from advisor.tui.source import LinkHealth, Order
 from tests.tui import flights
 
 
@@ -106,12 +106,16 @@ class HandFedSource:
         )
         self.notices: list[str] = []
         self.kept: list[ByHand] = []
+        self.orders: list[Order] = []
         self.closed = False
 
     def deliver(self, count: int = 1) -> None:
         """Put in ``count`` batches of one message."""
         for _ in range(count):
             self.batches.put([columns([0], [0.0])])
+
+    def order(self, order: Order) -> None:
+        self.orders.append(order)
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
         try:

@@ -3,10 +3,12 @@
 import re
 
 import pytest
+from textual.command import CommandPalette
 from textual.widgets import DataTable, Static
 
 from advisor.tui import keys
 from advisor.tui.explaining import keys_at_hand
+from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.pane import Pane
 from advisor.tui.replay import LogPlayer
@@ -108,12 +110,48 @@ async def test_the_palette_offers_every_action():
         assert {"Pilot", "Exclude", "Note", "Theme", "Mark"} <= offered
 
 
-async def test_a_live_link_is_left_only_when_asked_twice():
+async def test_the_palette_opened_from_the_pilots_screen_offers_the_engineers_actions_too():
     async with stage() as here:
-        await here.press("q")
+        await here.press("ctrl+p")
+        await here.until(lambda: isinstance(here.app.screen, CommandPalette))
+        offered = {command.title for command in here.app.get_system_commands(here.app.screen_stack[-2])}
+        assert {
+            "Pilot", "Engineer", "Help", "Quit", "Theme", "Mark", "Begin manoeuvre", "Finish manoeuvre",
+            "Exclude", "Note", "Next output", "Pane: fit",
+        } <= offered  # fmt: skip
+
+
+async def test_an_engineers_action_chosen_on_the_pilots_screen_shows_the_engineers_first():
+    async with stage(flights.state(2)) as here:
+        (exclude,) = (c for c in here.app.get_system_commands(here.app.screen) if c.title == "Exclude")
+        await exclude.callback()
+        await here.until(lambda: isinstance(here.app.screen, EngineerScreen))
+        await here.until(lambda: here.app.screen.query_one(Ask).display)
+
+
+@pytest.mark.parametrize("key", ["q", "ctrl+q", "ctrl+c"])
+async def test_a_live_link_is_left_only_when_asked_twice(key: str):
+    async with stage() as here:
+        await here.press(key)
         assert here.app.is_running
         assert here.app._exit is False
-        await here.press("q")
+        await here.press(key)
+        await here.until(lambda: here.app._exit)
+
+
+async def test_quit_of_the_palette_leaves_a_live_link_no_sooner_than_the_key_does():
+    async with stage() as here:
+        (leave,) = (c for c in here.app.get_system_commands(here.app.screen) if c.title == "Quit")
+        await leave.callback()
+        assert here.app._exit is False
+        assert "The link is live" in footer(here)
+
+
+async def test_over_the_help_a_live_link_is_left_only_when_asked_twice():
+    async with stage() as here:
+        await here.press("question_mark", "ctrl+q")
+        assert here.app._exit is False
+        await here.press("ctrl+q")
         await here.until(lambda: here.app._exit)
 
 

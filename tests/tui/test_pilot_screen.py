@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from advisor.problems import Problem
 from advisor.tui.advice import advise
 from advisor.tui.panes.big_word import BigWord
 from advisor.tui.source import LinkHealth
@@ -38,6 +39,27 @@ def test_the_word_follows_the_verdicts(state, word: str):
 def test_a_lost_link_comes_before_everything():
     advice = advise(view(flights.state(7), LOST))
     assert (advice.word, advice.sentence) == ("NO LINK", "Nothing heard for 4 s.")
+
+
+SLOW = Problem("rate", "ATTITUDE arrives at 4.0 Hz, too slow.", "Ask for 50 Hz.")
+
+
+@pytest.mark.parametrize("flown", [0, 3])
+def test_data_that_cannot_serve_are_told_at_any_time_with_their_mend(flown: int):
+    advice = advise(view(replace(flights.state(flown), no_data=(SLOW,), enough="Enough: recover.")))
+    assert (advice.word, advice.sentence) == ("NO DATA", str(SLOW))
+
+
+def test_after_the_stop_no_data_are_wanted():
+    assert advise(view(replace(flights.state(7), no_data=(SLOW,)))).word == "STOP TESTING"
+
+
+async def test_no_data_stands_on_the_screen_after_a_manoeuvre_and_goes_when_they_serve_again():
+    async with stage(replace(flights.state(3), no_data=(SLOW,)), flights.state(3)) as here:
+        await here.until(lambda: here.app.screen.query_one(BigWord).word == "NO DATA")
+        assert "ATTITUDE arrives at 4.0 Hz" in here.page()
+        here.source.deliver()
+        await here.until(lambda: here.app.screen.query_one(BigWord).word == "CONTINUE")
 
 
 def test_a_bad_manoeuvre_taken_out_by_hand_need_not_be_repeated():

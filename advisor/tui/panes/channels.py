@@ -41,6 +41,6 @@ gap. Below: the link.
         lines += ["", f"{CONDITIONS[health.condition]}: {health.sentence}"]
         lines += [f"{name:<22}{value}" for name, value in health.figures]
         problems = self.query_one("#problems", Lines)
-        problems.display = bool(view.problems)
-        problems.write("\n".join(f"! {problem}" for problem in view.problems))
+        problems.display = bool(view.obstacles)
+        problems.write("\n".join(f"! {problem}" for problem in view.obstacles))
         self.query_one("#arriving", Lines).write("\n".join(lines))

@@ -1,0 +1,106 @@
+"""A guess of the elevator where nothing says which output it is: the one that the pitch rate answers to."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.record import Channel
+
+KEEP_S = 60.0
+"""Stretch from which a guess is made, s: two test inputs with their pauses."""
+EVERY_S = 10.0
+"""Vehicle time between two guesses, s."""
+LATE_S = 1.0
+"""A guess leaves out the newest stretch, s, whose packets may still be on the way."""
+SHORTEST_S = 5.0
+"""Shortest stretch that a guess is made from, s."""
+LEAST_TRAVEL_US = 10.0
+"""Least travel of an output that can be told from the resolution of a pulse, us."""
+LEAST_SHARE = 0.05
+"""Least share of what the pitch rate does not foretell by itself that an output must explain. On the recorded
+flights of this project elevators explain 0.06 (turbulence) to 0.9, all other outputs at most 0.02."""
+LEAST_LEAD = 5.0
+"""How many times the share of the next output the best one must have. At 4 Hz a wrong output led by 2.7."""
+_OUTPUTS = 16
+_MEMORY = 2
+"""Past samples of pitch rate and output in the prediction: a short period is of second order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """An output that may be the elevator."""
+
+    output: int
+    share: float
+    """Share of the pitch rate's one-step prediction error that the output explains."""
+    next_share: float
+    """The largest share of any other output."""
+
+    def __str__(self) -> str:
+        return (
+            f"output {self.output} is a guess: it explains {100.0 * self.share:.0f} % of what moves the "
+            f"pitch rate, the next output {100.0 * self.next_share:.0f} %"
+        )
+
+
+class ElevatorGuess:
+    """Remembers what the outputs did, and compares it with what the pitch rate did."""
+
+    def __init__(self) -> None:
+        self._t = np.empty(0)
+        self._pulses = np.empty((0, _OUTPUTS))
+
+    def hear(self, columns: Columns, t: FloatArray) -> None:
+        """Take SERVO_OUTPUT_RAW messages of the first bank at these vehicle times, shape (n,)."""
+        if columns.name != "SERVO_OUTPUT_RAW":
+            return
+        idle = np.zeros(len(columns))
+        pulses = np.stack([columns.fields.get(f"servo{n}_raw", idle) for n in range(1, _OUTPUTS + 1)], axis=1)
+        good = np.isfinite(t) & (np.asarray(columns.fields["port"]) == 0)
+        self._t = np.concatenate((self._t, t[good]))
+        self._pulses = np.concatenate((self._pulses, pulses[good].astype(np.float64)))
+        if len(self._t):
+            kept = self._t > self._t[-1] - 2.0 * KEEP_S
+            self._t, self._pulses = self._t[kept], self._pulses[kept]
+
+    def made(self, q: Channel | None) -> Guess | None:
+        """The guess from this stretch of the pitch rate, and the outputs in it; None: none is good enough."""
+        if q is None or len(q) < 2:
+            return None
+        inside = (self._t >= q.t[0]) & (self._t <= q.t[-1])
+        t, rows = np.unique(self._t[inside], return_index=True)
+        if len(t) < 2 or t[-1] - t[0] < SHORTEST_S:
+            return None
+        step_s = max(float(np.median(np.diff(q.t))), float(np.median(np.diff(t))))
+        grid = np.arange(t[0], t[-1], step_s)
+        rate = np.interp(grid, q.t, q.y)
+        shares = np.zeros(_OUTPUTS)
+        for i, pulses in enumerate(self._pulses[inside][rows].T):
+            if pulses.min() > 0.0 and np.ptp(pulses) >= LEAST_TRAVEL_US:
+                shares[i] = _share(rate, np.interp(grid, t, pulses))
+        best, following = (int(i) for i in np.argsort(shares)[::-1][:2])
+        if shares[best] < LEAST_SHARE or shares[best] < LEAST_LEAD * shares[following]:
+            return None
+        return Guess(best + 1, float(shares[best]), float(shares[following]))
+
+
+def _share(rate: FloatArray, moved: FloatArray) -> float:
+    """Share of the error of predicting each sample from the past ones that the past output takes away."""
+    alone = _left(rate[_MEMORY:], _past(rate))
+    both = _left(rate[_MEMORY:], [*_past(rate), *_past(moved)])
+    return 1.0 - both / alone if alone > 0.0 else 0.0
+
+
+def _past(y: FloatArray) -> list[FloatArray]:
+    centred = y - np.mean(y)
+    return [centred[_MEMORY - k : len(y) - k] for k in range(1, _MEMORY + 1)]
+
+
+def _left(y: FloatArray, regressors: Sequence[FloatArray]) -> float:
+    """Sum of squares that a linear combination of the regressors and a constant leaves."""
+    columns = np.column_stack([*regressors, np.ones(len(y))])
+    solution, *_ = np.linalg.lstsq(columns, y, rcond=None)
+    left: float = float(np.sum((y - columns @ solution) ** 2))
+    return left

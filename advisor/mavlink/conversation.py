@@ -1,0 +1,94 @@
+"""What the advisor says on a link, and what those who speak there hear."""
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from advisor.mavlink.framing import Frame
+from advisor.mavlink.intake import HEARTBEAT
+from advisor.mavlink.outgoing import Ids, Packer, Talker
+from advisor.mavlink.signing import signing_time
+
+Send = Callable[[bytes], bool]
+"""Puts one frame on the air; False when nobody is there to send to."""
+
+
+class Conversation:
+    """All talkers of one link, packed under their ids.
+
+    Parameters
+    ----------
+    talkers
+        Who may speak.
+    own
+        Ids of the advisor.
+    key
+        32-byte signing key; None: frames are not signed.
+    """
+
+    def __init__(self, talkers: Iterable[Talker], own: Ids, key: bytes | None) -> None:
+        self._talkers = list(talkers)
+        self._own = own
+        self._packer = Packer(key)
+
+    def join(self, talker: Talker) -> None:
+        """Let another talker speak from now on."""
+        self._talkers.append(talker)
+
+    def hear(self, frames: list[Frame], vehicle: Ids | None, now_s: float) -> list[str]:
+        """Let the talkers hear the vehicle and every heartbeat; what the crew should know, once."""
+        system = vehicle[0] if vehicle is not None else None
+        heard = [frame for frame in frames if frame.system == system or frame.message_id == HEARTBEAT]
+        said = []
+        for talker in self._talkers:
+            for frame in heard:
+                talker.hear(frame, now_s)
+            said += talker.report()
+        return said
+
+    def speak(
+        self, vehicle: Ids | None, reachable: bool, now_s: float, unix_s: float, send: Send
+    ) -> list[bytes]:
+        """Send what is due; the frames that could be sent.
+
+        Parameters
+        ----------
+        vehicle
+            Who is followed; None before the first heartbeat.
+        reachable
+            Whether the vehicle hears what is asked.
+        now_s, unix_s
+            The reader's monotonic time, and the host's time since 1970, s.
+        send
+            Puts one frame on the air.
+        """
+        hearing = vehicle if reachable else None
+        return [
+            raw
+            for talker in self._talkers
+            for raw in self._send(talker, talker.speak(hearing, now_s), vehicle, unix_s, send)
+        ]
+
+    def leave(self, vehicle: Ids | None, now_s: float, unix_s: float, send: Send) -> list[bytes] | None:
+        """Send what talkers must still say before the link is closed; None: nothing is left to wait for."""
+        last = [talker.leave(now_s) for talker in self._talkers]
+        if all(messages is None for messages in last):
+            return None
+        return [
+            raw
+            for talker, messages in zip(self._talkers, last, strict=True)
+            for raw in self._send(talker, messages or [], vehicle, unix_s, send)
+        ]
+
+    def note(self, text: bytes, unix_s: float) -> bytes:
+        """A text of the advisor for its own stream alone, as a frame; nothing goes on the air."""
+        message = dialect.MAVLink_statustext_message(dialect.MAV_SEVERITY_INFO, text)
+        return self._packer.pack(message, self._own, signing_time(unix_s))
+
+    def _send(
+        self, talker: Talker, messages: Iterable[Any], vehicle: Ids | None, unix_s: float, send: Send
+    ) -> list[bytes]:
+        source = talker.source(self._own, vehicle or self._own)
+        frames = [self._packer.pack(message, source, signing_time(unix_s)) for message in messages]
+        return [raw for raw in frames if send(raw)]

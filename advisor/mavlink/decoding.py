@@ -1,0 +1,45 @@
+"""From records of a link to messages, and to the vehicle that the flight's own stream follows."""
+
+from advisor.aircraft import Elevator
+from advisor.flight.identity import Identity
+from advisor.flight.messages import Columns
+from advisor.flight.pieces import pieces
+from advisor.mavlink.frames import FrameScanner
+from advisor.mavlink.outgoing import Ids
+
+
+class Decoding:
+    """Decodes as a log is decoded, and decides whom to follow by the same messages as the flight's stream.
+
+    Parameters
+    ----------
+    elevator
+        As the aircraft file has it: it tells which of several vehicles has one. None: by the parameters.
+    target_system
+        System id of the vehicle; None: the first autopilot heard.
+    """
+
+    def __init__(self, elevator: Elevator | None, target_system: int | None) -> None:
+        self._scanner = FrameScanner()
+        self._who = Identity(elevator or Elevator(), target_system)
+        self._followed: Ids | None = None
+
+    def feed(self, records: bytes) -> list[Columns]:
+        """The messages of these records."""
+        columns = self._scanner.feed(records)
+        for piece in pieces(columns, by_second=True):
+            self._who.learn(piece)
+        return columns
+
+    def forget_followed(self) -> None:
+        """Whoever listens is new: tell the vehicle again."""
+        self._followed = None
+
+    def newly_followed(self) -> Ids | None:
+        """The vehicle followed since the last call; None: the same as before."""
+        vehicle = self._who.vehicle
+        followed = (vehicle.system, vehicle.component) if vehicle is not None else None
+        if followed == self._followed:
+            return None
+        self._followed = followed
+        return followed

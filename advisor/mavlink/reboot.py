@@ -1,0 +1,27 @@
+"""Noticing on the link that the vehicle began anew: its clock runs back."""
+
+import struct
+
+import numpy as np
+
+from advisor.flight.clocks import BootClock
+from advisor.mavlink.definitions import DEFINITIONS
+from advisor.mavlink.framing import Frame
+
+_ATTITUDE = DEFINITIONS["ATTITUDE"].id
+
+
+class RebootWatch:
+    """Follows the clock of ATTITUDE as the flight's own stream does."""
+
+    def __init__(self) -> None:
+        self._clock = BootClock()
+
+    def hear(self, frame: Frame) -> bool:
+        """Take a frame of the vehicle; true when it confirms a reboot."""
+        if frame.message_id != _ATTITUDE:
+            return False
+        boot = self._clock.boot
+        (stamp,) = struct.unpack_from("<I", frame.payload.ljust(4, b"\0"))
+        self._clock.advance(np.array([stamp], dtype=np.int64))
+        return self._clock.boot != boot
