@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -53,14 +52,9 @@ def parse_aircraft(content: Any, origin: str = "aircraft file") -> Aircraft:
         else:
             mistakes += _beyond_types(aircraft)
             if not mistakes:
-                return replace(aircraft, name=_printable(aircraft.name))
+                return aircraft
             break
     raise ConfigurationError(f"{origin}: " + "; ".join(mistakes) + ".")
-
-
-def _printable(name: str) -> str:
-    # A name goes to terminals: an escape sequence in it would be obeyed there.
-    return "".join(character for character in name if character.isprintable())
 
 
 def _without_empty(content: Any) -> Any:

@@ -14,6 +14,7 @@ from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.mavlink.logs import open_log
+from advisor.printable import printable
 from advisor.problems import Problem, UnusableInputError
 
 _PAUSE_S = 60.0
@@ -62,7 +63,8 @@ def _recorded(
         stream = FlightStream(aircraft, target_system, decided.marks)
         events = [event for columns in open_log(log) for event in stream.feed(columns)]
         events += stream.finish()
-        found_wrong = [Problem(p.code, f"{log.name}: {p.text}", p.fix) for p in stream.problems()]
+        name = printable(log.name)
+        found_wrong = [Problem(p.code, f"{name}: {p.text}", p.fix) for p in stream.problems()]
         if found_wrong:
             raise UnusableInputError.of(found_wrong)
         notes += stream.elevator_notes
@@ -71,7 +73,7 @@ def _recorded(
             if because is None:
                 found.append(maneuver)
             else:
-                notes.append(f"{log.name}: manoeuvre {maneuver.number} is left out by hand: {because}.")
+                notes.append(f"{name}: manoeuvre {maneuver.number} is left out by hand: {because}.")
     return found, tuple(dict.fromkeys(notes))
 
 

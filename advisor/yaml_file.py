@@ -6,6 +6,7 @@ from typing import Any
 
 import yaml
 
+from advisor.printable import printable
 from advisor.problems import ConfigurationError
 
 _MOST_BYTES = 256 * 1024
@@ -33,6 +34,8 @@ def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
         reference, or repeats a key.
     """
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            raise _Refused("a pipe or a device, no regular file")
         with path.open("rb") as file:
             raw = file.read(_MOST_BYTES + 1)
         if len(raw) > _MOST_BYTES:
@@ -94,3 +97,10 @@ class _Loader(_Parser):  # type: ignore[misc]
             said.add(key)
         section: dict[Any, Any] = super().construct_mapping(node, deep=deep)
         return section
+
+    def construct_text(self, node: Any) -> str:
+        """Build a text that can be shown: an escape in quotes may stand for any control character."""
+        return printable(self.construct_scalar(node))
+
+
+_Loader.add_constructor("tag:yaml.org,2002:str", _Loader.construct_text)

@@ -1,7 +1,7 @@
 """``advisor live``: advise on a live link."""
 
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from contextlib import AbstractContextManager, ExitStack
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -19,6 +19,8 @@ from advisor.commands.options import (
     target_system_option,
 )
 from advisor.commands.screen import advise
+from advisor.interrupt import STOPPED, in_order
+from advisor.printable import printable
 from advisor.problems import ConfigurationError
 
 if TYPE_CHECKING:
@@ -100,7 +102,10 @@ def command(
         announcer=announcer,
     )
     tell = partial(_announce, announcer) if announcer else None
-    advise(partial(LinkSource, connection), master, aircraft, target_system, tell, by_hand=by_hand)
+    with in_order(connection.ended), ExitStack() as at_the_end:
+        # Once more than the source does: a signal may come while the connection is being opened.
+        at_the_end.push(connection)
+        advise(partial(LinkSource, connection), master, aircraft, target_system, tell, by_hand=by_hand)
 
 
 @dataclass
@@ -115,6 +120,12 @@ class _Connection(AbstractContextManager["Link"]):
     key: bytes | None
     request_rates: bool
     announcer: "Announcer | None"
+    _link: "Link | None" = field(default=None, init=False)
+
+    def ended(self) -> str:
+        """What the user is told when a signal ends the command."""
+        recording = self._link.statistics.recording if self._link is not None else None
+        return STOPPED if recording is None else f"Stopped; the recording is {printable(str(recording))}."
 
     def __enter__(self) -> "Link":
         from advisor.mavlink.inquiry import Inquiry
@@ -139,7 +150,8 @@ class _Connection(AbstractContextManager["Link"]):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._link.stop()
+        if self._link is not None:
+            self._link.stop()
 
 
 def _announce(announcer: "Announcer", event: object) -> None:

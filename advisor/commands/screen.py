@@ -11,6 +11,7 @@ import click
 
 from advisor.aircraft import Aircraft
 from advisor.flight.messages import Columns
+from advisor.interrupt import in_order
 from advisor.problems import Problem, UnusableInputError
 from advisor.tui.source import Source, Tempo
 
@@ -98,7 +99,8 @@ def _show(
 
     conductor = RemoteConductor(Task(open_source, make_campaign, by_hand))
     app = AdvisorApp(conductor, aircraft, title, tempo, load_settings())
-    app.run()
+    with in_order():
+        app.run()
     if app.failure is not None:
         raise app.failure
     if tempo is not None:

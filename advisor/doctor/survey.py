@@ -85,7 +85,7 @@ class _Sender:
             return np.zeros(0, dtype=bool)
         before = values[:1] if self.last is None else self.last
         self.last = values[-1:]
-        changed: NDArray[np.bool_] = np.any(np.diff(values, axis=0, prepend=before) != 0.0, axis=1)
+        changed: NDArray[np.bool_] = np.any(values != np.concatenate((before, values[:-1])), axis=1)
         return changed
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from advisor.flight.maneuver import InputKind, Maneuver
 from advisor.flight.vehicle import Vehicle
+from advisor.printable import printable
 
 _SOON_S = 30.0
 """Alike movements at most this far apart, s, are listed as one: a list of single corrections is not read."""
@@ -81,6 +82,10 @@ class Notice:
 
     code: str
     text: str
+
+    def __post_init__(self) -> None:
+        # What a vehicle says stands in some of these sentences.
+        object.__setattr__(self, "text", printable(self.text))
 
 
 FlightEvent = VehicleFound | Rebooted | ModeChanged | ManeuverStarted | ManeuverFlown | Activity | Notice

@@ -8,6 +8,7 @@ from advisor.flight.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.messages import Columns
 from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_surface
 from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
+from advisor.printable import printable
 from advisor.problems import Problem
 
 _BUNDLED = b"Bundled aircraft"
@@ -148,12 +149,14 @@ class Identity:
     def _text(self, columns: Columns) -> list[FlightEvent]:
         text = bytes(columns.fields["text"][0])
         if text.startswith(READER):
-            return [Notice(SENSOR_NOTICE, f"{text.removeprefix(READER).decode()}.")]
+            said = text.removeprefix(READER).decode("utf-8", "replace")
+            return [Notice(SENSOR_NOTICE, f"{said}.")]
         if text.startswith(_BUNDLED):
             self.simulated = True
         words = text.split()
         if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
-            self._firmware.setdefault(columns.system, words[1][1:].decode("ascii", "replace"))
+            version = printable(words[1][1:].decode("ascii", "replace"))
+            self._firmware.setdefault(columns.system, version)
         return []
 
 
