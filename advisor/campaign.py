@@ -134,7 +134,10 @@ class Campaign:
             enough=settled.enough if settled else None,
             estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
             elevator_notes=stream.elevator_notes,
-            sensor_notes=tuple(self._sensor_notes),
+            sensor_notes=(
+                *self._sensor_notes,
+                *(f"{d.sentence}; {d.fix}." for d in stream.frozen if not d.stops),
+            ),
             mark_notes=tuple(self._mark_notes),
             notices=tuple(self._notices),
             activity=tuple(self._activity),

@@ -12,11 +12,12 @@ from advisor.doctor.instruments import (
     alpha_limits,
     clock_limits,
     company_limits,
+    distrust_limits,
     elevator_limits,
     loss_limits,
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
-from advisor.doctor.survey import Arrival, Survey
+from advisor.doctor.survey import Arrival, Survey, bank_name
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import Columns
@@ -83,16 +84,28 @@ class Examiner:
             if name in paced or name != "elevator"
         }
         autopilot = vehicle.autopilot if vehicle else ""
-        found = problems(vehicle, self._stream.other_systems, self._stream.elevator, channels, 1, {})
-        limits = [_stopping(problem) for problem in found if problem.code != "rate"]
+        still = self._stream.frozen
+        found = problems(
+            vehicle,
+            self._stream.other_systems,
+            self._stream.elevator,
+            channels,
+            1,
+            {},
+            still,
+            self._stream.seen,
+        )
         speed = self._airspeed(paced)
         complete = {"elevator", "q"} <= paced.keys() and (
             "alpha" in paced or ("a_z" in paced and speed is not None)
         )
+        # Against the aircraft's own pace where it can be told; else against what no aircraft gets by with.
+        limits = [_stopping(problem) for problem in found if problem.code != "rate" or not complete]
+        limits += distrust_limits([*still, *(d for m in self._maneuvers for d in m.distrusts)])
         if complete:
             limits += rate_limits(paced, belief, autopilot, speed)
         period_s = 2.0 * np.pi / frequency(belief.model)
-        limits += steadiness_limits(arrivals, {p.message for p in paced.values()}, period_s)
+        limits += steadiness_limits(arrivals, {p.arrival for p in paced.values()}, period_s)
         if vehicle is not None and complete:
             limits += self._speed_limits(paced, belief, autopilot, speed)
             limits += alpha_limits(self._stream.channels["alpha"], autopilot) if "alpha" in paced else []
@@ -137,17 +150,25 @@ class Examiner:
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
         """The channels that identification lives on, with the messages that pace them."""
         paced = {}
+        dead = {distrust.channel for distrust in self._stream.frozen}
         for name in ("elevator", "q", "alpha", "a_z"):
             status = self._stream.channels.get(name)
-            message = _message(status) if status else ""
-            arrival = arrivals.get(message)
-            if status is None or arrival is None or not arrival.rate_hz > 0.0:
+            if status is None or name in dead or not status.rate_hz > 0.0:
                 continue
-            renewed_hz = arrival.rate_hz
+            message = _message(status)
+            arrival = arrivals.get(self._bank() if name == "elevator" else message) or arrivals.get(message)
+            if arrival is None:
+                continue
+            renewed_hz = status.rate_hz
             if name == "alpha":
                 renewed_hz = min(renewed_hz, _renewal(arrival, status))
-            paced[name] = Paced(name, message, arrival.rate_hz, renewed_hz)
+            paced[name] = Paced(name, message, status.rate_hz, renewed_hz, arrival.name)
         return paced
+
+    def _bank(self) -> str:
+        """Name in the survey of the bank whose messages make the elevator's samples: the last one."""
+        elevator = self._stream.elevator
+        return bank_name(elevator.ports[-1] if isinstance(elevator, Surface) else 0)
 
     def _airspeed(self, paced: dict[str, Paced]) -> float | None:
         """A speed for the specific force; None when none is measured or given."""
@@ -184,7 +205,7 @@ class Examiner:
             fix = how_to_ask("VFR_HUD", autopilot) + "; or give airspeed_m_s in the aircraft file"
             cost = cost_of_missing("a_z", paced, belief, None)
             return [Limit("no_airspeed", text, fix, std_ratio=cost)]
-        if "a_z" not in paced:
+        if "a_z" not in paced and "a_z" not in self._stream.channels:
             text = "No specific force arrives (RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU)"
             fix = how_to_ask("HIGHRES_IMU" if autopilot == "px4" else "RAW_IMU", autopilot)
             cost = cost_of_missing("a_z", paced, belief, speed)
@@ -204,7 +225,7 @@ def _believable(flown: Estimate) -> bool:
 
 
 def _stopping(problem: Problem) -> Limit:
-    fix = problem.fix.rstrip(".")
+    fix = problem.fix.removeprefix("Mend: ").rstrip(".")
     if problem.code == "no_elevator":
         fix += "; on a live link --request-rates asks the vehicle for them"
     return Limit(problem.code, problem.text.rstrip("."), fix, stops=True)

@@ -31,9 +31,11 @@ class Paced:
     channel: str
     message: str
     rate_hz: float
-    """Messages per second."""
+    """Samples per second over the best ten seconds, as analyze counts them."""
     renewed_hz: float
     """New values per second, never more than ``rate_hz``."""
+    arrival: str
+    """Name of the message in the survey, with its bank of outputs."""
 
 
 def rate_limits(

@@ -15,7 +15,11 @@ from advisor.flight.record import UNITS
 from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.sense import Sense, turned
 from advisor.flight.track import Tracks
+from advisor.flight.trust import distrusted
 from advisor.flight.vehicle import closes_pitch_loop
+
+_DISPENSABLE = frozenset({"a_z", "theta"})
+"""Channels that an estimate can do without, and that spoil it where they stand still."""
 
 
 class Cutting:
@@ -100,7 +104,12 @@ class Cutting:
                 channels[name] = replace(
                     channel, provenance=self._who.provenance(channel.source, channel.provenance)
                 )
-        return Maneuver(self.maneuvers + 1, boot, span, channels, self._stay(_middle_s(span))[1])
+        distrusts = self._who.distrusts(distrusted(channels))
+        for still in distrusts:
+            if still.code == "frozen" and still.channel in _DISPENSABLE:
+                del channels[still.channel]
+        mode = self._stay(_middle_s(span))[1]
+        return Maneuver(self.maneuvers + 1, boot, span, channels, mode, tuple(distrusts))
 
 
 def _middle_s(span: Span) -> float:

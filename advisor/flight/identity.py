@@ -7,6 +7,7 @@ from advisor.flight.elevator_outputs import find_elevator
 from advisor.flight.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.messages import Columns
 from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_surface
+from advisor.flight.trust import Distrust
 from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
 from advisor.printable import printable
 from advisor.problems import Problem
@@ -72,6 +73,10 @@ class Identity:
         if self.simulated:
             return "simulated"
         return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
+
+    def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
+        """Of the channels that cannot be right, those that are wrong: the paper's model has one air speed."""
+        return [d for d in found if not (self.simulated and d.channel == "airspeed")]
 
     def learn(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Take messages among which at most the first changes anything."""

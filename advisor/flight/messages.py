@@ -1,7 +1,7 @@
 """Decoded MAVLink messages as columns: what the core is fed with."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -35,3 +35,13 @@ class Columns:
 
     def __len__(self) -> int:
         return len(self.order)
+
+
+def cut(columns: Columns, rows: NDArray[np.bool_] | slice) -> Columns:
+    """Some of the messages of one type, in their order of arrival."""
+    return replace(
+        columns,
+        order=columns.order[rows],
+        arrival_s=columns.arrival_s[rows],
+        fields={name: values[rows] for name, values in columns.fields.items()},
+    )

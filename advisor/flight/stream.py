@@ -45,6 +45,7 @@ from advisor.flight.sense import SAID
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus, Tracks
+from advisor.flight.trust import Distrust, frozen
 from advisor.flight.vehicle import Vehicle, closes_pitch_loop
 from advisor.problems import Problem
 
@@ -148,8 +149,8 @@ class FlightStream:
 
     @property
     def channels(self) -> Mapping[str, ChannelStatus]:
-        """How every channel arrives, from the source that would be used now."""
-        arriving = {**self._best, **self._tracks.statuses()}
+        """How every channel arrives, from the source that would be used now; at the end, as at its best."""
+        arriving = self._best if self._over else {**self._best, **self._tracks.statuses()}
         return {
             name: replace(status, provenance=self._who.provenance(status.source, status.provenance))
             for name, status in arriving.items()
@@ -160,14 +161,21 @@ class FlightStream:
         self._note_rates()
         flown = self._cutting
         found = problems(
-            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.activities
-        )
+            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.activities,
+            self.frozen, self.seen,
+        )  # fmt: skip
         wrong = self._mixing.contradiction
         return [
             *(self.marks.problems() if self._over else ()),
             *([wrong] if wrong and not flown.maneuvers else ()),
             *found,
         ]
+
+    @property
+    def frozen(self) -> list[Distrust]:
+        """Channels that have stood still in flight."""
+        ranges = {name: (status.lowest, status.highest) for name, status in self._best.items()}
+        return self._who.distrusts(frozen(ranges))
 
     def recent(self, name: str, seconds: float) -> Channel | None:
         """The newest stretch of a channel; None when nothing of it has arrived."""
@@ -210,9 +218,7 @@ class FlightStream:
     def _note_rates(self) -> None:
         """Remember how each channel arrived when it arrived fastest."""
         for name, status in self._tracks.statuses().items():
-            best = self._best.get(name)
-            if best is None or not status.rate_hz <= best.rate_hz:
-                self._best[name] = status
+            self._best[name] = status.at_best(self._best.get(name))
 
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Columns within which neither vehicle nor parameters nor mode change."""
