@@ -105,7 +105,7 @@ class Examiner:
         if complete:
             limits += rate_limits(paced, belief, autopilot, speed)
         period_s = 2.0 * np.pi / frequency(belief.model)
-        limits += steadiness_limits(arrivals, {p.arrival for p in paced.values()}, period_s)
+        limits += steadiness_limits(arrivals, {self._surveyed(p.message) for p in paced.values()}, period_s)
         if vehicle is not None and complete:
             limits += self._speed_limits(paced, belief, autopilot, speed)
             limits += alpha_limits(self._stream.channels["alpha"], autopilot) if "alpha" in paced else []
@@ -156,19 +156,21 @@ class Examiner:
             if status is None or name in dead or not status.rate_hz > 0.0:
                 continue
             message = _message(status)
-            arrival = arrivals.get(self._bank() if name == "elevator" else message) or arrivals.get(message)
+            arrival = arrivals.get(self._surveyed(message))
             if arrival is None:
                 continue
             renewed_hz = status.rate_hz
             if name == "alpha":
                 renewed_hz = min(renewed_hz, _renewal(arrival, status))
-            paced[name] = Paced(name, message, status.rate_hz, renewed_hz, arrival.name)
+            paced[name] = Paced(name, message, status.rate_hz, renewed_hz)
         return paced
 
-    def _bank(self) -> str:
-        """Name in the survey of the bank whose messages make the elevator's samples: the last one."""
+    def _surveyed(self, message: str) -> str:
+        """Name of a message in the survey; of servos, the last bank, which makes a sample of the elevator."""
         elevator = self._stream.elevator
-        return bank_name(elevator.ports[-1] if isinstance(elevator, Surface) else 0)
+        if message != "SERVO_OUTPUT_RAW" or not isinstance(elevator, Surface):
+            return message
+        return bank_name(elevator.ports[-1])
 
     def _airspeed(self, paced: dict[str, Paced]) -> float | None:
         """A speed for the specific force; None when none is measured or given."""

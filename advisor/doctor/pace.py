@@ -34,8 +34,6 @@ class Paced:
     """Samples per second over the best ten seconds, as analyze counts them."""
     renewed_hz: float
     """New values per second, never more than ``rate_hz``."""
-    arrival: str
-    """Name of the message in the survey, with its bank of outputs."""
 
 
 def rate_limits(

@@ -18,9 +18,6 @@ from advisor.flight.track import Tracks
 from advisor.flight.trust import distrusted
 from advisor.flight.vehicle import closes_pitch_loop
 
-_DISPENSABLE = frozenset({"a_z", "theta"})
-"""Channels that an estimate can do without, and that spoil it where they stand still."""
-
 
 class Cutting:
     """Cuts manoeuvres out of the tracks of one vehicle.
@@ -106,8 +103,9 @@ class Cutting:
                 )
         distrusts = self._who.distrusts(distrusted(channels))
         for still in distrusts:
-            if still.code == "frozen" and still.channel in _DISPENSABLE:
-                del channels[still.channel]
+            if still.channel == "a_z":
+                # An estimate can do without a specific force, and is spoiled by one that stands still.
+                del channels["a_z"]
         mode = self._stay(_middle_s(span))[1]
         return Maneuver(self.maneuvers + 1, boot, span, channels, mode, tuple(distrusts))
 

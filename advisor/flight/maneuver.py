@@ -42,7 +42,7 @@ class Maneuver:
     mode: str = ""
     """Flight mode in which it was flown, as the autopilot names or numbers it."""
     distrusts: tuple[Distrust, ...] = ()
-    """Channels that cannot be right. An acceleration or attitude that stands still is not in ``channels``."""
+    """Channels that cannot be right. A specific force that stands still is not in ``channels``."""
 
     def later(self, by_s: float) -> "Maneuver":
         """The same on a clock that shows ``by_s`` more."""

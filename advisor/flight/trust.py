@@ -26,7 +26,6 @@ _LONGEST_GAP_S = 0.5
 """Across a longer gap, s, and in slower samples, the pitch rate has no integral."""
 _WATCHED = {
     "q": ("pitch rate", "deg/s", degrees(1.0)),
-    "theta": ("pitch angle", "deg", degrees(1.0)),
     "a_z": ("normal acceleration", "m/s^2", 1.0),
     "alpha": ("angle of attack", "deg", degrees(1.0)),
     "airspeed": ("air speed", "m/s", 1.0),
@@ -34,7 +33,6 @@ _WATCHED = {
 """Channels that never stand still in flight: name, unit and factor for people."""
 _MENDS = {
     "q": "check the gyro and how its rate is recorded",
-    "theta": "check how the attitude is recorded",
     "a_z": "check the accelerometer and how it is recorded",
     "alpha": "check the vane, or what the autopilot derives it from",
     "airspeed": "check the air speed sensor and its tube",
@@ -87,7 +85,7 @@ def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
 
 def distrusted(channels: Mapping[str, Channel]) -> list[Distrust]:
     """Channels of one stretch of flight that cannot be right; empty where nothing speaks against any."""
-    told = {name: c for name, c in channels.items() if name in _WATCHED and len(c) >= _LEAST_SAMPLES}
+    told = {name: c for name, c in channels.items() if len(c) >= _LEAST_SAMPLES}
     found = frozen({name: (float(np.min(c.y)), float(np.max(c.y))) for name, c in told.items()})
     if found or not {"q", "theta"} <= told.keys() or told["q"].largest_gap_s > _LONGEST_GAP_S:
         return found
