@@ -150,7 +150,7 @@ class Examiner:
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
         """The channels that identification lives on, with the messages that pace them."""
         paced = {}
-        dead = {distrust.channel for distrust in self._stream.frozen}
+        dead = {distrust.channel for distrust in self._stream.frozen} - {"alpha"}  # another may be derived
         for name in ("elevator", "q", "alpha", "a_z"):
             status = self._stream.channels.get(name)
             if status is None or name in dead or not status.rate_hz > 0.0:

@@ -69,8 +69,9 @@ def problems(
     if vehicle.is_multicopter and isinstance(elevator, Problem):
         found = [_no_surfaces(vehicle)]
     else:
-        dead = {distrust.channel for distrust in still}
-        alive = {name: status for name, status in channels.items() if name == "q" or name not in dead}
+        # An angle of attack that stands still has a stand-in: the one derived from climb rate and air speed.
+        dead = {distrust.channel for distrust in still} & {"a_z"}
+        alive = {name: status for name, status in channels.items() if name not in dead}
         found = [
             *_missing(elevator, alive, vehicle, seen),
             *(Problem(d.code, f"{d.sentence}.", f"Mend: {d.fix}.") for d in still if d.stops),
