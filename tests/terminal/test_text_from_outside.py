@@ -70,7 +70,7 @@ def test_arguments_in_a_usage_error_are_shown(advisor: Advisor) -> None:
 def test_escapes_in_a_yaml_file_stay_text(tmp_path: Path) -> None:
     file = tmp_path / "aircraft.yaml"
     file.write_text('name: "\\e[31mred\\n\\u202Etxt ü"\n"\\ekey": 1\n')
-    assert read_yaml(file) == {"name": "[31mred txt ü", "key": 1}
+    assert read_yaml(file) == {"name": "[31mred\ntxt ü", "key": 1}
 
 
 def test_every_sentence_can_be_shown() -> None:
