@@ -59,14 +59,13 @@ def _recorded(
     """What the logs hold, log by log, and what was assumed to read it."""
     found: list[Maneuver] = []
     notes: list[str] = []
+    wrong: list[Problem] = []
     for log, decided in zip(logs, by_hand, strict=True):
         stream = FlightStream(aircraft, target_system, decided.marks)
         events = [event for columns in open_log(log) for event in stream.feed(columns)]
         events += stream.finish()
         name = printable(log.name)
-        found_wrong = [Problem(p.code, f"{name}: {p.text}", p.fix) for p in stream.problems()]
-        if found_wrong:
-            raise UnusableInputError.of(found_wrong)
+        wrong += [Problem(p.code, f"{name}: {p.text}", p.fix) for p in stream.problems()]
         notes += stream.elevator_notes
         for maneuver in (e.maneuver for e in events if isinstance(e, ManeuverFlown)):
             because = decided.excluded_because(maneuver)
@@ -74,6 +73,8 @@ def _recorded(
                 found.append(maneuver)
             else:
                 notes.append(f"{name}: manoeuvre {maneuver.number} is left out by hand: {because}.")
+    if wrong:
+        raise UnusableInputError.of(wrong)
     return found, tuple(dict.fromkeys(notes))
 
 

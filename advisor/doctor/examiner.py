@@ -230,7 +230,7 @@ def _stopping(problem: Problem) -> Limit:
     fix = problem.fix.removeprefix("Mend: ").rstrip(".")
     if problem.code == "no_elevator":
         fix += "; on a live link --request-rates asks the vehicle for them"
-    return Limit(problem.code, problem.text.rstrip("."), fix, stops=True)
+    return Limit(problem.code, problem.text.rstrip("."), f"{fix[:1].lower()}{fix[1:]}", stops=True)
 
 
 def _message(status: ChannelStatus) -> str:
