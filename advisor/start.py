@@ -10,9 +10,13 @@ def main() -> None:
     Ctrl-C ends it with one sentence from here on. Warnings are for those who develop: a user sees none,
     unless ``python -W`` asks for them.
     """
-    from advisor.interrupt import end_at_once
+    try:
+        from advisor.interrupt import end_at_once
 
-    end_at_once()
+        end_at_once()
+    except KeyboardInterrupt:
+        print("Stopped.", file=sys.stderr)
+        sys.exit(130)
     if not sys.warnoptions:
         warnings.simplefilter("ignore")
     from advisor.cli import main as run
