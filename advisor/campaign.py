@@ -146,7 +146,10 @@ class Campaign:
             enough=settled.enough if settled else None,
             estimate_from=tuple(judged.maneuver.number for judged in joined),
             elevator_notes=stream.elevator_notes,
-            sensor_notes=self._sensor_notes,
+            sensor_notes=(
+                *self._sensor_notes,
+                *(f"{d.sentence}; {d.fix}." for d in stream.frozen if not d.stops),
+            ),
             elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
             other_vehicles=tuple(sorted(stream.other_systems)),
             no_data=stream.no_data,

@@ -1,13 +1,21 @@
 """The ``advisor`` command: a table of commands, each imported only when it is called."""
 
+import io
 import os
 import sys
+from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
+from signal import SIGINT
+from typing import TextIO
 
 import click
 
 from advisor import __version__
 from advisor.commands.options import INTERNAL, UNUSABLE, USAGE
+from advisor.interrupt import STOPPED, Interrupted
+from advisor.plain import speak_plainly
+from advisor.printable import printable
 from advisor.problems import ConfigurationError, UnusableInputError
 
 COMMANDS = {
@@ -61,39 +69,71 @@ def main() -> None:
     # Matrices here are small: threads of the linear algebra library cost far more than they bring.
     for library in ("OPENBLAS", "OMP", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    speak_plainly()
+    code = _ended_by(_run)
+    for stream in (sys.stdout, sys.stderr):
+        _let_go(stream)
+    sys.exit(code)
+
+
+def _run() -> int:
+    """Call the command that the user names; what click would print or exit for is raised instead."""
+    with advisor.make_context("advisor", sys.argv[1:]) as context:
+        code = advisor.invoke(context)
+    sys.stdout.flush()
+    return code if isinstance(code, int) else 0
+
+
+def _ended_by(run: Callable[[], int]) -> int:
+    """Exit code of the run, or of the error that has ended the run, which is told."""
     try:
-        code = advisor(standalone_mode=False)
+        return run()
+    except click.exceptions.Exit as end:
+        return end.exit_code
     except click.ClickException as error:
-        error.show()
-        code = USAGE
-    except (click.Abort, KeyboardInterrupt):
-        click.echo("stopped", err=True)
-        code = 130
+        shown = io.StringIO()
+        error.show(shown)
+        _tell("\n".join(map(printable, shown.getvalue().rstrip("\n").split("\n"))))
+        return USAGE
+    except KeyboardInterrupt as end:
+        _tell(str(end) or STOPPED)
+        return end.code if isinstance(end, Interrupted) else 128 + SIGINT
     except ConfigurationError as error:
-        click.echo(str(error), err=True)
-        code = USAGE
+        _tell(str(error))
+        return USAGE
     except UnusableInputError as error:
-        click.echo(str(error), err=True)
-        code = UNUSABLE
-    except BrokenPipeError:
-        # The reader of our output (head, less) went away; there is nobody left to tell.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = 0
+        _tell(str(error))
+        return UNUSABLE
+    except (BrokenPipeError, SystemExit):
+        # The reader of our output (head, less) went away, which rich answers with SystemExit.
+        return 0
     except OSError as error:
-        where = f" ({error.filename})" if error.filename else ""
-        click.echo(
+        where = f" ({printable(os.fsdecode(error.filename))})" if error.filename else ""
+        _tell(
             f"The system refused: {error.strerror or error}{where}. Make room or give another place, "
-            "and repeat.",
-            err=True,
+            "and repeat."
         )
-        code = INTERNAL
+        return INTERNAL
     except Exception as error:
         if os.environ.get("ADVISOR_TRACEBACK"):
             raise
-        click.echo(
-            f"A fault of the advisor, not yours: {type(error).__name__}: {error}. "
-            "Set ADVISOR_TRACEBACK=1 to see where, and please report it.",
-            err=True,
+        _tell(
+            f"A fault of the advisor, not yours: {type(error).__name__}: {printable(str(error))}. "
+            "Set ADVISOR_TRACEBACK=1 to see where, and please report it."
         )
-        code = INTERNAL
-    sys.exit(code if isinstance(code, int) else 0)
+        return INTERNAL
+
+
+def _tell(sentence: str) -> None:
+    """Write to standard error, where somebody may listen."""
+    with suppress(OSError):
+        click.echo(sentence, err=True)
+
+
+def _let_go(stream: TextIO) -> None:
+    """Flush a stream; what nobody can take is thrown away, before the interpreter's end stumbles over it."""
+    try:
+        stream.flush()
+    except OSError:
+        with open(os.devnull, "wb") as nowhere:
+            os.dup2(nowhere.fileno(), stream.fileno())

@@ -11,6 +11,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
 from advisor.aircraft import PARAMETERS, Aircraft, Elevator, Markers, Pairs
 from advisor.effects import mistakes_in
+from advisor.printable import printable
 from advisor.problems import ConfigurationError
 from advisor.yaml_file import read_yaml
 
@@ -53,14 +54,10 @@ def parse_aircraft(content: Any, origin: str = "aircraft file") -> Aircraft:
         else:
             mistakes += _beyond_types(aircraft)
             if not mistakes:
-                return replace(aircraft, name=_printable(aircraft.name))
+                return replace(aircraft, name=printable(aircraft.name))
             break
-    raise ConfigurationError(f"{origin}: " + "; ".join(mistakes) + ".")
-
-
-def _printable(name: str) -> str:
-    # A name goes to terminals: an escape sequence in it would be obeyed there.
-    return "".join(character for character in name if character.isprintable())
+    more = [f"and {len(mistakes) - _MOST_LISTED} more"] if len(mistakes) > _MOST_LISTED else []
+    raise ConfigurationError(f"{origin}: " + "; ".join([*mistakes[:_MOST_LISTED], *more]) + ".")
 
 
 def _without_empty(content: Any) -> Any:
@@ -125,6 +122,10 @@ def _sentence(item: Any) -> str:
     return f"{path or 'file'}: {item['msg'][0].lower()}{item['msg'][1:]}"
 
 
+_MOST_LISTED = 20
+"""Mistakes that are listed; whoever makes more has made one, many times."""
+_MOST_POINTS = 500
+"""Points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
 """Manoeuvres in Eq. (12): more than any flight has."""
 _OUTPUTS = 32
@@ -187,6 +188,9 @@ def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
             "elevator.outputs: stands in place of elevator.output and elevator.calibration; "
             "take these out, or the list"
         )
+    if len(elevator.outputs) > _OUTPUTS:
+        yield f"elevator.outputs: lists {len(elevator.outputs)} outputs; there are {_OUTPUTS}"
+        return
     for i, one in enumerate(elevator.outputs):
         path = f"elevator.outputs[{i}]"
         if not 1 <= one.output <= _OUTPUTS:
@@ -205,6 +209,9 @@ def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
 
 
 def _calibration_mistakes(path: str, points: Pairs) -> Iterator[str]:
+    if len(points) > _MOST_POINTS:
+        yield f"{path}: has {len(points)} points; give at most {_MOST_POINTS}"
+        return
     if len(points) < 2:
         yield f"{path}: needs at least two points [PWM us, deflection deg]"
     for i, (below, above) in enumerate(pairwise(points), start=1):

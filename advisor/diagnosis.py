@@ -14,6 +14,7 @@ from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.mavlink.logs import open_log
+from advisor.printable import printable
 from advisor.problems import Problem, UnusableInputError
 
 _PAUSE_S = 60.0
@@ -58,20 +59,22 @@ def _recorded(
     """What the logs hold, log by log, and what was assumed to read it."""
     found: list[Maneuver] = []
     notes: list[str] = []
+    wrong: list[Problem] = []
     for log, decided in zip(logs, by_hand, strict=True):
         stream = FlightStream(aircraft, target_system, decided.marks)
         events = [event for columns in open_log(log) for event in stream.feed(columns)]
         events += stream.finish()
-        found_wrong = [Problem(p.code, f"{log.name}: {p.text}", p.fix) for p in stream.problems()]
-        if found_wrong:
-            raise UnusableInputError.of(found_wrong)
+        name = printable(log.name)
+        wrong += [Problem(p.code, f"{name}: {p.text}", p.fix) for p in stream.problems()]
         notes += stream.elevator_notes
         for maneuver in (e.maneuver for e in events if isinstance(e, ManeuverFlown)):
             because = decided.excluded_because(maneuver)
             if because is None:
                 found.append(maneuver)
             else:
-                notes.append(f"{log.name}: manoeuvre {maneuver.number} is left out by hand: {because}.")
+                notes.append(f"{name}: manoeuvre {maneuver.number} is left out by hand: {because}.")
+    if wrong:
+        raise UnusableInputError.of(wrong)
     return found, tuple(dict.fromkeys(notes))
 
 

@@ -3,6 +3,7 @@
 Times are seconds since boot. Every command that reads the log reads the file, too.
 """
 
+import os
 from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
@@ -12,6 +13,7 @@ import yaml
 
 from advisor.by_hand import ByHand, Remark
 from advisor.flight.marks import LONGEST_S, Mark
+from advisor.printable import printable
 from advisor.problems import ConfigurationError
 from advisor.whole_file import write_whole
 from advisor.yaml_file import read_yaml
@@ -26,7 +28,7 @@ _HEADING = "# Decided by hand; times in vehicle seconds since boot. `advisor` re
 
 def path_beside(log: Path) -> Path:
     """Where the decisions on a log are kept."""
-    return log.with_suffix(SUFFIX)
+    return log.parent / f"{log.stem}{SUFFIX}"
 
 
 def read_by_hand(log: Path) -> ByHand:
@@ -38,7 +40,7 @@ def read_by_hand(log: Path) -> ByHand:
         The file cannot be read, is not YAML, or holds unknown keys or unusable values.
     """
     path = path_beside(log)
-    if not path.exists():
+    if not os.path.exists(path):  # no path at all counts, too: the log itself is refused later
         return ByHand()
     content = read_yaml(path, _MEND)
     if content is None:
@@ -85,7 +87,7 @@ def write_by_hand(log: Path, by_hand: ByHand) -> None:
 
 def keep_by_hand(log: Path, by_hand: ByHand) -> str:
     """Keep the decisions beside a log; a sentence says where, or why that is not possible."""
-    path = path_beside(log)
+    path = printable(str(path_beside(log)))
     try:
         write_by_hand(log, by_hand)
     except OSError as error:

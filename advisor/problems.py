@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from advisor.printable import printable
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -15,12 +17,18 @@ class Problem:
     fix: str
     """How to mend it, one sentence."""
 
+    def __post_init__(self) -> None:
+        # Names of files and what vehicles say stand in these sentences.
+        object.__setattr__(self, "text", printable(self.text))
+        object.__setattr__(self, "fix", printable(self.fix))
+
     def __str__(self) -> str:
         return f"{self.text} {self.fix}".strip()
 
     def about(self, name: str) -> str:
         """The sentence with what it is about before it, where it does not say so itself."""
-        return str(self) if self.text.startswith(name) else f"{name}: {self}"
+        name = printable(name)
+        return str(self) if name in self.text else f"{name}: {self}"
 
 
 class UnusableInputError(Exception):
@@ -45,3 +53,6 @@ class UnusableInputError(Exception):
 
 class ConfigurationError(Exception):
     """The user's call or file is wrong (exit code 2); the message lists every mistake."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(printable(message))

@@ -6,10 +6,14 @@ from typing import Any
 
 import yaml
 
+from advisor.printable import printable
 from advisor.problems import ConfigurationError
 
 _MOST_BYTES = 256 * 1024
 """A settings file of a program holds a few kB; the limit keeps the time of reading below a second."""
+_MOST_VALUES = 20_000
+"""Values, lists and sections together: a thousand decisions by hand on one log have 8,000. Ten times as many
+would take seconds to check."""
 _DEEPEST = 32
 """Sections within sections; the advisor's own files need six."""
 
@@ -33,6 +37,8 @@ def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
         reference, or repeats a key.
     """
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            raise _Refused("a pipe or a device, no regular file")
         with path.open("rb") as file:
             raw = file.read(_MOST_BYTES + 1)
         if len(raw) > _MOST_BYTES:
@@ -51,7 +57,8 @@ def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
         mistake = f"not a YAML file{where}"
     except ValueError as error:
         # PyYAML builds dates: "2026-02-31" has the form of one and is none.
-        mistake = f"holds a value that is none ({error})"
+        why, _, _ = str(error).partition(";")  # what follows is for programmers
+        mistake = f"holds a value that is none ({why})"
     raise ConfigurationError(f"{path}: {mistake}. {mend}")
 
 
@@ -61,8 +68,11 @@ class _Refused(Exception):  # noqa: N818 (a reason, told by the caller)
 
 def _look_over(text: str) -> None:
     """Refuse, before anything is built, the forms that a reader by recursion does not survive."""
-    depth = 0
+    depth = values = 0
     for event in yaml.parse(text, Loader=_Parser):
+        values += isinstance(event, yaml.ScalarEvent | yaml.CollectionStartEvent)
+        if values > _MOST_VALUES:
+            raise _Refused(f"more than {_MOST_VALUES} values, which no file of this kind needs")
         line = event.start_mark.line + 1  # type: ignore[union-attr]
         if isinstance(event, yaml.AliasEvent):
             raise _Refused(f"line {line}: the reference *{event.anchor} is not read; write its content out")
@@ -94,3 +104,10 @@ class _Loader(_Parser):  # type: ignore[misc]
             said.add(key)
         section: dict[Any, Any] = super().construct_mapping(node, deep=deep)
         return section
+
+    def construct_text(self, node: Any) -> str:
+        """Build a text that can be shown: an escape in quotes may stand for any control character."""
+        return "\n".join(map(printable, self.construct_scalar(node).split("\n")))
+
+
+_Loader.add_constructor("tag:yaml.org,2002:str", _Loader.construct_text)

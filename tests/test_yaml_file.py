@@ -1,5 +1,8 @@
 """Files that YAML allows and the advisor does not take: one sentence each, at once."""
 
+import os
+import time
+
 import pytest
 
 from advisor.config import load_aircraft
@@ -51,3 +54,34 @@ def test_an_aircrafts_name_keeps_no_control_characters(tmp_path):
     path = tmp_path / "aircraft.yaml"
     path.write_text(r'name: "boo\e[31m\a [/]"')
     assert load_aircraft(path).name == "boo[31m [/]"
+
+
+def test_two_hundred_thousand_points_are_one_sentence_within_a_second(tmp_path):
+    file = tmp_path / "aircraft.yaml"
+    file.write_text("elevator: {calibration: [" + "[1,2]," * 40_000 + "]}")
+    began = time.monotonic()
+    with pytest.raises(ConfigurationError, match="more than 20000 values") as refused:
+        load_aircraft(file)
+    assert time.monotonic() - began < 1.0
+    assert len(str(refused.value)) < 300
+
+
+def test_a_calibration_has_no_more_points_than_a_servo_has_steps(tmp_path):
+    file = tmp_path / "aircraft.yaml"
+    points = ", ".join(f"[{900 + i / 10}, {i / 100}]" for i in range(5_000))
+    file.write_text(f"elevator: {{calibration: [{points}]}}")
+    with pytest.raises(ConfigurationError, match="5000 points; give at most 500"):
+        load_aircraft(file)
+
+
+def test_of_many_mistakes_the_first_are_listed_and_the_rest_counted(tmp_path):
+    file = tmp_path / "aircraft.yaml"
+    file.write_text("".join(f"key{i}: 1\n" for i in range(500)))
+    with pytest.raises(ConfigurationError, match="and 480 more"):
+        load_aircraft(file)
+
+
+def test_a_pipe_is_refused_without_waiting_for_it(tmp_path):
+    os.mkfifo(tmp_path / "aircraft.yaml")
+    with pytest.raises(ConfigurationError, match="pipe or a device"):
+        load_aircraft(tmp_path / "aircraft.yaml")

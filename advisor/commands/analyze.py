@@ -19,6 +19,7 @@ from advisor.commands.options import (
     rule_option,
     target_system_option,
 )
+from advisor.printable import printable
 from advisor.problems import Problem, UnusableInputError
 
 if TYPE_CHECKING:
@@ -76,13 +77,11 @@ def command(
             json.dumps(analysis_document(state, str(log), aircraft, problems), allow_nan=False, indent=1)
         )
     elif state is not None and not problems:
-        from rich.console import Console
-
+        from advisor.report.console import PlainConsole
         from advisor.report.text import AnalysisText
 
-        Console(highlight=False, soft_wrap=True).print(
-            AnalysisText(state, log.name, aircraft, every_movement)
-        )
+        shown = AnalysisText(state, printable(log.name), aircraft, every_movement)
+        PlainConsole(soft_wrap=True).print(shown)
     elif state is not None and every_movement:
         from advisor.report.text import activity_line
 

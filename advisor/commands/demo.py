@@ -8,6 +8,7 @@ import click
 from advisor.aircraft import Rule
 from advisor.commands.options import RULES, aircraft_option, read_aircraft
 from advisor.commands.screen import advise, headless
+from advisor.interrupt import in_order
 
 HEADLESS_SPEED = 10.0
 MEANING = {
@@ -72,4 +73,5 @@ def command(
     if headless():
         click.echo(f"rule {rule} decides: {MEANING[rule]}; --rule chooses another")
     title = f"demonstration: {flown} aircraft, {MEANING[rule]}"
-    advise(partial(LinkSource, flight, flight.over), title, aircraft)
+    with in_order():
+        advise(partial(LinkSource, flight, flight.over), title, aircraft)

@@ -15,6 +15,7 @@ from advisor.commands.options import (
     read_aircraft,
     target_system_option,
 )
+from advisor.printable import printable
 from advisor.problems import Problem, UnusableInputError
 
 if TYPE_CHECKING:
@@ -65,11 +66,10 @@ def command(
 
         click.echo(json.dumps(doctor_document(findings, problem), allow_nan=False, indent=1))
     elif findings is not None:
-        from rich.console import Console
-
         from advisor.doctor.text import ExaminationText
+        from advisor.report.console import PlainConsole
 
-        Console(highlight=False, soft_wrap=True).print(ExaminationText(findings))
+        PlainConsole(soft_wrap=True).print(ExaminationText(findings))
     sentence = problem or _first_obstacle(findings)
     if sentence is None:
         return 0
@@ -115,7 +115,7 @@ def _examine_link(
         talkers = [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
     examiner = Examiner(aircraft, target_system)
     with Link(connection, target_system=target_system, talkers=talkers) as link:
-        click.echo(f"Listening on {connection} for {seconds:g} s ...", err=True)
+        click.echo(f"Listening on {printable(connection)} for {seconds:g} s ...", err=True)
         until_s = time.monotonic() + seconds
         while time.monotonic() < until_s:
             examiner.feed(link.read(0.1))

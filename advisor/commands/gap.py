@@ -21,6 +21,7 @@ from advisor.commands.options import (
     refuse_unwritable,
     target_system_option,
 )
+from advisor.printable import printable
 from advisor.problems import ConfigurationError, UnusableInputError
 
 if TYPE_CHECKING:
@@ -128,15 +129,16 @@ def command(
     if found.verdict in ("effect", "parameters"):
         improved = str(write_improved(found, aircraft, out or Path(improved_name(found, aircraft_file))))
     elif out is not None:
-        click.echo(f"{out} was not written: no cause was named and no number found wrong.", err=True)
+        click.echo(
+            f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
+        )
     if as_json:
         click.echo(json.dumps(gap_document(found, (), improved), allow_nan=False, indent=1))
     else:
-        from rich.console import Console
-
+        from advisor.report.console import PlainConsole
         from advisor.report.gap_screen import GapScreen
 
-        Console(highlight=False).print(GapScreen(found, improved, why))
+        PlainConsole().print(GapScreen(found, improved and printable(improved), why))
     return 0
 
 

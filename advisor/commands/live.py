@@ -1,5 +1,6 @@
 """``advisor live``: advise on a live link."""
 
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +17,8 @@ from advisor.commands.options import (
     target_system_option,
 )
 from advisor.commands.screen import advise
+from advisor.interrupt import STOPPED, in_order
+from advisor.printable import printable
 from advisor.problems import ConfigurationError
 
 if TYPE_CHECKING:
@@ -100,7 +103,7 @@ def command(
     if logs and resume is None:
         raise ConfigurationError("LOG needs --resume: the flight test of these logs is taken up.")
     from advisor.campaign_file import CampaignFile
-    from advisor.commands.resuming import start_of, started
+    from advisor.commands.resuming import Speaking, start_of, started
     from advisor.mavlink.connection import parse_connection
     from advisor.mavlink.signing import read_key
     from advisor.tui.live import LinkSource
@@ -113,16 +116,13 @@ def command(
         parse_connection(connection)
     aircraft = start.campaign.parsed_aircraft(str(aircraft_file or start.recording))
     by_hand = decided_on(start.recording, no_marks) if start.goes_on and start.recording else None
-    with started(
-        start,
-        source_system=source_system,
-        signing_key=read_key(signing_key) if signing_key else None,
-        request_rates=request_rates,
-        announce=announce,
-        announce_to=announce_to,
-    ) as process:
-        said = f"recording to {process.recording}" if process.recording else "nothing is recorded"
-        click.echo(said, err=True)
+    speaking = Speaking(
+        source_system, read_key(signing_key) if signing_key else None, request_rates, announce, announce_to
+    )
+    recordings: list[Path] = []
+    with in_order(partial(_ended, recordings)), started(start, speaking) as process:
+        recordings += [process.recording] if process.recording else []
+        click.echo(_recorded(recordings), err=True)
         link = process.link(aircraft.elevator)
         advise(
             partial(LinkSource, link),
@@ -133,6 +133,15 @@ def command(
             by_hand=by_hand,
             kept=partial(_kept, process.recording),
         )
+
+
+def _recorded(recordings: Sequence[Path]) -> str:
+    return f"recording to {printable(str(recordings[0]))}" if recordings else "nothing is recorded"
+
+
+def _ended(recordings: Sequence[Path]) -> str:
+    """What the crew is told when a signal ends the command."""
+    return f"Stopped; the recording is {printable(str(recordings[0]))}." if recordings else STOPPED
 
 
 def _kept(recording: Path | None) -> "ByHand":

@@ -8,9 +8,9 @@ what was said before is not said again.
 
 import os
 import pickle
-import signal
 import sys
 import traceback
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, suppress
@@ -19,7 +19,11 @@ from threading import Thread
 from time import sleep
 from typing import IO, TYPE_CHECKING
 
+import click
+
+from advisor import interrupt
 from advisor.flight.messages import Columns
+from advisor.plain import speak_plainly
 from advisor.problems import UnusableInputError
 from advisor.tui.offspring import offspring, pause_s, said_of
 from advisor.tui.remote import Task
@@ -78,9 +82,9 @@ def _narrate_once(task: Task, say: Callable[[str], object], said: "Counter[str]"
                     said[message] += 1
                     say(message)
             return process.wait()
-        except BaseException:  # interrupted, or broken off by the other process, which then ends by itself
-            process.terminate()
-            raise
+        finally:
+            with suppress(BrokenPipeError):
+                process.stdin.close()  # upon which the other process ends, if it lives still
 
 
 def narrate_here(source: Source, campaign: "Campaign", say: Callable[[str], object]) -> None:
@@ -102,7 +106,7 @@ def narrate_here(source: Source, campaign: "Campaign", say: Callable[[str], obje
 def _batches(source: Source) -> Iterator[Sequence[Columns]]:
     while (columns := source.read(READ_S)) is not None:
         for notice in source.take_notices():
-            print(f"link: {notice}", file=sys.stderr, flush=True)
+            click.echo(f"link: {notice}", err=True)
         yield columns
 
 
@@ -121,7 +125,9 @@ def main() -> None:
     """Conduct one campaign from its task to its end; what breaks it off is the last message."""
     from advisor.campaign import Campaign
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the parent, which ends this process
+    interrupt.ignore()  # a signal is for the parent, which then closes the requests
+    speak_plainly()
+    warnings.simplefilter("ignore")  # as in the parent: warnings are for those who develop
     with suppress(BrokenPipeError), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as messages:
         os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
         try:

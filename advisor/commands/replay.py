@@ -19,6 +19,7 @@ from advisor.commands.options import (
 )
 from advisor.commands.screen import advise
 from advisor.flight.messages import Columns
+from advisor.printable import printable
 
 if TYPE_CHECKING:
     from advisor.flight.marks import Mark
@@ -70,9 +71,10 @@ def command(
     from advisor.tui.source import Tempo
 
     keep_beside = None if no_marks else log
-    player = partial(LogPlayer, log.name, partial(_columns, log), speed, keep_beside=keep_beside)
+    title = printable(log.name)
+    player = partial(LogPlayer, title, partial(_columns, log), speed, keep_beside=keep_beside)
     tempo = Tempo(speed=speed)
-    advise(player, log.name, aircraft, target_system, tempo=tempo, by_hand=by_hand, marks=marks)
+    advise(player, title, aircraft, target_system, tempo=tempo, by_hand=by_hand, marks=marks)
 
 
 def _columns(log: Path) -> list[Columns]:

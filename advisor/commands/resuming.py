@@ -29,6 +29,18 @@ class Start:
     """Logs of earlier flights of the campaign, which are only read."""
 
 
+@dataclass(frozen=True, slots=True)
+class Speaking:
+    """What the advisor says on the link, and how."""
+
+    source_system: int
+    signing_key: bytes | None = None
+    request_rates: bool = False
+    announce: bool = False
+    announce_to: str | None = None
+    """Connection to a ground station for announcements; None: they go over the link."""
+
+
 def start_of(
     asked: CampaignFile,
     resume: str | None,
@@ -78,14 +90,7 @@ def start_of(
 
 
 @contextmanager
-def started(
-    start: Start,
-    source_system: int,
-    signing_key: bytes | None,
-    request_rates: bool,
-    announce: bool,
-    announce_to: str | None,
-) -> Iterator[LinkProcess]:
+def started(start: Start, speaking: Speaking) -> Iterator[LinkProcess]:
     """Run the process of the link, or take over the one that runs; the process ends with the context.
 
     Raises
@@ -96,14 +101,14 @@ def started(
     keeping = Keeping(
         start.campaign.master,
         new_door(),
-        source_system,
+        speaking.source_system,
         start.campaign.target_system,
         start.recording,
         start.goes_on,
-        signing_key,
-        request_rates,
-        announce or announce_to is not None,
-        announce_to,
+        speaking.signing_key,
+        speaking.request_rates,
+        speaking.announce or speaking.announce_to is not None,
+        speaking.announce_to,
     )
     running = _left_alone(start)
     if running is not None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft import Aircraft
+from advisor.interrupt import in_order
 from advisor.problems import UnusableInputError
 from advisor.tui.source import Source, Tempo
 
@@ -97,7 +98,8 @@ def _show(task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> 
     from advisor.tui.settings import load_settings
 
     app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings())
-    app.run()
+    with in_order():
+        app.run()
     if app.failure is not None:
         raise app.failure
     if tempo is not None and app.view.problems:

@@ -14,7 +14,7 @@ from advisor.decision.inputs import StepInput
 from advisor.decision.judge import accepted_estimates
 from advisor.decision.remaining import by_information, by_scatter, share_after, usable_share
 from advisor.decision.scatter import scattered_most, window
-from advisor.decision.verdict import NextInput, Remaining
+from advisor.decision.verdict import NO_CURE_BY_INPUT, NextInput, Remaining
 from advisor.flight.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
@@ -31,6 +31,8 @@ def next_input(
         return NextInput("no further manoeuvre needed", Remaining(0, 0))
     course = course or Course(plan)
     conditions = find_conditions(history, aircraft, course)
+    if history and (mend := _mend(history[-1])):
+        return NextInput(f"next: {mend}", _without_a_model(history, plan))
     if conditions is None:
         spoken = _same_but_better(history[-1]) if history else _first_input(aircraft)
         return NextInput(f"next: {spoken}", _without_a_model(history, plan))
@@ -100,8 +102,21 @@ def _first_input(aircraft: Aircraft) -> str:
 
 def _same_but_better(flown: Flown) -> str:
     """While none was usable: the same input, with what the newest one's first reason says to do."""
-    _, _, remedy = flown.reasons[0].text.partition("; ") if flown.reasons else ("", "", "")
+    remedy = _remedy(flown)
     return f"the same again, {remedy}" if remedy else "the same again"
+
+
+def _mend(flown: Flown) -> str:
+    """What to do about a channel before any other input: nothing where all channels can be right."""
+    if flown.reasons and flown.reasons[0].code in NO_CURE_BY_INPUT:
+        return _remedy(flown)
+    wrong = flown.maneuver.distrusts if flown.maneuver else ()
+    return wrong[0].fix if wrong else ""
+
+
+def _remedy(flown: Flown) -> str:
+    """What the first reason says to do; nothing without a reason."""
+    return flown.reasons[0].text.partition("; ")[2] if flown.reasons else ""
 
 
 def _without_a_model(history: Sequence[Flown], plan: CampaignPlan) -> Remaining:

@@ -14,6 +14,7 @@ from advisor.decision.verdict import Reason
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
+from advisor.flight.trust import distrusted
 
 NEEDED = ("elevator", "q")
 SAMPLES_PER_PERIOD = 8.0
@@ -33,7 +34,7 @@ _ASSUMED_STROKE_DEG = 25.0
 
 
 def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
-    """Missing or frozen channels, slow ones, gaps, a free response cut short.
+    """Missing channels and such as cannot be right, slow ones, gaps, a free response cut short.
 
     Parameters
     ----------
@@ -48,11 +49,9 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
     if missing:
         text = f"no {' and no '.join(missing)} during the manoeuvre; check the link and fly it again"
         return [Reason("missing", text, float(len(missing)), 0.0)]
-    rate = maneuver.channels["q"].y
-    if np.ptp(rate) == 0.0:
-        shown = f"{np.degrees(rate[0]):.2g}"
-        text = f"pitch rate stands still at {shown} deg/s; check the gyro and how its rate is recorded"
-        return [Reason("frozen", text, 0.0, 0.0)]
+    wrong = [d for d in distrusted(maneuver.channels) if d.stops]
+    if wrong:
+        return [Reason(d.code, f"{d.text}; {d.fix}", d.value, 0.0) for d in wrong]
     needed = [maneuver.channels[name] for name in NEEDED]
     used = [maneuver.channels[name] for name in {*NEEDED, *counted} if name in maneuver.channels]
     return [

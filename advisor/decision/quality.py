@@ -11,13 +11,14 @@ since standard deviations fall with the amplitude.
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.beside import beside
 from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
-from advisor.decision.verdict import Reason
+from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.purpose import LEAST_PITCH_RATE_DEG_S
@@ -50,16 +51,16 @@ def judge_quality(
     fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
     reasons = [*incomplete(maneuver, period_s, fits), *outside(maneuver, aircraft)]
     codes = {reason.code for reason in reasons}
-    if codes & {"missing", "frozen"}:
+    if codes & UNTRUSTED:
         return tuple(reasons)
     follows = [*changed_speed(maneuver, aircraft), *too_quick(maneuver, period_s)]
-    if codes & {"rate", "gap"}:
+    if codes & NO_CURE_BY_INPUT:
         # A larger input mends no record: the reasons that ask for one would mislead.
         return (*reasons, *follows)
-    gentle = _too_gentle(maneuver, fits)
+    gentle = _mended(maneuver, _too_gentle(maneuver, fits))
     if isinstance(estimate, NoEstimate):
         return (*reasons, *follows, *gentle)
-    lacking = _badly_explained(estimate) or ([] if gentle else _poor(maneuver, estimate))
+    lacking = _badly_explained(estimate) or ([] if gentle else _mended(maneuver, _poor(maneuver, estimate)))
     if lacking and lacking[0].code == "turbulence":
         return (*reasons, *lacking, *follows)
     return (*reasons, *follows, *gentle, *lacking)
@@ -149,6 +150,14 @@ def _poor(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
     shown, most = beside(value, WIDEST_PREDICTION_PERCENT)
     text = f"the pitch rate is predicted to {shown} % of its peak only (limit {most}); {cure}"
     return [Reason(code, text, value, WIDEST_PREDICTION_PERCENT)]
+
+
+def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
+    """The reasons with the mend of a channel that cannot be right in place of a larger input."""
+    if not maneuver.distrusts:
+        return reasons
+    wrong = maneuver.distrusts[0]
+    return [replace(r, text=f"{r.text.partition('; ')[0]}; {wrong.text}: {wrong.fix}") for r in reasons]
 
 
 def _peak(maneuver: Maneuver, name: str) -> float:

@@ -15,6 +15,12 @@ def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
     return INFORMATION_LIMIT_PERCENT if rule == "information" else plan.limit_percent
 
 
+UNTRUSTED = frozenset({"missing", "frozen", "contradiction"})
+"""Codes of reasons that lie in a channel: whatever else the data seem to show is not worth a word."""
+NO_CURE_BY_INPUT = UNTRUSTED | {"rate", "gap"}
+"""Codes of reasons that no input cures: with them nobody is told to fly a larger or another one."""
+
+
 @dataclass(frozen=True, slots=True)
 class Reason:
     """Why a manoeuvre is not accepted: a number beside its limit, and what to do."""

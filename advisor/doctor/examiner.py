@@ -12,12 +12,13 @@ from advisor.doctor.instruments import (
     alpha_limits,
     clock_limits,
     company_limits,
+    distrust_limits,
     elevator_limits,
     loss_limits,
     sender_limits,
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
-from advisor.doctor.survey import Arrival, Survey
+from advisor.doctor.survey import Arrival, Survey, bank_name
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import Columns
@@ -53,15 +54,16 @@ class Examiner:
         self._chosen = target_system is not None
         self._stream = FlightStream(aircraft, target_system)
         self._survey: Survey | None = None
-        self._surveyed: int | None = None
+        self._surveyed_system: int | None = None
         self._maneuvers: list[Maneuver] = []
 
     def feed(self, columns: Sequence[Columns]) -> None:
         """Take the next messages."""
         self._keep(self._stream.feed(columns))
         vehicle = self._stream.vehicle
-        if vehicle is not None and vehicle.system != self._surveyed:
-            self._survey, self._surveyed = Survey(vehicle.system, vehicle.component), vehicle.system
+        if vehicle is not None and vehicle.system != self._surveyed_system:
+            self._survey = Survey(vehicle.system, vehicle.component)
+            self._surveyed_system = vehicle.system
         if self._survey is not None:
             self._survey.feed(columns)
 
@@ -85,16 +87,28 @@ class Examiner:
             if name in paced or name != "elevator"
         }
         autopilot = vehicle.autopilot if vehicle else ""
-        found = problems(vehicle, self._stream.other_systems, self._stream.elevator, channels, 1, {})
-        limits = [_stopping(problem) for problem in found if problem.code != "rate"]
+        still = self._stream.frozen
+        found = problems(
+            vehicle,
+            self._stream.other_systems,
+            self._stream.elevator,
+            channels,
+            1,
+            {},
+            still,
+            self._stream.seen,
+        )
         speed = self._airspeed(paced)
         complete = {"elevator", "q"} <= paced.keys() and (
             "alpha" in paced or ("a_z" in paced and speed is not None)
         )
+        # Against the aircraft's own pace where it can be told; else against what no aircraft gets by with.
+        limits = [_stopping(problem) for problem in found if problem.code != "rate" or not complete]
+        limits += distrust_limits([*still, *(d for m in self._maneuvers for d in m.distrusts)])
         if complete:
             limits += rate_limits(paced, belief, autopilot, speed)
         period_s = 2.0 * np.pi / frequency(belief.model)
-        limits += steadiness_limits(arrivals, {p.message for p in paced.values()}, period_s)
+        limits += steadiness_limits(arrivals, {self._surveyed(p.message) for p in paced.values()}, period_s)
         if vehicle is not None and complete:
             limits += self._speed_limits(paced, belief, autopilot, speed)
             limits += alpha_limits(self._stream.channels["alpha"], autopilot) if "alpha" in paced else []
@@ -140,17 +154,27 @@ class Examiner:
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
         """The channels that identification lives on, with the messages that pace them."""
         paced = {}
+        dead = {distrust.channel for distrust in self._stream.frozen} - {"alpha"}  # another may be derived
         for name in ("elevator", "q", "alpha", "a_z"):
             status = self._stream.channels.get(name)
-            message = _message(status) if status else ""
-            arrival = arrivals.get(message)
-            if status is None or arrival is None or not arrival.rate_hz > 0.0:
+            if status is None or name in dead or not status.rate_hz > 0.0:
                 continue
-            renewed_hz = arrival.rate_hz
+            message = _message(status)
+            arrival = arrivals.get(self._surveyed(message))
+            if arrival is None:
+                continue
+            renewed_hz = status.rate_hz
             if name == "alpha":
                 renewed_hz = min(renewed_hz, _renewal(arrival, status))
-            paced[name] = Paced(name, message, arrival.rate_hz, renewed_hz)
+            paced[name] = Paced(name, message, status.rate_hz, renewed_hz)
         return paced
+
+    def _surveyed(self, message: str) -> str:
+        """Name of a message in the survey; of servos, the last bank, which makes a sample of the elevator."""
+        elevator = self._stream.elevator
+        if message != "SERVO_OUTPUT_RAW" or not isinstance(elevator, Surface):
+            return message
+        return bank_name(elevator.ports[-1])
 
     def _airspeed(self, paced: dict[str, Paced]) -> float | None:
         """A speed for the specific force; None when none is measured or given."""
@@ -187,7 +211,7 @@ class Examiner:
             fix = how_to_ask("VFR_HUD", autopilot) + "; or give airspeed_m_s in the aircraft file"
             cost = cost_of_missing("a_z", paced, belief, None)
             return [Limit("no_airspeed", text, fix, std_ratio=cost)]
-        if "a_z" not in paced:
+        if "a_z" not in paced and "a_z" not in self._stream.channels:
             text = "No specific force arrives (RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU)"
             fix = how_to_ask("HIGHRES_IMU" if autopilot == "px4" else "RAW_IMU", autopilot)
             cost = cost_of_missing("a_z", paced, belief, speed)
@@ -207,10 +231,10 @@ def _believable(flown: Estimate) -> bool:
 
 
 def _stopping(problem: Problem) -> Limit:
-    fix = problem.fix.rstrip(".")
+    fix = problem.fix.removeprefix("Mend: ").rstrip(".")
     if problem.code == "no_elevator":
         fix += "; on a live link --request-rates asks the vehicle for them"
-    return Limit(problem.code, problem.text.rstrip("."), fix, stops=True)
+    return Limit(problem.code, problem.text.rstrip("."), f"{fix[:1].lower()}{fix[1:]}", stops=True)
 
 
 def _message(status: ChannelStatus) -> str:

@@ -1,6 +1,6 @@
 """What the instruments and clocks can and cannot do, whatever their rates."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 
 from advisor.aircraft import Elevator
 from advisor.beside import beside
@@ -9,6 +9,7 @@ from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.survey import Clocks
 from advisor.flight.surfaces import joined_numbers
 from advisor.flight.track import ChannelStatus
+from advisor.flight.trust import Distrust
 from advisor.problems import Problem
 
 COARSE_DEG = 0.5
@@ -68,6 +69,12 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
             )
         )
     return limits
+
+
+def distrust_limits(found: Iterable[Distrust]) -> list[Limit]:
+    """Channels that cannot be right, each once; a pitch rate that stands still is a problem already."""
+    told = {d.channel: d for d in found if not (d.stops and d.code == "frozen")}
+    return [Limit(d.code, d.sentence, d.fix, stops=d.stops) for d in told.values()]
 
 
 def clock_limits(clocks: Clocks) -> list[Limit]:

@@ -31,7 +31,7 @@ class Paced:
     channel: str
     message: str
     rate_hz: float
-    """Messages per second."""
+    """Samples per second over the best ten seconds, as analyze counts them."""
     renewed_hz: float
     """New values per second, never more than ``rate_hz``."""
 

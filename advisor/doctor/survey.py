@@ -1,6 +1,6 @@
 """How every message of the vehicle arrives: counted on the vehicle's clock, message by message."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from advisor.flight.attitude import Attitudes
 from advisor.flight.channels import stamps
 from advisor.flight.clocks import BootClock
-from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.messages import Columns, FloatArray, cut
 
 # The field whose change shows that a message brings news and not the last value again.
 _TELLING = {
@@ -85,7 +85,7 @@ class _Sender:
             return np.zeros(0, dtype=bool)
         before = values[:1] if self.last is None else self.last
         self.last = values[-1:]
-        changed: NDArray[np.bool_] = np.any(np.diff(values, axis=0, prepend=before) != 0.0, axis=1)
+        changed: NDArray[np.bool_] = np.any(values != np.concatenate((before, values[:-1])), axis=1)
         return changed
 
 
@@ -118,7 +118,8 @@ class Survey:
             if part.name in _EVENTS:
                 continue
             at = np.searchsorted(orders, part.order, side="right") - 1
-            self._take(part, clock[at], boots[at])
+            for name, rows in _banks(part):
+                self._take(name, cut(part, rows), clock[at][rows], boots[at][rows])
         self._master_s = float(clock[-1])
 
     def _advance(self, attitude: Columns | None) -> tuple[NDArray[np.int64], FloatArray, NDArray[np.int64]]:
@@ -134,8 +135,8 @@ class Survey:
             self._clock_pairs.append(pairs)
         return np.array(order), np.array(clock), np.array(boots)
 
-    def _take(self, part: Columns, master_s: FloatArray, boot: NDArray[np.int64]) -> None:
-        sender = self._senders.setdefault(part.name, _Sender())
+    def _take(self, name: str, part: Columns, master_s: FloatArray, boot: NDArray[np.int64]) -> None:
+        sender = self._senders.setdefault(name, _Sender())
         # A heartbeat before the first ATTITUDE has no vehicle time; it is counted by arrival only.
         known = np.isfinite(master_s)
         t = np.where(known, stamps(part, master_s), np.nan)
@@ -164,6 +165,21 @@ class Survey:
         """Every message that arrived, the most frequent first."""
         found = [_arrival(name, sender) for name, sender in self._senders.items() if any(map(len, sender.t))]
         return sorted(found, key=lambda arrival: (-arrival.count, arrival.name))
+
+
+def bank_name(port: int) -> str:
+    """Name under which the survey lists the SERVO_OUTPUT_RAW of one bank of outputs, 0 for the first."""
+    return "SERVO_OUTPUT_RAW" if port == 0 else f"SERVO_OUTPUT_RAW port {port}"
+
+
+def _banks(part: Columns) -> Iterator[tuple[str, NDArray[np.bool_]]]:
+    """Messages that are counted together: a vehicle with two banks of outputs sends two for each sample."""
+    if part.name != "SERVO_OUTPUT_RAW":
+        yield part.name, np.ones(len(part), dtype=bool)
+        return
+    ports = part.fields["port"]
+    for port in np.unique(ports).tolist():
+        yield bank_name(port), ports == port
 
 
 def _telling(part: Columns) -> FloatArray:

@@ -17,6 +17,7 @@ from advisor.flight.record import UNITS
 from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.sense import Sense, turned
 from advisor.flight.track import Tracks
+from advisor.flight.trust import distrusted
 from advisor.flight.vehicle import closes_pitch_loop
 
 
@@ -106,7 +107,13 @@ class Cutting:
                 channels[name] = replace(
                     channel, provenance=self._who.provenance(channel.source, channel.provenance)
                 )
-        return Maneuver(self.maneuvers + 1, boot, span, channels, self._stay(_middle_s(span))[1])
+        distrusts = self._who.distrusts(distrusted(channels))
+        for still in distrusts:
+            if still.channel == "a_z":
+                # An estimate can do without a specific force, and is spoiled by one that stands still.
+                del channels["a_z"]
+        mode = self._stay(_middle_s(span))[1]
+        return Maneuver(self.maneuvers + 1, boot, span, channels, mode, tuple(distrusts))
 
 
 def _middle_s(span: Span) -> float:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from advisor.flight.maneuver import InputKind, Maneuver
 from advisor.flight.vehicle import Vehicle
+from advisor.printable import printable
 from advisor.problems import Problem
 
 _SOON_S = 30.0
@@ -82,6 +83,10 @@ class Notice:
 
     code: str
     text: str
+
+    def __post_init__(self) -> None:
+        # What a vehicle says stands in some of these sentences.
+        object.__setattr__(self, "text", printable(self.text))
 
 
 @dataclass(frozen=True, slots=True)

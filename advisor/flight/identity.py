@@ -9,7 +9,9 @@ from advisor.flight.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.messages import Columns
 from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_surface
+from advisor.flight.trust import Distrust
 from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
+from advisor.printable import printable
 from advisor.problems import Problem
 
 _BUNDLED = b"Bundled aircraft"
@@ -75,6 +77,10 @@ class Identity:
         if self.simulated:
             return "simulated"
         return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
+
+    def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
+        """Of the channels that cannot be right, those that are wrong: the paper's model has one air speed."""
+        return [d for d in found if not (self.simulated and d.channel == "airspeed")]
 
     def learn(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Take messages among which at most the first changes anything."""
@@ -190,7 +196,8 @@ class Identity:
     def _text(self, columns: Columns) -> list[FlightEvent]:
         text = bytes(columns.fields["text"][0])
         if text.startswith(READER):
-            return [Notice(SENSOR_NOTICE, f"{text.removeprefix(READER).decode()}.")]
+            said = text.removeprefix(READER).decode("utf-8", "replace")
+            return [Notice(SENSOR_NOTICE, f"{said}.")]
         taken = chosen(text, TAKE)
         if taken is not None and self._finder.vehicle is not None:
             self._taken = replace(self._elevator, output=taken)
@@ -202,7 +209,8 @@ class Identity:
             self.simulated = True
         words = text.split()
         if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
-            self._firmware.setdefault(columns.system, words[1][1:].decode("ascii", "replace"))
+            version = printable(words[1][1:].decode("ascii", "replace"))
+            self._firmware.setdefault(columns.system, version)
         return []
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from advisor.flight.record import Channel
+from advisor.flight.trust import Distrust
 
 InputKind = Literal["3-2-1-1", "reverse 3-2-1-1", "doublet", "pulse", "multisine", "other"]
 
@@ -40,6 +41,8 @@ class Maneuver:
     channels: Mapping[str, Channel]
     mode: str = ""
     """Flight mode in which it was flown, as the autopilot names or numbers it."""
+    distrusts: tuple[Distrust, ...] = ()
+    """Channels that cannot be right. A specific force that stands still is not in ``channels``."""
 
     def later(self, by_s: float) -> "Maneuver":
         """The same on a clock that shows ``by_s`` more."""

@@ -1,7 +1,7 @@
 """Decoded MAVLink messages as columns: what the core is fed with."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -41,3 +41,13 @@ def arrivals(columns: Columns, order: IntArray) -> FloatArray:
     """Host time at which the messages with these arrival indices came, shape of ``order``."""
     times: FloatArray = columns.arrival_s[np.searchsorted(columns.order, order)]
     return times
+
+
+def cut(columns: Columns, rows: NDArray[np.bool_] | slice) -> Columns:
+    """Some of the messages of one type, in their order of arrival."""
+    return replace(
+        columns,
+        order=columns.order[rows],
+        arrival_s=columns.arrival_s[rows],
+        fields={name: values[rows] for name, values in columns.fields.items()},
+    )

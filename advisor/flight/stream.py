@@ -50,6 +50,7 @@ from advisor.flight.service import Service
 from advisor.flight.suitability import problems, with_guess
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus, Tracks
+from advisor.flight.trust import Distrust, frozen
 from advisor.flight.vehicle import Vehicle, closes_pitch_loop
 from advisor.problems import Problem
 
@@ -160,8 +161,8 @@ class FlightStream:
 
     @property
     def channels(self) -> Mapping[str, ChannelStatus]:
-        """How every channel arrives, from the source that would be used now."""
-        arriving = {**self._best, **self._tracks.statuses()}
+        """How every channel arrives, from the source that would be used now; at the end, as at its best."""
+        arriving = self._best if self._over else {**self._best, **self._tracks.statuses()}
         return {
             name: replace(status, provenance=self._who.provenance(status.source, status.provenance))
             for name, status in arriving.items()
@@ -172,8 +173,9 @@ class FlightStream:
         self._note_rates()
         flown = self._cutting
         found = problems(
-            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.activities
-        )
+            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.activities,
+            self.frozen, self.seen,
+        )  # fmt: skip
         wrong = self._mixing.contradiction
         if self.guess is not None and isinstance(self.elevator, Problem):
             found = [with_guess(problem, self.guess) for problem in found]
@@ -193,13 +195,19 @@ class FlightStream:
         """What keeps a stream with these channels from being used, whatever was flown on it."""
         wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
         two = self._senders.problem(self._system, now_s) if self._system is not None else None
-        found = problems(self.vehicle, self.other_systems, self.elevator, channels, 1, {})
+        found = problems(self.vehicle, self.other_systems, self.elevator, channels, 1, {}, (), self.seen)
         return [*(problem for problem in (two, wrong) if problem), *found]
 
     @property
     def two_senders(self) -> Problem | None:
         """Two senders under the vehicle's id, where they were seen once."""
         return self._senders.seen
+
+    @property
+    def frozen(self) -> list[Distrust]:
+        """Channels that have stood still in flight."""
+        ranges = {name: (status.lowest, status.highest) for name, status in self._best.items()}
+        return self._who.distrusts(frozen(ranges))
 
     def recent(self, name: str, seconds: float) -> Channel | None:
         """The newest stretch of a channel; None when nothing of it has arrived."""
@@ -246,9 +254,7 @@ class FlightStream:
     def _note_rates(self) -> None:
         """Remember how each channel arrived when it arrived fastest."""
         for name, status in self._tracks.statuses().items():
-            best = self._best.get(name)
-            if best is None or not status.rate_hz <= best.rate_hz:
-                self._best[name] = status
+            self._best[name] = status.at_best(self._best.get(name))
 
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Columns within which neither vehicle nor parameters nor mode change."""

@@ -9,12 +9,14 @@ manoeuvre is judged against its own natural frequency (`advisor.decision.quality
 """
 
 from collections.abc import Collection, Mapping
-from math import isfinite
+from math import isfinite, nan
 
 from advisor.beside import beside
+from advisor.flight.channels import READINGS
 from advisor.flight.elevator_guess import Guess
 from advisor.flight.surfaces import Surface, joined_numbers
 from advisor.flight.track import ChannelStatus
+from advisor.flight.trust import Distrust
 from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
 
@@ -41,6 +43,8 @@ def problems(
     channels: Mapping[str, ChannelStatus],
     maneuvers: int,
     activities: Mapping[str, int],
+    still: Collection[Distrust] = (),
+    seen: Collection[str] = (),
 ) -> list[Problem]:
     """Everything that keeps a stream from being used, the most fundamental first.
 
@@ -56,13 +60,24 @@ def problems(
         How many manoeuvres were found.
     activities
         How many movements of the elevator were no test inputs, by the reason in words.
+    still
+        Channels that stand still in flight.
+    seen
+        Names of the messages that the vehicle has sent.
     """
     if vehicle is None:
         return [_no_vehicle(other_systems)]
     if vehicle.is_multicopter and isinstance(elevator, Problem):
         found = [_no_surfaces(vehicle)]
     else:
-        found = [*_missing(elevator, channels, vehicle), *_too_slow(channels, vehicle)]
+        # An angle of attack that stands still has a stand-in: the one derived from climb rate and air speed.
+        dead = {distrust.channel for distrust in still} & {"a_z"}
+        alive = {name: status for name, status in channels.items() if name not in dead}
+        found = [
+            *_missing(elevator, alive, vehicle, seen),
+            *(Problem(d.code, f"{d.sentence}.", f"Mend: {d.fix}.") for d in still if d.stops),
+            *_too_slow(alive, vehicle),
+        ]
     if not found and maneuvers == 0:
         found.append(_no_maneuver(activities))
     if found and other_systems:
@@ -126,13 +141,17 @@ def _no_vehicle(other_systems: Collection[int]) -> Problem:
 
 
 def _missing(
-    elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
+    elevator: Surface | Problem,
+    channels: Mapping[str, ChannelStatus],
+    vehicle: Vehicle,
+    seen: Collection[str],
 ) -> list[Problem]:
     found = [elevator] if isinstance(elevator, Problem) else []
     if "q" not in channels:
         # Its stamps are the vehicle's clock: without it no other channel can be placed either.
         text = "There is no pitch rate: no ATTITUDE arrived."
-        return [*found, Problem("no_pitch_rate", text, f"Ask for ATTITUDE: {_ask('ATTITUDE', vehicle)}.")]
+        found.append(Problem("no_pitch_rate", text, f"Ask for ATTITUDE: {_ask('ATTITUDE', vehicle)}."))
+        channels = _sent(seen)
     if isinstance(elevator, Surface) and "elevator" not in channels:
         outputs = joined_numbers(elevator.outputs)
         found.append(
@@ -153,6 +172,16 @@ def _missing(
             )
         )
     return found
+
+
+def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
+    """Channels whose messages came, though nothing could be placed in time."""
+    sources = {reading.channel: reading.message for reading in READINGS if reading.message in seen}
+    if not {"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"}.isdisjoint(seen):
+        sources["elevator"] = "SERVO_OUTPUT_RAW"
+    # The attitude comes with the pitch rate that is asked for.
+    sources["theta"] = "ATTITUDE"
+    return {name: ChannelStatus(source, "", nan, nan, nan) for name, source in sources.items()}
 
 
 def motion_stands_in(channels: Collection[str]) -> bool:

@@ -9,6 +9,7 @@ elevator channel counts trailing edge down as positive, hence the minus in `Scal
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,7 +165,7 @@ def listed(words: Sequence[str]) -> str:
 def functions_of(parameters: Parameters) -> dict[int, int]:
     """SERVOn_FUNCTION by output, as far as it is known."""
     outputs = {n: parameters.get(f"SERVO{n}_FUNCTION") for n in range(1, 33)}
-    return {n: int(value) for n, value in outputs.items() if value is not None}
+    return {n: int(value) for n, value in outputs.items() if value is not None and isfinite(value)}
 
 
 def scale_of(n: int, parameters: Parameters) -> Scale:

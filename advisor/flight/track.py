@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from advisor.flight.best_rate import BestRate
 from advisor.flight.channels import DERIVED_ALPHA, READINGS, Decoded
 from advisor.flight.messages import FloatArray, IntArray
 from advisor.flight.record import UNITS, Channel
@@ -21,6 +22,30 @@ class ChannelStatus:
     """Longest time between two stamps since boot."""
     last_s: float
     """Vehicle time of the newest sample."""
+    best_hz: float = np.nan
+    """Samples per second over the best ten seconds since boot."""
+    lowest: float = np.nan
+    """Smallest value since boot, SI."""
+    highest: float = np.nan
+    """Largest value since boot, SI."""
+
+    def at_best(self, earlier: "ChannelStatus | None" = None) -> "ChannelStatus":
+        """The status with the rate of the best ten seconds, and the range, of this source in all boots.
+
+        Parameters
+        ----------
+        earlier
+            What this method returned before for the channel.
+        """
+        best = replace(self, rate_hz=self.best_hz)
+        if earlier is None or earlier.source != self.source:
+            return best if earlier is None or not self.best_hz <= earlier.rate_hz else earlier
+        return replace(
+            best,
+            rate_hz=float(np.fmax(self.best_hz, earlier.rate_hz)),
+            lowest=float(np.fmin(self.lowest, earlier.lowest)),
+            highest=float(np.fmax(self.highest, earlier.highest)),
+        )
 
 
 class Track:
@@ -35,6 +60,8 @@ class Track:
         self.provenance = provenance
         self.newest_s = -np.inf
         self.largest_gap_s = 0.0
+        self._best = BestRate()
+        self._lowest, self._highest = np.inf, -np.inf
         self._t = np.empty(1024)
         self._y = np.empty(1024)
         self._order = np.empty(1024, dtype=np.int64)
@@ -49,6 +76,9 @@ class Track:
         newest = np.maximum.accumulate(np.concatenate(([before], t)))
         self.largest_gap_s = max(self.largest_gap_s, float((newest[1:] - newest[:-1]).max()))
         self.newest_s = float(newest[-1])
+        self._best.add(t)
+        self._lowest = min(self._lowest, float(y.min()))
+        self._highest = max(self._highest, float(y.max()))
         self._make_room(len(t))
         new = slice(self._size, self._size + len(t))
         self._t[new], self._y[new], self._order[new] = t, y, order
@@ -75,7 +105,16 @@ class Track:
         gap = self.largest_gap_s if self._size > 1 else float("inf")
         span = float(recent.t[-1] - recent.t[0]) if len(recent) > 1 else 0.0
         rate = (len(recent) - 1) / span if span > 0.0 else float("nan")
-        return ChannelStatus(self.source, self.provenance, rate, gap, self.newest_s)
+        return ChannelStatus(
+            self.source,
+            self.provenance,
+            rate,
+            gap,
+            self.newest_s,
+            self._best.rate_hz,
+            self._lowest,
+            self._highest,
+        )
 
     def _make_room(self, n: int) -> None:
         if self._size + n <= len(self._t):
@@ -143,7 +182,7 @@ class Tracks:
             channel = track.cut(start_s, end_s, up_to_order)
             if len(channel) < 2:
                 continue
-            if name != "alpha" or np.ptp(channel.y) > 0.0:
+            if np.ptp(channel.y) > 0.0:
                 return _in_radians(channel)
             spare = spare or channel
         return spare

@@ -31,7 +31,7 @@ def gap_document(
         return {**document, **_NOTHING}
     d, gap = diagnosis, diagnosis.gap
     document |= {
-        "verdict": d.verdict,
+        "verdict": None if d.verdict == "untested" else d.verdict,
         "sentence": d.sentence,
         "maneuvers": list(d.maneuvers),
         "gap": {

@@ -8,7 +8,8 @@ from advisor.flight.kinematics import KinematicCheck
 from advisor.flight.messages import FloatArray
 from advisor.gap.decision import Decision
 
-Verdict = Literal["none", "parameters", "effect", "unknown"]
+Verdict = Literal["none", "parameters", "effect", "unknown", "untested"]
+"""``untested``: no simulator was given, and the flight shows no effect either; the JSON document has null."""
 VISIBLE = 0.05
 """Gap above the floor from which on there is something to explain."""
 

@@ -1,19 +1,17 @@
 """Telling the crew on their own ground station: verdicts as STATUSTEXT."""
 
-import unicodedata
 from collections import deque
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.outgoing import Ids, Talker
+from advisor.plain import plain
 
 CHUNK_BYTES = 50
 MOST_CHUNKS = 4
 SPOKEN = "@"
 """MAVProxy's speech module says a text that begins so, of any component of its vehicle's system."""
-
-_PLAIN = str.maketrans({"°": " deg", "–": "-", "—": "-", "−": "-", "×": "x", "±": "+-", "≤": "<=", "≥": ">="})
 
 
 def status_text(text: str, number: int) -> list[Any]:
@@ -30,8 +28,7 @@ def status_text(text: str, number: int) -> list[Any]:
     number
         Running number of the announcement, makes the id of a chunked text.
     """
-    plain = unicodedata.normalize("NFKD", " ".join(text.split()).translate(_PLAIN))
-    data = plain.encode("ascii", "ignore")
+    data = plain(" ".join(text.split())).encode("ascii")
     if len(data) >= CHUNK_BYTES * MOST_CHUNKS:
         data = data[: CHUNK_BYTES * MOST_CHUNKS - 4] + b"..."
     chunks = [data[i : i + CHUNK_BYTES] for i in range(0, len(data), CHUNK_BYTES)] or [b""]

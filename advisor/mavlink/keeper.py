@@ -18,6 +18,7 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
 
+from advisor import interrupt
 from advisor.mavlink import running
 from advisor.mavlink.announce import Announcer
 from advisor.mavlink.aside import Aside
@@ -236,7 +237,7 @@ def _clear(door: Door) -> None:
 
 def main() -> None:
     """Keep the link that standard input describes; the first answer on standard output is its recording."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the screens, which stop this process
+    interrupt.ignore()  # a signal is for the screens, which stop this process in order
     keeping: Keeping = pickle.load(sys.stdin.buffer)
     with contextlib.suppress(OSError):  # left by a process of this link that was killed
         if os.name != "nt":

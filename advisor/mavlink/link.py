@@ -33,6 +33,7 @@ from advisor.mavlink.signing import SignatureCheck
 from advisor.mavlink.transport import ConnectionCutError, Transport
 from advisor.mavlink.transports import open_transport
 from advisor.mavlink.watch import LinkWatch
+from advisor.printable import printable
 from advisor.problems import UnusableInputError
 
 if TYPE_CHECKING:
@@ -379,4 +380,4 @@ class Link:
                 return
 
     def _say(self, texts: Iterable[str], now_s: float) -> None:
-        self._notices.extend(Notice(now_s + self._unix_offset_s, text) for text in texts)
+        self._notices.extend(Notice(now_s + self._unix_offset_s, printable(text)) for text in texts)

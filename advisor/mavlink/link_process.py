@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import Self
 
 from advisor.aircraft import Elevator
+from advisor.interrupt import hung_up
 from advisor.mavlink.keeping import Guard, Keeping, Stop
 from advisor.mavlink.kept_link import KeptLink
 from advisor.mavlink.running import RunningLink
@@ -86,6 +87,8 @@ class LinkProcess:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._stopping.set()
+        if hung_up(error):
+            return  # nobody has asked for an end: the link goes on recording by itself
         _ask_to_stop(self._guard)
         self._thread.join(PATIENCE_S)
         if self._process is not None:

@@ -1,5 +1,6 @@
 """Opening a log of any kind: what it is, is read from its first bytes, not from its name."""
 
+import stat
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -41,9 +42,15 @@ def open_log(
 
 def _beginning(path: Path) -> bytes:
     """The first bytes of a file that can be read."""
-    if path.is_dir():
-        raise UnusableInputError("not_a_file", f"{path} is a folder.", "Give the log file inside it.")
     try:
+        kind = path.stat().st_mode
+        if stat.S_ISDIR(kind):
+            raise UnusableInputError("not_a_file", f"{path} is a folder.", "Give the log file inside it.")
+        if not stat.S_ISREG(kind):
+            # A pipe may never speak, a device may never end.
+            raise UnusableInputError(
+                "not_a_file", f"{path} is a pipe or a device, no regular file.", "Give a log that is a file."
+            )
         with path.open("rb") as file:
             beginning = file.read(16)
     except FileNotFoundError:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.flight.channels import SLOWEST_FLIGHT_M_S
 from advisor.flight.messages import FloatArray
 from advisor.flight.motion import bank_at, integrated, speed_rate
 from advisor.flight.record import Channel
@@ -43,9 +44,11 @@ class Airspeed:
 
 
 def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
-    """Air speed of a manoeuvre; None when none was measured."""
+    """Air speed of a manoeuvre; None when none was measured, or none that is one of flight throughout."""
     measured = channels.get("airspeed")
     if measured is None or len(measured) < 2 or not np.all(np.isfinite(measured.y)):
+        return None
+    if np.min(measured.y) <= SLOWEST_FLIGHT_M_S:
         return None
     plain = Airspeed(Signal(measured.t, measured.y), 0.0, False)
     if any(name not in channels or len(channels[name]) < FEWEST_SAMPLES for name in MOTION):

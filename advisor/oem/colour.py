@@ -79,6 +79,7 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
             part, determinant = _restricted(block, memory, share)
             power += part
             determinants += determinant
+        power = max(power, float(np.finfo(float).tiny))  # a residual of nothing but offsets
         return float(freedom * np.log(power / freedom) + determinants), power / freedom
 
     white, variance = cost(0.0, 0.0)

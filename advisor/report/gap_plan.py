@@ -16,6 +16,7 @@ from advisor.gap.foresight.foresee import CONFUSED_AT, Foreseen
 from advisor.gap.foresight.plan import TYPICAL_NOISE, foresee_plan
 from advisor.gap.result import spelled
 from advisor.gap.verdict.notes import unusual_signs
+from advisor.report.console import PlainConsole
 from advisor.report.gap_sizes import in_units
 
 _OF_LINEAR = {"M_alpha2": "M_alpha", "Z_alpha2": "Z_alpha", "M_delta2": "M_delta_e"}
@@ -50,7 +51,7 @@ def print_foresight(
         return 0
     kept = f", without {', '.join(absent)}" if absent else ""
     title = f"{len(inputs)} manoeuvres at {rate_hz:g} Hz, {amplitude_deg:g} deg of elevator{kept}"
-    Console(highlight=False).print(ForesightScreen(title, found, notes))
+    PlainConsole().print(ForesightScreen(title, found, notes))
     return 0
 
 

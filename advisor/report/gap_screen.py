@@ -24,6 +24,7 @@ _VERDICTS = {
     "parameters": "WRONG NUMBERS",
     "effect": "CAUSE FOUND",
     "unknown": "UNKNOWN CAUSE",
+    "untested": "NO SIMULATOR GIVEN",
 }
 _PICTURE = (
     (
@@ -59,7 +60,7 @@ class GapScreen:
         d = self.diagnosis
         yield Panel(Text(d.sentence), title=_VERDICTS[d.verdict], title_align="left")
         yield _numbers(d)
-        if d.verdict != "none":
+        if d.verdict not in ("none", "untested"):
             yield Panel(Group(*_picture(d)), title=_where(d), title_align="left")
         yield Panel(whereabouts(d.gap), title="where in the flight", title_align="left")
         added = [step for step in d.waterfall if step != (_SPEED, d.gap.before)]
@@ -103,7 +104,9 @@ def _note(text: str) -> Table:
 def _numbers(d: Diagnosis) -> Text:
     before, after = short(d.gap.before), short(d.gap.after)
     lines = [f"gap {before} → {after} times the noise floor's power"]
-    if d.verdict == "none":
+    if d.verdict == "untested":
+        lines = [f"what the fitted model leaves: {after} times the noise floor's power"]
+    elif d.verdict == "none":
         lines = [f"gap {before} times the noise floor's power, {after} with fitted numbers"]
     if d.shrink is not None:
         low, high = d.shrink.ci95_percent

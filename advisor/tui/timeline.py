@@ -1,11 +1,10 @@
 """The messages of a log on the time scale of its replay."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import Columns
+from advisor.flight.messages import Columns, cut
 
 LONGEST_SILENCE_S = 2.0
 """Silences of a log, and the leaps of its clock, are played in at most this time."""
@@ -49,19 +48,10 @@ class Timeline:
         for number, piece in enumerate(self._pieces):
             start, end = self._next[number], int(np.searchsorted(piece.order, last, side="right"))
             if end > start:
-                batch.append(_cut(piece, start, end))
+                batch.append(cut(piece, slice(start, end)))
                 self._next[number] = end
         return batch
 
     def rewind(self) -> None:
         """Deliver from the first message again."""
         self._next = [0] * len(self._pieces)
-
-
-def _cut(piece: Columns, start: int, end: int) -> Columns:
-    return replace(
-        piece,
-        order=piece.order[start:end],
-        arrival_s=piece.arrival_s[start:end],
-        fields={name: values[start:end] for name, values in piece.fields.items()},
-    )

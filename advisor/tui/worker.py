@@ -5,13 +5,13 @@ python -m advisor.tui.worker
 
 import os
 import pickle
-import signal
 import sys
 import traceback
 from contextlib import suppress
 from threading import Thread
 from typing import IO
 
+from advisor import interrupt
 from advisor.tui.changes import changes
 from advisor.tui.conducting import Report
 from advisor.tui.conductor import Conductor
@@ -50,8 +50,8 @@ def serve(conductor: Conductor, requests: IO[bytes]) -> None:
 def main() -> None:
     """Conduct one campaign from its task to its end; what breaks it off is the last message."""
     os.nice(_GIVES_WAY)
-    # An interrupt is for the screens, which then stop this process in order.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # A signal is for the screens, which then stop this process in order.
+    interrupt.ignore()
     # Closed at the end, upon which the other side closes the requests and ``serve`` returns.
     with suppress(BrokenPipeError), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as reports:
         # What a library prints must not fall among the reports.

@@ -11,9 +11,10 @@ from advisor.decision.foresight import Instruments, expect
 from advisor.decision.history import Flown
 from advisor.decision.inputs import StepInput
 from advisor.decision.stopping import flight_test
-from advisor.decision.verdict import Reason, Remaining
+from advisor.decision.verdict import NO_CURE_BY_INPUT, Reason, Remaining
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.record import Channel
+from advisor.flight.trust import Distrust
 from advisor.oem.surface import Servo
 from advisor.study.estimating import estimate_copies
 from advisor.study.flying import Scene, follow
@@ -66,6 +67,21 @@ def test_while_none_was_usable_the_remedy_of_the_newest_is_repeated() -> None:
     rough = Reason("turbulence", "rough air, 15 % of the pitch rate; fly it in calmer air", 15.0, 8.0)
     advice = next_input([replace(flown(), reasons=(rough,))], AIRCRAFT, stopped=False)
     assert advice.advice == "next: the same again, fly it in calmer air"
+
+
+@pytest.mark.parametrize("code", sorted(NO_CURE_BY_INPUT))
+def test_while_a_channel_is_wrong_the_next_thing_is_its_mend(code: str) -> None:
+    wrong = Reason(code, "pitch rate stands still at 0 deg/s; check the gyro", 0.0, 0.0)
+    advice = next_input([flown(), replace(flown(), reasons=(wrong,))], AIRCRAFT, stopped=False)
+    assert advice.advice == "next: check the gyro"
+
+
+def test_while_a_channel_stands_still_the_next_thing_is_its_mend() -> None:
+    dead = Distrust(
+        "frozen", "airspeed", "air speed stands still at 20 m/s", "check the air speed sensor", 20.0
+    )
+    newest = replace(flown(), maneuver=replace(manoeuvre(), distrusts=(dead,)))
+    assert next_input([flown(), newest], AIRCRAFT, stopped=False).advice == "next: check the air speed sensor"
 
 
 def test_a_prior_model_times_the_first_input() -> None:

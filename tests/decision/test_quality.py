@@ -11,6 +11,7 @@ from advisor.aircraft import Aircraft, Elevator, Limits
 from advisor.decision.quality import judge_quality, natural_period
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.stream import FlightStream
+from advisor.flight.trust import Distrust
 from advisor.mavlink.frames import FrameScanner
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import estimate
@@ -211,3 +212,16 @@ def test_good_manoeuvres_are_rejected_in_at_most_two_percent_of_cases():
     ]
     assert len(judged) == 9 * 5 * 7
     assert np.mean([bool(reasons) for reasons in judged]) <= 0.02
+
+
+def test_no_larger_input_is_asked_for_while_a_channel_stands_still():
+    maneuver, estimated, _ = bad_flight()[1]
+    dead = Distrust(
+        "frozen", "a_z", "normal acceleration stands still at 0 m/s^2", "check the accelerometer", 0.0
+    )
+    told = judge_quality(maneuver, estimated, AIRCRAFT)
+    assert any("times the stick" in reason.text for reason in told)
+    mended = judge_quality(replace(maneuver, distrusts=(dead,)), estimated, AIRCRAFT)
+    assert [reason.code for reason in mended] == [reason.code for reason in told]
+    assert not any("times the stick" in reason.text for reason in mended)
+    assert any("check the accelerometer" in reason.text for reason in mended)

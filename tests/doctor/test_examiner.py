@@ -10,6 +10,7 @@ from advisor.doctor.document import doctor_document
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.examiner import Examiner
 from advisor.flight.messages import Columns
+from advisor.flight.stream import FlightStream
 from advisor.mavlink.logs import open_log
 from tests.doctor.builders import flight, heartbeat
 
@@ -244,3 +245,81 @@ def test_the_document_keeps_the_contract() -> None:
     assert {"code", "text", "fix"} <= document["limits"][0].keys()
     assert len(document["expected_std"]) == 8
     assert document["problems"] == []
+
+
+def changed(columns: list[Columns], message: str, **fields: object) -> list[Columns]:
+    """The link with fields of one message replaced, each by one value or by one a message."""
+    part = next(part for part in columns if part.name == message)
+    wrong = {name: np.broadcast_to(np.asarray(value), (len(part),)).copy() for name, value in fields.items()}
+    mended = replace(part, fields={**part.fields, **wrong})
+    return [mended if part.name == message else part for part in columns]
+
+
+def moving(columns: list[Columns]) -> list[Columns]:
+    """The link with the pitch angle that belongs to its pitch rate."""
+    t = next(part for part in columns if part.name == "ATTITUDE").fields["time_boot_ms"] * 1e-3
+    return changed(columns, "ATTITUDE", pitch=-np.cos(7.0 * t) / 7.0)
+
+
+def test_a_pitch_rate_that_stands_still_while_the_attitude_moves_is_not_usable() -> None:
+    found = examined(changed(moving(flight()), "ATTITUDE", pitchspeed=0.0))
+    assert found.verdict == "not usable"
+    assert limits(found)["frozen"].stops
+
+
+@pytest.mark.parametrize(
+    ("message", "fields", "name"),
+    [
+        ("RAW_IMU", {"zacc": 0}, "Normal acceleration"),
+        ("AOA_SSA", {"AOA": 3.0}, "Angle of attack"),
+        ("VFR_HUD", {"airspeed": 25.0}, "Air speed"),
+    ],
+)
+def test_any_channel_that_stands_still_is_named(message: str, fields: dict[str, float], name: str) -> None:
+    limit = limits(examined(changed(moving(flight()), message, **fields)))["frozen"]
+    assert limit.text.startswith(f"{name} stands still")
+    assert not limit.stops
+
+
+def test_what_is_missing_and_what_is_slow_are_told_in_one_answer() -> None:
+    found = limits(examined(flight(setup={}, ATTITUDE=4.0, without=["SERVO_OUTPUT_RAW"])))
+    assert {"no_elevator", "rate"} <= found.keys()
+
+
+def test_two_banks_of_outputs_are_not_added_up() -> None:
+    columns = flight(SERVO_OUTPUT_RAW=5.0)
+    first = next(part for part in columns if part.name == "SERVO_OUTPUT_RAW")
+    second = replace(
+        first, order=first.order + 1, fields={**first.fields, "port": np.ones(len(first), np.uint8)}
+    )
+    found = examined([*columns, second])
+    rates = {arrival.name: arrival.rate_hz for arrival in found.messages}
+    assert rates["SERVO_OUTPUT_RAW"] == pytest.approx(5.0, rel=0.01)
+    assert limits(found)["rate"].stops
+    assert "SERVO_OUTPUT_RAW arrives at 5.0 Hz" in limits(found)["rate"].text
+
+
+def test_a_rate_is_that_of_the_best_stretch_not_of_the_last_seconds() -> None:
+    columns = flight(seconds=60.0)
+    master = next(part for part in columns if part.name == "ATTITUDE")
+    t = master.fields["time_boot_ms"] * 1e-3
+    thinned = (t < 40.0) | (np.arange(len(t)) % 25 == 0)
+    slow = replace(
+        master,
+        order=master.order[thinned],
+        arrival_s=master.arrival_s[thinned],
+        fields={name: values[thinned] for name, values in master.fields.items()},
+    )
+    found = limits(examined([slow if part is master else part for part in columns]))
+    assert "rate" not in found
+    assert "rate_fell" in found
+
+
+def test_a_multicopter_is_told_what_analyze_tells() -> None:
+    columns = [heartbeat(autopilot=12, kind=2), *flight(autopilot=12, setup={})[1:]]
+    stream = FlightStream(Aircraft())
+    stream.feed(columns)
+    stream.finish()
+    (problem,) = stream.problems()
+    (limit,) = (limit for limit in examined(columns, Aircraft()).limits if limit.stops)
+    assert (limit.code, f"{limit.text}.") == ("multicopter", problem.text)

@@ -129,7 +129,7 @@ def fly(
         attitude(wire, now, boot, q=0.2 * sense, **sender)
         aoa(wire, now + 1e-4, boot, 2.0 + sense, **sender)
         servo(wire, now + 2e-4, boot, {1: 1500, 2: 1500 + 20 * sense, 3: 1600, 4: 1500}, **sender)
-        hud(wire, now + 3e-4, **sender)
+        hud(wire, now + 3e-4, airspeed=20.0 + 0.01 * (k % 2), **sender)
 
 
 def switch(wire: Wire, at_s: float, boot_s: float, pulse_us: int, channel: int = 9) -> None:

@@ -130,7 +130,9 @@ def test_channels_carry_units_sources_and_provenance():
     wire = Wire()
     fly(wire, 1000.0, 50.0, ONE, 14.0)
     for k in range(700):
-        wire.send("RAW_IMU", 1000.01 + k / 50, time_usec=50_000_000 + 20_000 * k, xacc=100, zacc=-1000)
+        wire.send(
+            "RAW_IMU", 1000.01 + k / 50, time_usec=50_000_000 + 20_000 * k, xacc=100, zacc=-1000 - k % 2
+        )
     _, events = flown(wire)
     (maneuver,) = maneuvers(events)
     c = maneuver.channels
@@ -139,7 +141,7 @@ def test_channels_carry_units_sources_and_provenance():
     assert c["elevator"].provenance == "commanded"
     assert np.max(c["alpha"].y) == pytest.approx(np.radians(3.0))
     assert (c["alpha"].source, c["alpha"].provenance) == ("AOA_SSA.AOA", "derived")
-    assert c["a_z"].y[0] == pytest.approx(-9.80665)
+    assert np.max(c["a_z"].y) == pytest.approx(-9.80665)
     assert c["throttle"].y[0] == pytest.approx(0.5)
     assert c["airspeed"].t[0] in c["q"].t
     assert set(c) >= {"aileron", "rudder", "theta", "bank", "climb_rate"}
@@ -150,10 +152,10 @@ def test_the_specific_force_of_a_further_sensor_is_read_where_the_first_is_not_s
     wire = Wire()
     fly(wire, 1000.0, 50.0, ONE, 14.0)
     for k in range(700):
-        wire.send(message, 1000.01 + k / 50, time_boot_ms=50_000 + 20 * k, xacc=100, zacc=-1000)
+        wire.send(message, 1000.01 + k / 50, time_boot_ms=50_000 + 20 * k, xacc=100, zacc=-1000 - k % 2)
     (maneuver,) = maneuvers(flown(wire)[1])
     assert maneuver.channels["a_z"].source == f"{message}.zacc"
-    assert maneuver.channels["a_z"].y[0] == pytest.approx(-9.80665)
+    assert np.max(maneuver.channels["a_z"].y) == pytest.approx(-9.80665)
 
 
 @pytest.mark.parametrize("boot_s", [round(WRAP_S - 7.0), round(3 * WRAP_S - 5.0), round(2**32 / 1e3 - 6.0)])

@@ -1,5 +1,7 @@
 """Why a stream cannot be used: every refusal names what is wrong and how to mend it."""
 
+import math
+
 import pytest
 
 from advisor.aircraft import Aircraft, Elevator
@@ -131,3 +133,20 @@ def test_ardupilot_parameters_are_not_recommended_to_others():
 @pytest.mark.parametrize("rate_hz", [8.5, 25.0, 100.0])
 def test_rates_that_suffice_are_not_complained_of(rate_hz):
     assert "rate" not in codes(flight(rate_hz=rate_hz))
+
+
+def test_a_pitch_rate_that_stands_still_while_the_attitude_moves_is_named():
+    wire = Wire()
+    fly(wire, 1000.0, 50.0, [4.0], 14.0)
+    for at_s, _, name, _, _, fields in wire._sent:
+        if name == "ATTITUDE":
+            fields.update(pitchspeed=0.0, pitch=0.1 * math.sin(at_s))
+    (problem,) = problems(wire)
+    assert problem.code == "frozen"
+    assert "gyro" in problem.fix
+
+
+def test_without_attitude_what_is_missing_besides_is_told_in_the_same_answer():
+    assert codes(flight(without=("ATTITUDE", "AOA_SSA", "SERVO_OUTPUT_RAW"))) == [
+        "no_pitch_rate", "no_elevator", "no_alpha",
+    ]  # fmt: skip

@@ -50,10 +50,10 @@ class Advising:
         """Take the flight test up."""
         self.start("--resume", str(self.recording))
 
-    def end(self) -> int:
-        """Interrupt, and wait for the exit code."""
+    def end(self, by: signal.Signals = signal.SIGINT) -> int:
+        """Send a signal, and wait for the exit code."""
         assert self.process is not None
-        self.process.send_signal(signal.SIGINT)
+        self.process.send_signal(by)
         return self.process.wait(20.0)
 
     def kill(self) -> None:

@@ -2,6 +2,7 @@
 
 import re
 import resource
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -100,6 +101,14 @@ def test_the_link_goes_on_recording_when_everything_else_is_killed(advising: Adv
     fly(flight, advising.port, SPEED, lambda now_s: None)
     wait_until(lambda: len(records_of(advising.recording)) == len(flight), 5.0)
     assert advising.note_of_keeper()["alone"]
+
+
+def test_the_link_goes_on_recording_when_the_terminal_goes_away(advising: Advising):
+    advising.start()
+    flight = until(FLIGHT, 8.0)
+    assert advising.end(signal.SIGHUP) == 129
+    fly(flight, advising.port, SPEED, lambda now_s: None)
+    wait_until(lambda: len(records_of(advising.recording)) == len(flight), 5.0)
 
 
 def test_what_a_power_cut_leaves_of_a_recording_ends_less_than_a_second_before_it(advising: Advising):

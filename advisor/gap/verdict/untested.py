@@ -1,0 +1,22 @@
+"""What a diagnosis says where the aircraft file holds no model: no simulator was tested."""
+
+from dataclasses import replace
+
+from advisor.gap.result import Diagnosis
+
+_NOT_GIVEN = "No simulator was given: the aircraft file holds no complete model."
+_INSTEAD = (
+    "The flight was held against a model fitted to it: that shows effects which eight numbers cannot, and "
+    "nothing of a simulator's numbers."
+)
+_STATEMENT = (
+    "No simulator was given, so no gap can be stated. A model fitted to this flight leaves no effect to name."
+)
+
+
+def without_simulator(diagnosis: Diagnosis) -> Diagnosis:
+    """Return the diagnosis as one of the flight alone; it never says that there is no gap."""
+    notes = (f"{_NOT_GIVEN} {_INSTEAD}", *diagnosis.notes)
+    if diagnosis.verdict != "none":
+        return replace(diagnosis, notes=notes)
+    return replace(diagnosis, verdict="untested", sentence=_STATEMENT, notes=notes)

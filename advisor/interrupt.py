@@ -1,0 +1,99 @@
+"""Ctrl-C and other signals: the program ends with one sentence, at once or in order.
+
+An exception that a signal raises is printed and lost where a library calls back from C, and leaves a
+traceback where no code of the advisor runs. So Ctrl-C ends the process itself. Only while something is
+recorded or a screen is shown, a signal raises :class:`Interrupted`, which closes files and screen.
+"""
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+
+_PATIENCE_S = 5.0
+"""Time that an orderly end may take, s. A recording is closed within 0.5 s; an exception may be lost."""
+STOPPED = "Stopped."
+"""What the user is told where there is nothing else to say."""
+_KINDS = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+)  # Windows has no SIGHUP
+
+
+class Interrupted(KeyboardInterrupt):
+    """A signal has ended the work in order; ``str`` of it is the sentence for the user."""
+
+    def __init__(self, sentence: str, code: int) -> None:
+        super().__init__(sentence)
+        self.code = code
+        """Exit code: 128 and the signal's number, as of a program that the signal ends."""
+
+
+def hung_up(error: BaseException | None) -> bool:
+    """Whether the terminal went away: its window was closed, or its network connection lost."""
+    hang_up = getattr(signal, "SIGHUP", None)
+    return isinstance(error, Interrupted) and hang_up is not None and error.code == 128 + hang_up
+
+
+def end_at_once() -> None:
+    """Let Ctrl-C end the process from here on, whatever it is doing, with one sentence and exit code 130."""
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _end_process)
+
+
+@contextmanager
+def in_order(sentence: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
+    """Let Ctrl-C, SIGTERM and SIGHUP raise :class:`Interrupted` within the block, once.
+
+    A signal that is ignored, as under ``nohup``, stays so.
+
+    Parameters
+    ----------
+    sentence
+        Gives what the user is told when a signal comes.
+    """
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        for kind in heard:
+            signal.signal(kind, signal.SIG_IGN)
+        said, code = sentence(), 128 + number
+        _end_later(said, code)
+        raise Interrupted(said, code)
+
+    heard = [kind for kind in _KINDS if signal.getsignal(kind) is not signal.SIG_IGN]
+    if threading.current_thread() is not threading.main_thread():
+        heard = []
+    before = [signal.signal(kind, interrupt) for kind in heard]
+    try:
+        yield
+    finally:
+        for kind, handler in zip(heard, before, strict=True):
+            signal.signal(kind, handler)
+
+
+def ignore() -> None:
+    """Leave every signal to another process, which ends this one in order."""
+    for kind in _KINDS:
+        signal.signal(kind, signal.SIG_IGN)
+
+
+def _end_process(number: int, frame: FrameType | None) -> None:
+    _say_and_exit(STOPPED, 128 + number)
+
+
+def _end_later(sentence: str, code: int) -> None:
+    """End the process when the orderly end takes too long or the exception is lost."""
+    if hasattr(signal, "SIGALRM"):
+        signal.signal(signal.SIGALRM, lambda number, frame: _say_and_exit(sentence, code))
+        signal.setitimer(signal.ITIMER_REAL, _PATIENCE_S)
+
+
+def _say_and_exit(sentence: str, code: int) -> None:
+    from advisor.plain import plain
+
+    with suppress(OSError):
+        # On a terminal a bar of progress may stand in this line, and have hidden the cursor.
+        begin = "\n\033[?25h" if os.isatty(2) else ""
+        os.write(2, f"{begin}{plain(sentence)}\n".encode())
+    os._exit(code)

@@ -1,0 +1,72 @@
+"""Output that any terminal can show: characters that an encoding lacks are spelled in ASCII."""
+
+import codecs
+import io
+import os
+import sys
+import unicodedata
+
+_ERRORS = "advisor-plain"
+_ASCII = "plain_ascii"
+_SPELLED = {
+    "°": " deg", "±": "+-", "²": "2", "³": "3", "·": "-", "×": "x", "µ": "u", "δ": "delta_",
+    "–": "-", "—": "-", "−": "-", "⁻": "-", "•": "*", "…": "...", "→": "->", "≤": "<=", "≥": ">=", "∅": "0",
+    "∙": ".",
+    "▁": "_", "▂": ".", "▃": ":", "▄": "-", "▅": "=", "▆": "+", "▇": "*", "█": "#",
+    "▉": "#", "▊": "#", "▋": "#", "▌": "=", "▍": "=", "▎": "-", "▏": "|",
+    "■": "#", "▶": ">", "►": ">", "◀": "<", "●": "*", "✓": "+", "✗": "x", "❚": "|",
+}  # fmt: skip
+"""Stand-ins of the characters that the advisor writes. Greek letters and lines follow from their names; a
+delta stands before the e of the elevator, as in M_delta_e."""
+
+
+def plain(text: str) -> str:
+    """Return the text in ASCII: stand-ins, letters without accents, a question mark for anything else."""
+    return "".join(map(_spelled, text))
+
+
+def speak_plainly() -> None:
+    """Let standard output and error spell what their encoding lacks, instead of failing.
+
+    A stream in ASCII gets the same encoding by another name: click takes ASCII for a mistake in the user's
+    settings and writes UTF-8 there. A stream that is closed takes everything and shows nothing.
+    """
+    codecs.register_error(_ERRORS, _stand_in)
+    codecs.unregister(_ascii_by_another_name)  # a second call registers nothing twice
+    codecs.register(_ascii_by_another_name)
+    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115 (open to the end)
+    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            is_ascii = codecs.lookup(stream.encoding).name == "ascii"
+            stream.reconfigure(encoding=_ASCII if is_ascii else None, errors=_ERRORS)
+
+
+def _spelled(character: str) -> str:
+    if character.isascii():
+        return character
+    if character in _SPELLED:
+        return _SPELLED[character]
+    name = unicodedata.name(character, "")
+    if name.startswith("GREEK"):
+        return name.rpartition(" ")[2].lower()
+    if name.startswith("BOX DRAWINGS"):
+        return "+" if " AND " in name else "|" if "VERTICAL" in name else "-"
+    letters = unicodedata.normalize("NFKD", character).encode("ascii", "ignore").decode()
+    return letters or "?"
+
+
+def _stand_in(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return plain(error.object[error.start : error.end]), error.end
+
+
+def _ascii_by_another_name(name: str) -> codecs.CodecInfo | None:
+    if name != _ASCII:
+        return None
+    ascii_ = codecs.lookup("ascii")
+    return codecs.CodecInfo(
+        ascii_.encode, ascii_.decode, ascii_.streamreader, ascii_.streamwriter,
+        ascii_.incrementalencoder, ascii_.incrementaldecoder, name=_ASCII,
+    )  # fmt: skip

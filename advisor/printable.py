@@ -1,0 +1,23 @@
+"""Text from outside that a terminal shows and never obeys."""
+
+
+def printable(text: str) -> str:
+    """Return the text on one line, without control characters and escape sequences.
+
+    Letters of every script stay. A break of line and a tab become a space. Half of a surrogate pair, as in
+    the name of a file in another encoding, becomes U+FFFD. Every other character without a shape is left out.
+
+    Parameters
+    ----------
+    text
+        A file's name, a vehicle's message, a string of a YAML file.
+    """
+    return text if text.isprintable() else "".join(map(_shown, text))
+
+
+def _shown(character: str) -> str:
+    if character.isprintable():
+        return character
+    if character.isspace():
+        return " "
+    return "\N{REPLACEMENT CHARACTER}" if "\ud800" <= character <= "\udfff" else ""

@@ -1,0 +1,37 @@
+"""Without a model in the aircraft file no simulator is tested, and nothing says that there is no gap."""
+
+from dataclasses import replace
+from io import StringIO
+
+import pytest
+from rich.console import Console
+
+from advisor.gap.document import gap_document
+from advisor.gap.result import Verdict
+from advisor.gap.verdict.untested import without_simulator
+from advisor.report.gap_screen import GapScreen
+from tests.gap.test_report_screen import diagnosis
+
+
+def test_a_flight_without_a_simulator_is_not_called_free_of_a_gap() -> None:
+    found = without_simulator(replace(diagnosis(), verdict="none", causes=()))
+    document = gap_document(found)
+    assert document["verdict"] is None
+    assert document["usable"] is True
+    assert "No simulator was given" in document["sentence"]
+    assert any("No simulator was given" in note for note in document["notes"])
+
+
+def test_the_screen_says_that_no_simulator_was_given() -> None:
+    console = Console(width=100, record=True, file=StringIO())
+    console.print(GapScreen(without_simulator(replace(diagnosis(), verdict="none", causes=()))))
+    shown = console.export_text()
+    assert "NO SIMULATOR GIVEN" in shown
+    assert "NO GAP" not in shown
+
+
+@pytest.mark.parametrize("verdict", ["effect", "unknown"])
+def test_what_the_flight_shows_by_itself_stands_with_a_note(verdict: Verdict) -> None:
+    found = without_simulator(replace(diagnosis(), verdict=verdict))
+    assert found.verdict == verdict
+    assert found.notes[0].startswith("No simulator was given")

@@ -1,0 +1,81 @@
+"""Ctrl-C ends the program in one sentence; a recording is whole whatever signal ends it."""
+
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from advisor.mavlink.tlog import read_tlog
+from tests.link.builders import free_port, wait_until
+from tests.terminal.processes import flight, start
+
+_STARTS_S = 0.15
+"""Until then the interpreter itself is being started, whose tracebacks no program can prevent, s."""
+_COMMANDS: dict[str, list[object]] = {
+    "analyze": ["analyze"],
+    "gap": ["gap", "--out", "/dev/null"],
+    "replay": ["replay"],
+    "study": ["study", "--campaigns", "2000"],
+    "demo": ["demo"],
+}
+
+
+@pytest.mark.parametrize("command", _COMMANDS)
+def test_ctrl_c_at_a_random_moment_ends_in_one_sentence(command: str) -> None:
+    arguments = _COMMANDS[command] + ([flight()] if command in ("analyze", "gap", "replay") else [])
+    for _ in range(3):
+        with start(*arguments) as process:
+            time.sleep(_STARTS_S + random.uniform(0.0, 2.0))
+            if process.poll() is not None:
+                continue
+            process.send_signal(signal.SIGINT)
+            _, err = process.communicate(timeout=20)
+        assert process.returncode in (130, 0), err  # 0: the command was about to end
+        if process.returncode == 130:
+            assert err == b"Stopped.\n"
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_leaves_a_whole_recording_and_says_where(
+    number: signal.Signals, code: int, tmp_path: Path
+) -> None:
+    port, recording = free_port(), tmp_path / "flight.tlog"
+    fly = [sys.executable, "-m", "sim", "fly", "--master", f"udpout:127.0.0.1:{port}"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    with (
+        start("live", "--master", f"udpin:127.0.0.1:{port}", "--record", recording) as live,
+        subprocess.Popen(fly, **quiet) as sim,
+    ):
+        try:
+            wait_until(lambda: recording.exists() and recording.stat().st_size > 5000, timeout_s=30.0)
+            live.send_signal(number)
+            _, err = live.communicate(timeout=20)
+        finally:
+            sim.kill()
+            live.kill()
+    assert live.returncode == code
+    assert err.decode().splitlines()[-1] == f"Stopped; the recording is {recording}."
+    assert b"Traceback" not in err
+    records = recording.read_bytes()
+    at = 0
+    while at < len(records):
+        at += 8 + 12 + records[at + 9]
+    assert at == len(records)
+    assert sum(len(columns) for batch in read_tlog(recording) for columns in batch) > 100
+
+
+def test_a_signal_that_the_shell_ignores_stays_ignored() -> None:
+    code = (
+        "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); from advisor.start import main; main()"
+    )
+    command = [sys.executable, "-c", code, "analyze", str(flight())]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert out
