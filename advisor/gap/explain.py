@@ -16,7 +16,7 @@ from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.fitting.uncertainty import file_is_off, worth
 from advisor.gap.records.floor import stated_floor
 from advisor.gap.result import VISIBLE
-from advisor.gap.search.air import Air, gust_instead, moving_air, one_stands_out
+from advisor.gap.search.air import Air, moving_air, one_stands_out
 from advisor.gap.search.command import (
     is_likelier_held,
     is_plainer,
@@ -158,8 +158,6 @@ def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage],
     nearly_white = np.all(worth(problem, last.innovations) >= 0.5 * counts(problem))
     if not problem.knows_the_noise and nearly_white and not one_stands_out(problem, last):
         return stages, None
-    if (gust := gust_instead(problem, stages)) is not None:
-        return reduced_to(problem, stages, []), gust
     air = moving_air(problem, last)
     if air is None:
         return stages, None

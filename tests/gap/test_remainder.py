@@ -29,7 +29,6 @@ from advisor.gap.unnamed.remainder import (
     only_resemble,
     remainder,
     removed_beyond_air,
-    widen,
 )
 from tests.gap.generator import Setup, fly
 
@@ -65,33 +64,6 @@ def test_an_effect_that_leaves_most_of_the_gap_is_not_the_cause_but_something_un
 
 def test_the_right_effect_leaves_nothing_to_ask_about(gyro):
     assert left_beside(gyro, "pitch_rate_scale") is None
-
-
-@pytest.mark.parametrize(("by", "wider"), [(0.5, False), (1.1, False), (1.5, True)])
-def test_names_that_make_the_gap_wider_than_the_model_without_or_the_file_are_no_cause(gyro, by, wider):
-    (plain, named), floor = named_beside(gyro, "pitch_rate_scale")
-    before, file_model = floor**2 * 11.0, replace(plain.held_out, mean_square=floor**2 * 21.0)
-    plain = replace(plain, held_out=replace(plain.held_out, mean_square=before))
-    named = replace(named, held_out=replace(named.held_out, mean_square=floor**2 * (1.0 + 10.0 * by)))
-    assert widen([plain, named], file_model, floor) == wider
-    as_filed = replace(file_model, mean_square=floor**2 * (1.0 + 10.0 * by / 1.5))
-    assert widen([plain, named], as_filed, floor)
-    assert not widen([plain], file_model, floor)
-
-
-def test_the_manoeuvre_that_a_gust_passed_in_does_not_tell_whether_names_make_the_gap_wider(gyro):
-    (plain, named), floor = named_beside(gyro, "pitch_rate_scale")
-
-    def leaves(stage, gaps):
-        by_maneuver = floor**2 * (1.0 + np.array(gaps))[:, None]
-        held = replace(stage.held_out, by_maneuver=by_maneuver, mean_square=np.mean(by_maneuver, axis=0))
-        return replace(stage, held_out=held)
-
-    others = len(plain.held_out.by_maneuver) - 1
-    stages = [leaves(plain, [100.0, *[10.0] * others]), leaves(named, [400.0, *[1.0] * others])]
-    assert widen(stages, None, floor)
-    assert not widen(stages, None, floor, gust=0)
-    assert widen(stages, None, floor, gust=1)
 
 
 def test_names_have_explained_all_there_is_where_they_leave_nothing_above_the_noise(gyro):

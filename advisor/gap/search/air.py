@@ -18,7 +18,6 @@ from advisor.gap.noise.probes import KNOTS_S, Course, disturbance_courses
 from advisor.gap.noise.quiet import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
 from advisor.gap.records.smoothness import robust_std
 from advisor.gap.search.merit import LEAST_BELIEF, Judged
-from advisor.gap.search.stage import Stage, added_in
 from advisor.oem.innovations import CHANNELS
 from advisor.oem.turbulence import Turbulence, find_turbulence
 
@@ -48,8 +47,6 @@ _LATE, _OF_AIR_LATE = "accelerometer_skew", 0.05
 meet the wing, and its lift takes time, which no model here knows."""
 _LATE_SIGMAS = 5.0
 """Standard deviations that they must be late by in moving air: those that are late by 9 ms have 13."""
-_SOFTER = 0.5
-"""What a gust leaves of the manoeuvre that it passed in, of what names leave there that only soften it."""
 _OF_GUST = 0.05
 """The same beside a gust: in its manoeuvre a bump of any shape passes for anything."""
 
@@ -147,35 +144,6 @@ def one_stands_out(problem: Problem, fitted: Fitted) -> bool:
 def _stands_out(powers: FloatArray) -> bool:
     """Whether the loudest of the manoeuvres' powers, shape (manoeuvres,), does so beside the median."""
     return bool(np.max(powers) > _STANDS_OUT * np.median(powers))
-
-
-def gust_instead(problem: Problem, stages: Sequence[Stage]) -> Air | None:
-    """A gust in one manoeuvre, where all that was named only softens what happened there; None otherwise.
-
-    It is by far the loudest with them, too, and the air explains it better than they do the others.
-    """
-    plain, last = stages[0].fitted, stages[-1].fitted
-    named = added_in(stages)
-    if not named or max(judged.belief for judged in named) >= LEAST_BELIEF:
-        return None
-    was, leaves = (np.mean(mean_squares(problem, f.left) / last.noise**2, axis=1) for f in (plain, last))
-    loudest = int(np.argmax(leaves))
-    if int(np.argmax(was)) != loudest or not _stands_out(leaves):
-        return None
-    air = moving_air(problem, plain)
-    if air is None or not air.gust or air.gust_number != problem.flights.flights[loudest].number:
-        return None
-    elsewhere = [i for i in range(len(problem.flights)) if i != loudest]
-    gained = sum(_squares(problem, plain, last, i) - _squares(problem, last, last, i) for i in elsewhere)
-    left = np.mean(mean_squares(problem, air.lefts) / last.noise**2, axis=1)
-    softer = left[loudest] < _SOFTER * leaves[loudest]
-    return air if softer and 0.5 * gained < air.gain else None
-
-
-def _squares(problem: Problem, fitted: Fitted, beside: Fitted, maneuver: int) -> float:
-    """Sum of a manoeuvre's squared innovations beside another fit's noise."""
-    left, rows = fitted.innovations[maneuver], problem.rows(problem.flights.flights[maneuver])
-    return float(sum(np.sum(left[r] ** 2) / s**2 for r, s in zip(rows, beside.noise, strict=True)))
 
 
 def _moving_in(problem: Problem, fitted: Fitted, maneuvers: Iterable[int]) -> Turbulence:

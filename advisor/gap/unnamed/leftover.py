@@ -127,8 +127,8 @@ def left_over(
     if not disturbed and np.max(louder) < _RESTLESS:
         return None
     plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
-    if faint and not plain and first is not last:
-        # What no block explains better than any other is the error of the named effects' model.
+    if faint and not plain and not moving_air and first is not last:
+        # What every block explains as little is the error of the named effects' model.
         return None
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))

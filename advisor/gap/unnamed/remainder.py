@@ -36,8 +36,6 @@ _BESIDE_IT = frozenset({"thrust_moment"})
 _LITTLE, _NEAR_THE_NOISE = 0.012, 2.0
 """Beside what any airframe has, thrust that misses the centre of gravity; the RMS that they must change of
 some channel's peak in some manoeuvre to be a cause, and the gap from which on they are one."""
-_WIDER = 1.2
-"""Gap with the names, over the one without, from which on they are no cause."""
 _BENT_BY_INPUT = frozenset({"moment_equation", "force_equation", "air"})
 """Where that seems to be: what an instrument does is told by other signs."""
 _BENDS = frozenset({"actuator_backlash", "actuator_deadband"})
@@ -104,26 +102,6 @@ def only_resemble(stages: Sequence[Stage]) -> bool:
         return False
     removed = removed_beyond_air(stages)
     return removed is not None and removed < _BESIDE_THE_AIR
-
-
-def widen(
-    stages: Sequence[Stage], file_model: HeldOut | None, floor: FloatArray, gust: int | None = None
-) -> bool:
-    """Whether names make the gap on manoeuvres kept out wider, the air's motion in it.
-
-    ``floor`` is the instruments' noise; ``gust`` the manoeuvre that one passed in, which none of the others
-    foretells. What the air's filter takes for a better model is none then. Of some 240 right answers in
-    moving air none makes it wider.
-    """
-    others = np.arange(len(stages[0].held_out.by_maneuver)) != (-1 if gust is None else gust)
-
-    def gap(held: HeldOut) -> float:
-        return whole_gap(
-            held.mean_square if gust is None else np.mean(held.by_maneuver[others], axis=0), floor
-        )
-
-    before = min(map(gap, [stages[0].held_out, *([] if file_model is None else [file_model])]))
-    return len(stages) > 1 and gap(stages[-1].held_out) > max(_WIDER * before, VISIBLE)
 
 
 def is_all_named(stages: Sequence[Stage], floor: FloatArray) -> bool:

@@ -33,7 +33,6 @@ from advisor.gap.unnamed.remainder import (
     only_numbers,
     only_resemble,
     remainder,
-    widen,
 )
 from advisor.gap.unnamed.slosh import sloshing
 from advisor.gap.unnamed.steps import stepping
@@ -71,14 +70,6 @@ class Scene:
         """The model with all names."""
         return self.stages[-1].fitted
 
-    @property
-    def gust_in(self) -> int | None:
-        """The manoeuvre that a gust passed in."""
-        if self.air is None or not self.air.gust:
-            return None
-        flights = self.problem.flights.flights
-        return next(i for i, flight in enumerate(flights) if flight.number == self.air.gust_number)
-
     def without_names(self) -> "Scene":
         """The plain model, and the air that it was flown in."""
         stages = reduced_to(self.problem, self.stages, [])
@@ -100,13 +91,7 @@ def without_a_name(scene: Scene) -> tuple[Leftover | None, Scene]:
     found = next((found for ask in IN_ANY_AIR if (found := ask(scene)) is not None), None)
     if found is not None:
         return found, scene
-    if scene.air is not None and (
-        only_resemble(scene.stages)
-        or widen(
-            scene.stages, scene.file_model, np.minimum(scene.floor, scene.air.instruments), scene.gust_in
-        )
-        or scene.bends_as_any
-    ):
+    if scene.air is not None and (only_resemble(scene.stages) or scene.bends_as_any):
         scene = scene.without_names()
         found = _disturbance(scene)
     if found is None and scene.air is not None:

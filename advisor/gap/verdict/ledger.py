@@ -9,9 +9,6 @@ from advisor.gap.search.stage import Stage
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.wrong_numbers import WrongNumbers
 
-_REFUSED = 3
-"""Likeliest effects of a stage that the ledger tells of though they were refused."""
-
 
 def decisions_of(e: Evidence, numbers: WrongNumbers) -> tuple[Decision, ...]:
     """What was asked of the names, the air, what has no name, and the aircraft file's numbers."""
@@ -34,9 +31,9 @@ def in_words(decision: Decision) -> str:
 
 
 def _of_stage(stage: Stage) -> list[Decision]:
-    """Why an effect was added, and what refused those that were likelier, or the likeliest of the rest."""
-    refused = [judged for judged in stage.considered if not judged.worth_naming]
-    told = [decision for judged in refused[:_REFUSED] for decision in _against(judged)]
+    """Why an effect was added, and what refused the others that bring any likelihood."""
+    refused = [judged for judged in stage.considered if judged.gain > 0.0 and not judged.worth_naming]
+    told = [decision for judged in refused for decision in _against(judged)]
     return [*told, *(() if stage.added is None else stage.added.decisions)]
 
 
