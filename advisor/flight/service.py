@@ -41,7 +41,7 @@ class Service:
 
     def __init__(self, judge: Judge) -> None:
         self._judge = judge
-        self._arrivals: dict[tuple[str, str], FloatArray] = {}
+        self._arrivals: dict[tuple[str, str], list[float]] = {}
         self._newest_s = -np.inf
         self._due_s = np.inf
         self._since_s: float | None = None
@@ -60,14 +60,19 @@ class Service:
 
     def take(self, channel: str, source: str, arrival_s: FloatArray) -> None:
         """Samples of a channel from one source arrived at these times, shape (n,)."""
-        before = self._arrivals.get((channel, source), np.empty(0))
-        self._arrivals[channel, source] = np.concatenate((before, arrival_s))
+        self._arrivals.setdefault((channel, source), []).extend(arrival_s.tolist())
 
     def advance(self, columns: Sequence[Columns]) -> list[FlightEvent]:
         """Judge every moment that these messages, whatever they carry, have passed."""
-        arrived = np.unique(np.concatenate([c.arrival_s for c in columns])) if columns else np.empty(0)
+        if not columns:
+            return []
+        newest_s = max(float(c.arrival_s[-1]) for c in columns)
+        if newest_s < min(self._due_s, self._newest_s + PAUSE_S):
+            # As nearly always: no moment of judgement has passed.
+            self._newest_s = max(self._newest_s, newest_s)
+            return []
         told: list[FlightEvent] = []
-        for now_s in arrived.tolist():
+        for now_s in np.unique(np.concatenate([c.arrival_s for c in columns])).tolist():
             if now_s > self._newest_s + PAUSE_S:
                 self._due_s = now_s + WINDOW_S
                 self._since_s = None
@@ -75,10 +80,14 @@ class Service:
                 told += self._look(self._due_s)
                 self._due_s += STEP_S
             self._newest_s = max(self._newest_s, now_s)
-        if len(arrived):
-            for key, times in self._arrivals.items():
-                self._arrivals[key] = times[times > self._newest_s - WINDOW_S - STEP_S]
+        self._forget()
         return told
+
+    def _forget(self) -> None:
+        """Let go of what no later moment of judgement reaches back to."""
+        oldest_s = self._newest_s - WINDOW_S - STEP_S
+        for times in self._arrivals.values():
+            del times[: next((i for i, t in enumerate(times) if t > oldest_s), len(times))]
 
     def _look(self, now_s: float) -> list[FlightEvent]:
         found = tuple(self._judge(self._lately(now_s), now_s))
@@ -99,8 +108,8 @@ class Service:
         """How every channel arrived within the window, from its fastest source."""
         found: dict[str, ChannelStatus] = {}
         for (channel, source), times in self._arrivals.items():
-            newest = times[(times > now_s - WINDOW_S) & (times <= now_s)]
+            newest = [t for t in times if now_s - WINDOW_S < t <= now_s]
             rate_hz = len(newest) / WINDOW_S
             if len(newest) and (channel not in found or rate_hz > found[channel].rate_hz):
-                found[channel] = ChannelStatus(source, "", rate_hz, WINDOW_S, float(newest[-1]))
+                found[channel] = ChannelStatus(source, "", rate_hz, WINDOW_S, newest[-1])
         return found

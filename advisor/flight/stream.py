@@ -195,7 +195,9 @@ class FlightStream:
         """What keeps a stream with these channels from being used, whatever was flown on it."""
         wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
         two = self._senders.problem(self._system, now_s) if self._system is not None else None
-        found = problems(self.vehicle, self.other_systems, self.elevator, channels, 1, {}, (), self.seen)
+        # What is wrong with the vehicle followed comes first; the faces offer the others by themselves.
+        others = self.other_systems if self.vehicle is None else ()
+        found = problems(self.vehicle, others, self.elevator, channels, 1, {}, (), self.seen)
         return [*(problem for problem in (two, wrong) if problem), *found]
 
     @property

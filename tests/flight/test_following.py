@@ -122,6 +122,17 @@ def test_two_vehicles_under_one_id_are_told_within_5_s_with_their_mend():
     assert stream.two_senders is not None
 
 
+def test_what_is_wrong_with_the_vehicle_followed_is_told_before_that_others_are_heard():
+    wire = Wire()
+    plane_parameters(wire, START_S - 0.1, system=1)
+    send(wire, START_S, START_S + 10.0, rate_hz=4.0, system=1)
+    send(wire, START_S, START_S + 10.0, system=2)
+    _, said, events, _ = followed(wire)
+    told = [event for event in events if isinstance(event, NoData)]
+    assert {problem.code for problem in told[0].problems} == {"rate"}
+    assert any("--target-system" in sentence for sentence in said)
+
+
 def test_a_reboot_and_late_packets_are_no_second_vehicle():
     wire, dice = Wire(), np.random.default_rng(1)
     plane_parameters(wire, START_S - 0.1)
