@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.doctor.asking import how_to_ask
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Belief, expect, frequency
 from advisor.doctor.instruments import (
@@ -24,6 +23,7 @@ from advisor.flight.stream import FlightStream
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus
+from advisor.flight.vehicle import Vehicle
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
@@ -82,20 +82,19 @@ class Examiner:
             for name, status in self._stream.channels.items()
             if name in paced or name != "elevator"
         }
-        autopilot = vehicle.autopilot if vehicle else ""
         found = problems(vehicle, self._stream.other_systems, self._stream.elevator, channels, 1, {})
         limits = [_stopping(problem) for problem in found if problem.code != "rate"]
         speed = self._airspeed(paced)
         complete = {"elevator", "q"} <= paced.keys() and (
             "alpha" in paced or ("a_z" in paced and speed is not None)
         )
-        if complete:
-            limits += rate_limits(paced, belief, autopilot, speed)
+        if vehicle is not None and complete:
+            limits += rate_limits(paced, belief, vehicle.mends, speed)
         period_s = 2.0 * np.pi / frequency(belief.model)
         limits += steadiness_limits(arrivals, {p.message for p in paced.values()}, period_s)
         if vehicle is not None and complete:
-            limits += self._speed_limits(paced, belief, autopilot, speed)
-            limits += alpha_limits(self._stream.channels["alpha"], autopilot) if "alpha" in paced else []
+            limits += self._speed_limits(paced, belief, vehicle, speed)
+            limits += alpha_limits(self._stream.channels["alpha"], vehicle) if "alpha" in paced else []
         elevator = self._elevator()
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
         limits += clock_limits(clocks) if clocks else []
@@ -176,17 +175,17 @@ class Examiner:
         return AlphaFound(source, status.provenance, paced["alpha"].renewed_hz)
 
     def _speed_limits(
-        self, paced: dict[str, Paced], belief: Belief, autopilot: str, speed: float | None
+        self, paced: dict[str, Paced], belief: Belief, vehicle: Vehicle, speed: float | None
     ) -> list[Limit]:
         """Without air speed or specific force some errors are larger."""
         if speed is None:
             text = "No air speed arrives: derivatives cannot be referred to one speed, nor a_z be used"
-            fix = how_to_ask("VFR_HUD", autopilot) + "; or give airspeed_m_s in the aircraft file"
+            fix = vehicle.mends.faster("VFR_HUD") + "; or give airspeed_m_s in the aircraft file"
             cost = cost_of_missing("a_z", paced, belief, None)
             return [Limit("no_airspeed", text, fix, std_ratio=cost)]
         if "a_z" not in paced:
             text = "No specific force arrives (RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU)"
-            fix = how_to_ask("HIGHRES_IMU" if autopilot == "px4" else "RAW_IMU", autopilot)
+            fix = vehicle.mends.faster("RAW_IMU")
             cost = cost_of_missing("a_z", paced, belief, speed)
             return [Limit("no_accelerometer", text, fix, std_ratio=cost)]
         return []

@@ -4,11 +4,11 @@ from collections.abc import Collection
 
 from advisor.aircraft import Elevator
 from advisor.beside import beside
-from advisor.doctor.asking import how_to_ask
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.survey import Clocks
 from advisor.flight.surfaces import joined_numbers
 from advisor.flight.track import ChannelStatus
+from advisor.flight.vehicle import Vehicle
 
 COARSE_DEG = 0.5
 """Resolution of the command beyond which small steps are no longer steps."""
@@ -20,7 +20,7 @@ STRAYED_SHARE = 0.01
 _A_VANE = "fit a vane that sends NAMED_VALUE_FLOAT (alpha.source: named_value:NAME)"
 
 
-def alpha_limits(alpha: ChannelStatus, autopilot: str) -> list[Limit]:
+def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
     """What it means that the angle of attack is no vane's."""
     if alpha.provenance != "derived":
         return []
@@ -28,8 +28,11 @@ def alpha_limits(alpha: ChannelStatus, autopilot: str) -> list[Limit]:
         text = "AOA_SSA is the autopilot's own estimate, not a vane: late, and blind to gusts"
         return [Limit("alpha_derived", text, f"fly in calm air, or {_A_VANE}")]
     text = "Angle of attack is derived from pitch, climb rate and air speed: late, and blind to gusts"
-    better = f"ask for AOA_SSA over MAVLink 2: {how_to_ask('AOA_SSA', autopilot)}; or "
-    return [Limit("alpha_derived", text, (better if autopilot == "ardupilot" else "") + _A_VANE)]
+    better = ""
+    if vehicle.autopilot == "ardupilot":
+        over = " over MAVLink 2" if vehicle.record == "telemetry" else ""
+        better = f"ask for {vehicle.mends.called('AOA_SSA')}{over}: {vehicle.mends.faster('AOA_SSA')}; or "
+    return [Limit("alpha_derived", text, better + _A_VANE)]
 
 
 def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.beside import beside
-from advisor.doctor.asking import GOOD_HZ, how_to_ask
 from advisor.doctor.examination import Limit
 from advisor.doctor.expectation import Belief, Expectation, expect, frequency
 from advisor.doctor.survey import Arrival
 from advisor.flight.suitability import SLOWEST_HZ
+from advisor.mends import GOOD_HZ, Mends
 
 FEWEST_PER_PERIOD = 6.0
 """Samples to one natural period below which the short period cannot be followed."""
@@ -37,7 +37,7 @@ class Paced:
 
 
 def rate_limits(
-    paced: Mapping[str, Paced], belief: Belief, autopilot: str, airspeed_m_s: float | None
+    paced: Mapping[str, Paced], belief: Belief, mends: Mends, airspeed_m_s: float | None
 ) -> list[Limit]:
     """Limits for every channel that is slow for this aircraft.
 
@@ -60,14 +60,14 @@ def rate_limits(
             continue
         alone = expect(belief, {**good, name: channel.renewed_hz}, airspeed_m_s)
         repeats = channel.rate_hz >= enough_hz
-        arrives = f"{channel.message} arrives at {channel.rate_hz:.1f} Hz"
+        arrives = f"{mends.called(channel.message)} arrives at {channel.rate_hz:.1f} Hz"
         if repeats:
             arrives += f" but is renewed at {channel.renewed_hz:.1f} Hz"
         limits.append(
             Limit(
                 "renewal" if repeats else "rate",
                 f"{arrives}: {_samples(channel.renewed_hz, fewest_hz, enough_hz, _PLAIN[name], period_s)}",
-                _staircase(channel) if repeats else how_to_ask(channel.message, autopilot),
+                _staircase(channel) if repeats else mends.faster(channel.message),
                 stops=channel.renewed_hz < fewest_hz and not (name == "alpha" and stands_in),
                 std_ratio=_ratio(alone, best),
             )

@@ -15,22 +15,13 @@ from advisor.beside import beside
 from advisor.flight.surfaces import Surface, joined_numbers
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
+from advisor.mends import GOOD_HZ
 from advisor.problems import Problem
 
 SLOWEST_HZ = 8.0
 """Least rate of elevator, pitch rate and angle of attack, whatever the aircraft."""
-_ASK_HZ = 50
 _MOTION = ("a_z", "airspeed", "theta")
 """Channels that stand in for an angle of attack, besides the pitch rate."""
-
-# Stream groups of ArduPilot, which hold a message's rate: SRn_<group>, since 4.7 MAVn_<group>.
-_GROUPS = {
-    "ATTITUDE": "EXTRA1",
-    "AOA_SSA": "EXTRA1",
-    "VFR_HUD": "EXTRA2",
-    "SERVO_OUTPUT_RAW": "RC_CHAN",
-    "RAW_IMU": "RAW_SENS",
-}
 
 
 def problems(
@@ -120,18 +111,21 @@ def _no_vehicle(other_systems: Collection[int]) -> Problem:
 def _missing(
     elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
 ) -> list[Problem]:
+    mends = vehicle.mends
     found = [elevator] if isinstance(elevator, Problem) else []
     if "q" not in channels:
         # Its stamps are the vehicle's clock: without it no other channel can be placed either.
-        text = "There is no pitch rate: no ATTITUDE arrived."
-        return [*found, Problem("no_pitch_rate", text, f"Ask for ATTITUDE: {_ask('ATTITUDE', vehicle)}.")]
+        text = f"There is no pitch rate: no {mends.called('ATTITUDE')} arrived."
+        return [*found, Problem("no_pitch_rate", text, _sentence(mends.present(["ATTITUDE"])))]
     if isinstance(elevator, Surface) and "elevator" not in channels:
         outputs = joined_numbers(elevator.outputs)
         found.append(
             Problem(
                 "no_elevator",
-                f"Servo output {outputs}, the elevator, never carried a pulse (SERVO_OUTPUT_RAW).",
-                "Ask for SERVO_OUTPUT_RAW (--request-rates), or set elevator.output in the aircraft file.",
+                f"Servo output {outputs}, the elevator, never carried a pulse "
+                f"({mends.called('SERVO_OUTPUT_RAW')}).",
+                f"{_sentence(mends.present(['SERVO_OUTPUT_RAW']), '')}, "
+                "or set elevator.output in the aircraft file.",
             )
         )
     if "alpha" not in channels and not motion_stands_in(channels):
@@ -140,8 +134,8 @@ def _missing(
             Problem(
                 "no_alpha",
                 f"There is no angle of attack, and the motion cannot stand in for it: no {absent} arrived.",
-                "Ask for RAW_IMU and VFR_HUD (--request-rates), or for AOA_SSA; "
-                "a vane may send NAMED_VALUE_FLOAT (alpha.source).",
+                f"{_sentence(mends.present(['RAW_IMU', 'VFR_HUD']), '')}; "
+                f"a vane may send {mends.called('NAMED_VALUE_FLOAT')} (alpha.source).",
             )
         )
     return found
@@ -158,12 +152,13 @@ def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[P
     names = ("elevator", "q") if motion_stands_in(channels) else ("elevator", "q", "alpha")
     needed = [channels[name] for name in names if name in channels]
     slow = {_message(status): status.rate_hz for status in needed if not status.rate_hz >= SLOWEST_HZ}
+    mends = vehicle.mends
     return [
         Problem(
             "rate",
-            f"{message} arrives {_at(rate_hz)}, too slow to identify a short period "
-            f"(at least {SLOWEST_HZ:g} Hz, better {_ASK_HZ} Hz).",
-            f"Ask for {_ASK_HZ} Hz: {_ask(message, vehicle)}.",
+            f"{mends.called(message)} arrives {_at(rate_hz)}, too slow to identify a short period "
+            f"(at least {SLOWEST_HZ:g} Hz, better {GOOD_HZ} Hz).",
+            _sentence(mends.faster(message)),
         )
         for message, rate_hz in slow.items()
     ]
@@ -178,9 +173,6 @@ def _message(status: ChannelStatus) -> str:
     return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
 
 
-def _ask(message: str, vehicle: Vehicle) -> str:
-    group = _GROUPS.get(message)
-    if vehicle.autopilot == "ardupilot" and group:
-        parameters = f"SR0_{group} (MAV1_{group} in newer firmware)"
-        return f"set {parameters} to {_ASK_HZ}, or run live with --request-rates"
-    return f"set its rate on the vehicle to {_ASK_HZ} Hz, or run live with --request-rates"
+def _sentence(clause: str, stop: str = ".") -> str:
+    """A clause with a capital at its beginning and a full stop, or nothing, at its end."""
+    return clause[:1].upper() + clause[1:] + stop

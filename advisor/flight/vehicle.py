@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from advisor.flight.messages import Columns
+from advisor.mends import Mends, Record, mends_of
 
 # Numbers of MAV_AUTOPILOT and MAV_TYPE, MAVLink common.xml.
 _AUTOPILOT_INVALID = 8
@@ -37,6 +38,8 @@ class Vehicle:
     """MAV_TYPE of its heartbeat."""
     firmware: str | None = None
     """Version as the vehicle states it; None until it does."""
+    record: Record = "telemetry"
+    """What holds its messages: telemetry, or its own log."""
 
     def __str__(self) -> str:
         return f"{self.autopilot} {self.system}/{self.component}"
@@ -45,6 +48,11 @@ class Vehicle:
     def is_multicopter(self) -> bool:
         """Whether rotors alone steer the vehicle."""
         return self.type in _MULTICOPTERS
+
+    @property
+    def mends(self) -> Mends:
+        """What can be done about messages that are missing or slow, in the words of this autopilot."""
+        return mends_of(self.autopilot, self.record)
 
     def with_firmware(self, firmware: str) -> "Vehicle":
         """The same vehicle, its version known."""
@@ -79,7 +87,7 @@ class VehicleFinder:
             return False
         if self.vehicle is None and self._target in (None, heartbeat.system):
             name = _AUTOPILOTS.get(autopilot, f"autopilot {autopilot}")
-            self.vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind)
+            self.vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind, record=heartbeat.record)
             self.others.discard(heartbeat.system)
             return True
         if self.vehicle is None or heartbeat.system != self.vehicle.system:

@@ -1,6 +1,7 @@
 """What an ArduPilot log says, as the messages its telemetry would have carried."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +67,9 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
     names = None if wanted is None else set(wanted)
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
         columns = list(_Translation(tables).columns())
-    columns = [c for c in columns if len(c) and (names is None or c.name in names)]
+    columns = [
+        replace(c, record="dataflash") for c in columns if len(c) and (names is None or c.name in names)
+    ]
     if columns:
         yield columns
 

@@ -3,6 +3,7 @@
 import contextlib
 import sys
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,7 @@ def read_ulog(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[
     if not {c.name for c in columns} & {"ATTITUDE", "HIGHRES_IMU", "SERVO_OUTPUT_RAW"}:
         raise _nothing_in(path)
     names = None if wanted is None else set(wanted)
-    yield [c for c in columns if names is None or c.name in names]
+    yield [replace(c, record="ulog") for c in columns if names is None or c.name in names]
 
 
 def _nothing_in(path: Path) -> UnusableInputError:
