@@ -33,9 +33,9 @@ class ElevatorFound:
 
     outputs: tuple[int, ...]
     resolution_deg: float
-    """Deflection of the smallest step that SERVO_OUTPUT_RAW can express: 1 us of one output."""
+    """Deflection of the smallest step that an output can express: 1 us of one output."""
     calibrated: bool
-    """False: scaled by SERVOn_MIN/TRIM/MAX and assumed full strokes."""
+    """False: scaled by the limits in the parameters and assumed full strokes."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,11 @@ from advisor.aircraft import Elevator
 from advisor.flight.elevator_outputs import find_elevator
 from advisor.flight.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.messages import Columns
-from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_surface
-from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
+from advisor.flight.modes import in_hover, mode_name
+from advisor.flight.parameters import Parameters
+from advisor.flight.surfaces import Surface
+from advisor.flight.vehicle import Vehicle, VehicleFinder
+from advisor.flight.wiring import AILERON, RUDDER
 from advisor.problems import Problem
 
 _BUNDLED = b"Bundled aircraft"
@@ -18,6 +21,8 @@ READER = b"Log reader: "
 
 SENSOR_NOTICE = "sensor"
 """Code of the notice that says which of several like sensors flew."""
+_ON_ROTORS = (1, 2, 3)
+"""MAV_VTOL_STATE: transition to forward flight, transition to hover, hover; 4 is forward flight."""
 _GROUND_STATION = 190
 """Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
 
@@ -37,13 +42,13 @@ class Identity:
         self._elevator = elevator
         self._finder = VehicleFinder(target_system)
         self._firmware: dict[int, str] = {}
-        self._parameters: dict[tuple[int, int], dict[str, float]] = {}
+        self._parameters = Parameters()
         self._said = ""
-        self.mode = ""
-        """Flight mode of the newest heartbeat."""
+        self._mode = ""
+        self._hovers = False
         self.simulated = False
         """The bundled aircraft has introduced itself: its vane is simulated."""
-        self.elevator: Surface | Problem = find_elevator(elevator, {})
+        self.elevator: Surface | Problem = find_elevator(elevator, self._parameters.wiring((), ""))
         """The elevator's outputs and scale, or why there is none."""
         self.surfaces: dict[str, Surface] = {}
         """Elevator, aileron and rudder, as far as they are known."""
@@ -55,6 +60,11 @@ class Identity:
         if vehicle is not None and vehicle.system in self._firmware:
             return vehicle.with_firmware(self._firmware[vehicle.system])
         return vehicle
+
+    @property
+    def mode(self) -> str:
+        """Flight mode of the newest heartbeat, and whether rotors carry a VTOL aircraft."""
+        return in_hover(self._mode) if self._hovers and self._mode else self._mode
 
     @property
     def other_systems(self) -> frozenset[int]:
@@ -80,6 +90,8 @@ class Identity:
                 events += self._heartbeat(columns)
             elif columns.name == "PARAM_VALUE":
                 events += self._parameter(columns)
+            elif columns.name == "EXTENDED_SYS_STATE":
+                self._flies_on(columns)
             elif columns.name == "AUTOPILOT_VERSION":
                 self._version(columns)
             elif columns.name == "STATUSTEXT":
@@ -102,19 +114,12 @@ class Identity:
             )
         vehicle = self._finder.vehicle
         if vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
-            self.mode = mode_name(vehicle, int(columns.fields["custom_mode"][0]))
+            custom = int(columns.fields["custom_mode"][0])
+            self._mode = mode_name(vehicle.autopilot, vehicle.type, custom)
         return events
 
     def _parameter(self, columns: Columns) -> list[FlightEvent]:
-        known = self._parameters.setdefault((columns.system, columns.component), {})
-        changed = False
-        for raw, value in zip(
-            columns.fields["param_id"].tolist(), columns.fields["param_value"], strict=True
-        ):
-            name = raw.rstrip(b"\0").decode("ascii", "replace")
-            if name.startswith("SERVO") and known.get(name) != float(value):
-                known[name] = float(value)
-                changed = True
+        changed = self._parameters.hear(columns)
         vehicle = self._finder.vehicle
         if changed and vehicle and (columns.system, columns.component) in _speakers(vehicle):
             return self._settle_surfaces()
@@ -123,14 +128,12 @@ class Identity:
     def _settle_surfaces(self) -> list[FlightEvent]:
         vehicle = self._finder.vehicle
         assert vehicle is not None
-        parameters: dict[str, float] = {}
-        for speaker in _speakers(vehicle):
-            parameters |= self._parameters.get(speaker, {})
-        self.elevator = find_elevator(self._elevator, parameters)
+        wiring = self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
+        self.elevator = find_elevator(self._elevator, wiring)
         found = {
             "elevator": self.elevator,
-            "aileron": find_surface(AILERON, parameters),
-            "rudder": find_surface(RUDDER, parameters),
+            "aileron": wiring.surface(AILERON),
+            "rudder": wiring.surface(RUDDER),
         }
         self.surfaces = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
         said = self.elevator.said if isinstance(self.elevator, Surface) else ""
@@ -138,6 +141,11 @@ class Identity:
             return []
         self._said = said
         return [Notice("elevator_scale", said)]
+
+    def _flies_on(self, columns: Columns) -> None:
+        vehicle = self._finder.vehicle
+        if vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
+            self._hovers = int(columns.fields["vtol_state"][0]) in _ON_ROTORS
 
     def _version(self, columns: Columns) -> None:
         packed = int(columns.fields["flight_sw_version"][0])

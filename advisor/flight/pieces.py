@@ -7,9 +7,13 @@ from itertools import pairwise
 import numpy as np
 
 from advisor.flight.messages import Columns
+from advisor.flight.parameters import names_in, tells_of_outputs
 
 _EVERY = 100_000
 """Longest piece in arrival orders (bytes of a log), so that memory stays bounded whatever the batch."""
+
+_STATES = {"HEARTBEAT": "custom_mode", "EXTENDED_SYS_STATE": "vtol_state"}
+"""Messages that repeat a state, and the field of the state."""
 
 
 def pieces(columns: Sequence[Columns]) -> Iterator[list[Columns]]:
@@ -40,13 +44,13 @@ def between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
 
 
 def _turning_points(c: Columns) -> list[int]:
-    if c.name == "HEARTBEAT":
-        mode = np.asarray(c.fields["custom_mode"], dtype=np.int64)
-        changed = np.concatenate(([True], mode[1:] != mode[:-1]))
+    if c.name in _STATES:
+        state = np.asarray(c.fields[_STATES[c.name]], dtype=np.int64)
+        changed = np.concatenate(([True], state[1:] != state[:-1]))
         return [int(n) for n in c.order[changed]]
     if c.name == "PARAM_VALUE":
-        servo = [raw.startswith(b"SERVO") for raw in c.fields["param_id"].tolist()]
-        return [int(n) for n in c.order[np.array(servo, dtype=bool)]]
+        telling = [tells_of_outputs(name) for name in names_in(c)]
+        return [int(n) for n in c.order[np.array(telling, dtype=bool)]]
     if c.name in ("STATUSTEXT", "AUTOPILOT_VERSION"):
         return [int(n) for n in c.order]
     return []

@@ -14,13 +14,7 @@ from advisor.aircraft import Aircraft
 from advisor.flight.attitude import Attitudes
 from advisor.flight.banks import Banks, merged
 from advisor.flight.boots import Master, by_boot
-from advisor.flight.channels import (
-    Decoded,
-    derived_alpha,
-    named_value,
-    quantities,
-    stamps,
-)
+from advisor.flight.channels import Decoded, named_value, quantities, stamps
 from advisor.flight.clocks import BootClock
 from advisor.flight.commanded import Commanded, commanded
 from advisor.flight.cutting import Cutting
@@ -38,14 +32,16 @@ from advisor.flight.markers import HEARD, MarkerWatch
 from advisor.flight.marks import Due, Mark, Marks
 from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.mixing import Mixing
+from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.pieces import pieces
 from advisor.flight.record import Channel
 from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.sense import SAID
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
-from advisor.flight.track import ChannelStatus, Tracks
-from advisor.flight.vehicle import Vehicle, closes_pitch_loop
+from advisor.flight.track import ChannelStatus
+from advisor.flight.tracks import Tracks
+from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
 
 KEEP_S = 120.0
@@ -75,7 +71,7 @@ class FlightStream:
         self._who = Identity(aircraft.elevator, target_system)
         self._attitudes = Attitudes()
         self._clock = BootClock()
-        self._tracks = Tracks(aircraft.alpha.source)
+        self._tracks = Tracks(aircraft.alpha.source, aircraft.airspeed_m_s)
         self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.is_calibrated)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
@@ -100,7 +96,6 @@ class FlightStream:
         self._first_s = np.nan
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
-        self._attitude = np.full((1, 2), np.nan)
 
     @property
     def vehicle(self) -> Vehicle | None:
@@ -251,7 +246,6 @@ class FlightStream:
         self._tracks.forget(max(self._watch.newest_s, self._master_s) - KEEP_S)
         orders = np.concatenate(([-1], master.order))
         clock = np.concatenate(([self._master_s], master.t))
-        attitude = _last_finite(np.concatenate((self._attitude, master.attitude)))
         elevator: list[Commanded] = []
         for columns in merged(part):
             now = np.searchsorted(orders, columns.order, side="right") - 1
@@ -262,7 +256,7 @@ class FlightStream:
             t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
-            for new in self._decode(columns, t, attitude[now]):
+            for new in self._decode(columns, t):
                 self._tracks.append(new)
             if columns.name in _OUTPUTS:
                 pulses = self._banks.together(columns)
@@ -274,14 +268,12 @@ class FlightStream:
         if np.isnan(self._first_s) and len(master.t):
             self._first_s = float(master.t[0])
             self.marks.start_clock(self._first_s)
-        self._master_s, self._attitude = float(clock[-1]), attitude[-1:]
+        self._master_s = float(clock[-1])
         return self._feed_elevator(elevator)
 
-    def _decode(self, columns: Columns, t: FloatArray, attitude: FloatArray) -> Iterator[Decoded]:
+    def _decode(self, columns: Columns, t: FloatArray) -> Iterator[Decoded]:
         yield from quantities(columns, t)
-        if columns.name == "VFR_HUD":
-            yield derived_alpha(columns, t, attitude, self._aircraft.airspeed_m_s)
-        elif columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
+        if columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
             yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))
 
     def _feed_elevator(self, moved: Sequence[Commanded]) -> list[FlightEvent]:
@@ -332,9 +324,3 @@ class FlightStream:
         if any(isinstance(event, ManeuverFlown) for event in events):
             self._note_rates()
         return events
-
-
-def _last_finite(values: FloatArray) -> FloatArray:
-    """Each row, or where it has a NaN the last one before it that has none."""
-    index = np.where(np.all(np.isfinite(values), axis=1), np.arange(len(values)), 0)
-    return values[np.maximum.accumulate(index)]

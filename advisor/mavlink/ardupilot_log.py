@@ -11,7 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from advisor.flight.identity import READER
 from advisor.flight.messages import Columns
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
-from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message, system_id
+from advisor.mavlink.equivalent import (
+    MAV_PARAM_TYPE_REAL32,
+    MAV_TYPE_FIXED_WING,
+    message,
+    side_by_side,
+    system_id,
+)
 from advisor.mavlink.sensors import flown, said
 from advisor.problems import UnusableInputError
 
@@ -179,24 +185,28 @@ class _Translation:
         return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
     def _vfr_hud(self, air: Table) -> Columns:
-        fields: dict[str, ArrayLike] = {
-            "airspeed": air.fields["Airspeed" if "Airspeed" in air.fields else "As"],
-            "throttle": self._known(air, "CTUN", ("ThO", "ThrOut")),
-            "alt": self._known(air, "POS", ("RelHomeAlt",)),
-        }
-        climb = -self._known(air, "XKF1", ("VD",))
-        fields["climb"] = np.where(np.isnan(climb), self._known(air, "BARO", ("CRt",)), climb)
-        return self._message("VFR_HUD", air, fields, place=1)
+        """Air speed, climb rate and throttle, each at the stamps of its own record."""
+        name = "Airspeed" if "Airspeed" in air.fields else "As"
+        rows = [{**_place(air), "airspeed": air.fields[name].astype(np.float64)}]
+        climb = self._field("XKF1", ("VD",), -1.0) or self._field("BARO", ("CRt",))
+        for field, found in (("climb", climb), ("throttle", self._field("CTUN", ("ThO", "ThrOut")))):
+            if found is not None:
+                table, values = found
+                # A second place in the order, for the air speed of CTUN takes the first.
+                rows.append({**_place(table, 2 if field == "throttle" else 1), field: values})
+        fields: dict[str, ArrayLike] = dict(side_by_side(*rows))
+        order, time_us = np.asarray(fields.pop("order")), np.asarray(fields["time_usec"])
+        return message("VFR_HUD", self._system, order, self._base_s + seconds(time_us), fields)
 
-    def _known(self, at: Table, record: str, names: tuple[str, ...]) -> NDArray[np.float64]:
-        """The newest value of a field in another record, NaN where there is none."""
-        table = self._tables.get(record)
-        if table is not None:
-            table = table.first_instance()
-            for name in names:
-                if name in table.fields:
-                    return latest(at.order, table.order, table.fields[name])
-        return np.full(len(at), np.nan)
+    def _field(
+        self, record: str, names: tuple[str, ...], factor: float = 1.0
+    ) -> tuple[Table, NDArray[np.float64]] | None:
+        """A record's first instance and the first of these fields that it has, None without any."""
+        if record not in self._tables:
+            return None
+        table = self._tables[record].first_instance()
+        name = next((name for name in names if name in table.fields), None)
+        return None if name is None else (table, factor * table.fields[name].astype(np.float64))
 
     def _global_position_int(self, pos: Table) -> Columns:
         fields: dict[str, ArrayLike] = {
@@ -275,6 +285,11 @@ class _Translation:
                 if text.startswith(title.encode()):
                     return kind
         return MAV_TYPE_FIXED_WING
+
+
+def _place(table: Table, place: int = 1) -> dict[str, NDArray[Any]]:
+    """Where records stand in the order of arrival, and their stamps."""
+    return {"order": table.order + place, "time_usec": table.time_us}
 
 
 def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -66,6 +66,7 @@ WIND 168: float direction, float speed, float speed_z
 WIND_COV 231: uint64 time_usec, float wind_x, float wind_y, float wind_z, float var_horiz, float var_vert,
     float wind_alt, float horiz_accuracy, float vert_accuracy
 MESSAGE_INTERVAL 244: uint16 message_id, int32 interval_us
+EXTENDED_SYS_STATE 245: uint8 vtol_state, uint8 landed_state
 NAMED_VALUE_FLOAT 251: uint32 time_boot_ms, char[10] name, float value
 STATUSTEXT 253: uint8 severity, char[50] text + uint16 id, uint8 chunk_seq
 AIRSPEED 295: uint8 id, float airspeed, int16 temperature, float raw_press, uint8 flags

@@ -36,7 +36,7 @@ def message(
     fields : mapping
         Field name to shape (n,), or a scalar for all, in the units of the definition. Integers
         are cut to the size of the field, as a vehicle's counters wrap; texts and floating-point
-        values are kept as they are.
+        values are kept as they are, and so are fields that the definition lacks (a stamp).
     """
     n = len(order)
     layout = DEFINITIONS[name].layout
@@ -52,7 +52,26 @@ def message(
         if wire.base.kind in "iu" and values.dtype.kind != "f":
             values = values.astype(wire.base)
         columns[field] = np.broadcast_to(values, (n, *wire.shape))[rows]
+    for field in fields.keys() - columns.keys():
+        columns[field] = np.asarray(fields[field])[rows]
     return Columns(name, system, AUTOPILOT_COMPONENT, order[rows], arrival_s[rows], columns)
+
+
+def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Fields of several records, each in rows of its own: what a record does not hold is NaN in its rows.
+
+    Parameters
+    ----------
+    records
+        Field name to shape (n_k,) of record k. Every record holds the stamps.
+    """
+    rows = [len(next(iter(record.values()))) for record in records]
+    return {
+        name: np.concatenate(
+            [record.get(name, np.full(n, np.nan)) for record, n in zip(records, rows, strict=True)]
+        )
+        for name in dict.fromkeys(name for record in records for name in record)
+    }
 
 
 def system_id(parameter: object) -> int:

@@ -11,7 +11,9 @@ import numpy as np
 
 from advisor.flight.messages import Columns
 from advisor.mavlink.equivalent import message, system_id
-from advisor.mavlink.px4_log import TOPICS, translate, unix_time_base_s
+from advisor.mavlink.px4_log import translate
+from advisor.mavlink.px4_topics import TOPICS, topics_of
+from advisor.mavlink.px4_vehicle import unix_time_base_s
 from advisor.problems import UnusableInputError
 
 MAGIC = b"ULog\x01\x12\x35"
@@ -57,12 +59,13 @@ def _nothing_in(path: Path) -> UnusableInputError:
 
 def _columns(log: Any) -> list[Columns]:
     """Every message the topics give, numbered by time."""
-    messages = translate(log)
+    topics = topics_of(log)
+    messages = translate(log, topics)
     time_us = np.concatenate([m.time_us for m in messages])
     order = np.empty(len(time_us), dtype=np.int64)
     order[np.argsort(time_us, kind="stable")] = np.arange(len(time_us))
     orders = np.split(order, np.cumsum([len(m.time_us) for m in messages])[:-1])
-    base_s = unix_time_base_s(log)
+    base_s = unix_time_base_s(topics)
     system = system_id(log.initial_parameters.get("MAV_SYS_ID"))
     return [
         message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields)
