@@ -38,7 +38,6 @@ def ardupilot_wiring(parameters: Parameters) -> Wiring:
     default = Scale()
     return Wiring(
         WORDS,
-        default,
         {n: _ROLES.get(int(function), Role("")) for n, function in functions.items()},
         {
             n: Scale(

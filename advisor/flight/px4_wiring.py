@@ -93,14 +93,12 @@ def carriers(parameters: Parameters) -> list[Carrier]:
 
 def px4_wiring(parameters: Parameters) -> Wiring:
     """The outputs by the surfaces that they carry, else by what a reader of logs has found."""
-    default = GROUPS["PWM_MAIN"]
     surfaces = dict(_surfaces(parameters))
     if not surfaces:
-        return _followers(parameters, default)
+        return _followers(parameters)
     carried = [carrier for carrier in carriers(parameters) if carrier.servo in surfaces]
     return Wiring(
         WORDS,
-        default,
         {carrier.number: surfaces[carrier.servo] for carrier in carried},
         {carrier.number: _turned(carrier, parameters) for carrier in carried},
         frozenset(carrier.number for carrier in carried if _effect(carrier.servo, parameters)),
@@ -141,7 +139,7 @@ def _scale(group: str, k: int, parameters: Parameters) -> Scale:
     return Scale(ends[0], trim, ends[1], bool(int(parameters.get(f"{group}_REV", 0.0)) >> (k - 1) & 1))
 
 
-def _followers(parameters: Parameters, default: Scale) -> Wiring:
+def _followers(parameters: Parameters) -> Wiring:
     numbered = ((n, parameters.get(f"{FOLLOWS_PITCH}{n}")) for n in range(1, 49))
     senses = {n: sense for n, sense in numbered if sense is not None}
     assumed = ""
@@ -151,9 +149,8 @@ def _followers(parameters: Parameters, default: Scale) -> Wiring:
         assumed = "the pitch command, which stands for it"
     return Wiring(
         WORDS,
-        default,
         dict.fromkeys(senses, ELEVATOR),
-        {n: replace(default, reversed=sense < 0.0) for n, sense in senses.items()},
+        {n: replace(GROUPS["PWM_MAIN"], reversed=sense < 0.0) for n, sense in senses.items()},
         frozenset(senses),
         assumed,
     )

@@ -49,8 +49,6 @@ class Wiring:
     """The outputs, as far as they are known."""
 
     words: Words
-    default: Scale
-    """Of outputs whose parameters are unknown."""
     roles: Mapping[int, Role] = field(default_factory=dict)
     """Outputs 1.. whose function is known; those that move no surface have a role without a name."""
     scales: Mapping[int, Scale] = field(default_factory=dict)
@@ -60,8 +58,8 @@ class Wiring:
     """What of the roles is a guess, in a sentence."""
 
     def scale(self, n: int) -> Scale:
-        """Scale of output ``n``."""
-        return self.scales.get(n, self.default)
+        """Scale of output ``n``; where no parameter tells, that of ArduPilot's defaults."""
+        return self.scales.get(n, Scale())
 
     def outputs_of(self, role: Role) -> list[int]:
         """Outputs that have this role, rising."""

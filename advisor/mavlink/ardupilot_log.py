@@ -14,8 +14,8 @@ from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, secon
 from advisor.mavlink.equivalent import (
     MAV_PARAM_TYPE_REAL32,
     MAV_TYPE_FIXED_WING,
+    air_data,
     message,
-    side_by_side,
     system_id,
 )
 from advisor.mavlink.sensors import flown, said
@@ -194,7 +194,7 @@ class _Translation:
                 table, values = found
                 # A second place in the order, for the air speed of CTUN takes the first.
                 rows.append({**_place(table, 2 if field == "throttle" else 1), field: values})
-        fields: dict[str, ArrayLike] = dict(side_by_side(*rows))
+        fields: dict[str, ArrayLike] = dict(air_data(*rows))
         order, time_us = np.asarray(fields.pop("order")), np.asarray(fields["time_usec"])
         return message("VFR_HUD", self._system, order, self._base_s + seconds(time_us), fields)
 

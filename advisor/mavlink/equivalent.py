@@ -74,6 +74,12 @@ def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]
     }
 
 
+def air_data(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Fields of VFR_HUD from records of air speed, climb rate and throttle; NaN without a throttle."""
+    fields = side_by_side(*records)
+    return {"throttle": np.full(len(next(iter(fields.values()))), np.nan), **fields}
+
+
 def system_id(parameter: object) -> int:
     """The system id that a parameter states; 1 when it is none."""
     return int(parameter) if isinstance(parameter, int | float) and 1 <= parameter <= 255 else 1

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from advisor.flight.messages import FloatArray, IntArray
-from advisor.mavlink.equivalent import latest, side_by_side
+from advisor.mavlink.equivalent import air_data, latest
 from advisor.mavlink.px4_topics import (
     TimedMessages,
     Topic,
@@ -40,7 +40,7 @@ def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
     records = [{"time_usec": one[0], name: one[1]} for name, one in found.items() if one is not None]
     if not records:
         return [], said
-    fields: dict[str, ArrayLike] = dict(side_by_side(*records))
+    fields: dict[str, ArrayLike] = dict(air_data(*records))
     return [TimedMessages("VFR_HUD", np.asarray(fields["time_usec"]), fields)], said
 
 
