@@ -16,8 +16,8 @@ _BUNDLED = b"Bundled aircraft"
 READER = b"Log reader: "
 """How a reader of logs begins the sentences that its STATUSTEXTs carry to the user."""
 
-SENSOR_NOTICE = "sensor"
-"""Code of the notice that says which of several like sensors flew."""
+READER_NOTICE = "log_reader"
+"""Code of the notice that carries such a sentence."""
 _GROUND_STATION = 190
 """Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
 
@@ -148,7 +148,7 @@ class Identity:
     def _text(self, columns: Columns) -> list[FlightEvent]:
         text = bytes(columns.fields["text"][0])
         if text.startswith(READER):
-            return [Notice(SENSOR_NOTICE, f"{text.removeprefix(READER).decode()}.")]
+            return [Notice(READER_NOTICE, f"{text.removeprefix(READER).decode()}.")]
         if text.startswith(_BUNDLED):
             self.simulated = True
         words = text.split()

@@ -2,13 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+Carrier = Literal["telemetry", "dataflash", "ulog"]
+"""What brings the messages: a MAVLink link or its recording, ArduPilot's own log, PX4's own log."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +35,7 @@ class Columns:
     fields: Mapping[str, NDArray[Any]]
     """Field name to raw values, shape (n,) or (n, k), in the units of the message definition.
     Text fields are arrays of ``bytes`` (NumPy kind ``S``)."""
+    carrier: Carrier = "telemetry"
 
     def __len__(self) -> int:
         return len(self.order)

@@ -1,6 +1,7 @@
 """Cutting a batch of columns where something changes that all later messages depend on."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -34,7 +35,7 @@ def between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
         if j > i:
             rows = slice(int(i), int(j))
             fields = {name: values[rows] for name, values in c.fields.items()}
-            found.append(Columns(c.name, c.system, c.component, c.order[rows], c.arrival_s[rows], fields))
+            found.append(replace(c, order=c.order[rows], arrival_s=c.arrival_s[rows], fields=fields))
     return found
 
 

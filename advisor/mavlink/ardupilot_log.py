@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from advisor.flight.identity import READER
-from advisor.flight.messages import Columns
+from advisor.flight.messages import Columns, IntArray
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
 from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message, system_id
 from advisor.mavlink.sensors import flown, said
@@ -110,7 +110,11 @@ class _Translation:
 
     def _message(self, name: str, table: Table, fields: dict[str, ArrayLike], place: int = 0) -> Columns:
         """A message made of each record; ``place`` keeps several made of one record in order."""
-        return message(name, self._system, table.order + place, self._base_s + seconds(table.time_us), fields)
+        return self._made(name, table.order + place, table.time_us, fields)
+
+    def _made(self, name: str, order: IntArray, time_us: IntArray, fields: dict[str, ArrayLike]) -> Columns:
+        arrival_s = self._base_s + seconds(time_us)
+        return message(name, self._system, order, arrival_s, fields, "dataflash")
 
     def _attitude(self, att: Table | None) -> Columns:
         """Angles at the stamps of ATT, rates at those of IMU."""
@@ -128,7 +132,7 @@ class _Translation:
         names = ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed")
         fields: dict[str, Any] = dict(zip(names, values, strict=True))
         fields["time_boot_ms"] = _milliseconds(time_us)
-        return message("ATTITUDE", self._system, order, self._base_s + seconds(time_us), fields)
+        return self._made("ATTITUDE", order, time_us, fields)
 
     def _highres_imu(self, imu: Table) -> Columns:
         fields: dict[str, ArrayLike] = {"time_usec": imu.time_us}
@@ -228,8 +232,7 @@ class _Translation:
         ]
         texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S128")])
         fields: dict[str, ArrayLike] = {"severity": 6, "text": texts["text"]}
-        arrival_s = self._base_s + seconds(texts["time_us"])
-        return message("STATUSTEXT", self._system, texts["order"], arrival_s, fields)
+        return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
 
     def _autopilot_version(self, ver: Table) -> Columns:
         parts = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))
@@ -261,7 +264,7 @@ class _Translation:
             "custom_mode": modes,
             "mavlink_version": 3,
         }
-        return message("HEARTBEAT", self._system, order, self._base_s + seconds(time_us), fields)
+        return self._made("HEARTBEAT", order, time_us, fields)
 
     def _mav_type(self) -> int:
         ver, msg = self._tables.get("VER"), self._tables.get("MSG")

@@ -20,6 +20,7 @@ HEADER = b"\xa3\x95"
 _HEADER_0, _HEADER_1 = HEADER
 _FMT = 0x80
 _FMT_LENGTH = 89
+_DEFINITION = HEADER + bytes([_FMT])
 _FMT_LAYOUT = np.dtype(
     [("type", "u1"), ("length", "u1"), ("name", "S4"), ("format", "S16"), ("columns", "S64")]
 )
@@ -102,6 +103,14 @@ def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
             },
         )
     return tables
+
+
+def first_definition(beginning: bytes) -> int:
+    """Where the first FMT record begins that another record follows; -1 for none."""
+    at = beginning.find(_DEFINITION)
+    while at >= 0 and beginning[at + _FMT_LENGTH : at + _FMT_LENGTH + len(HEADER)] != HEADER:
+        at = beginning.find(_DEFINITION, at + 1)
+    return at
 
 
 def gps_time_base_s(gps: Table | None) -> float:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from advisor.flight.messages import Columns, FloatArray, IntArray
+from advisor.flight.messages import Carrier, Columns, FloatArray, IntArray
 from advisor.mavlink.definitions import DEFINITIONS
 
 AUTOPILOT_COMPONENT = 1  # MAV_COMP_ID_AUTOPILOT1
@@ -21,7 +21,12 @@ MAV_PARAM_TYPE_REAL32 = 9
 
 
 def message(
-    name: str, system: int, order: IntArray, arrival_s: FloatArray, fields: Mapping[str, ArrayLike]
+    name: str,
+    system: int,
+    order: IntArray,
+    arrival_s: FloatArray,
+    fields: Mapping[str, ArrayLike],
+    carrier: Carrier,
 ) -> Columns:
     """Messages of one type from the values at hand, put into their order.
 
@@ -37,6 +42,8 @@ def message(
         Field name to shape (n,), or a scalar for all, in the units of the definition. Integers
         are cut to the size of the field, as a vehicle's counters wrap; texts and floating-point
         values are kept as they are.
+    carrier : Carrier
+        The kind of log.
     """
     n = len(order)
     layout = DEFINITIONS[name].layout
@@ -52,7 +59,7 @@ def message(
         if wire.base.kind in "iu" and values.dtype.kind != "f":
             values = values.astype(wire.base)
         columns[field] = np.broadcast_to(values, (n, *wire.shape))[rows]
-    return Columns(name, system, AUTOPILOT_COMPONENT, order[rows], arrival_s[rows], columns)
+    return Columns(name, system, AUTOPILOT_COMPONENT, order[rows], arrival_s[rows], columns, carrier)
 
 
 def system_id(parameter: object) -> int:

@@ -1,6 +1,7 @@
 """PX4's own log (``.ulg``), read by pyulog, an extra."""
 
 import contextlib
+import io
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -16,8 +17,16 @@ from advisor.problems import UnusableInputError
 MAGIC = b"ULog\x01\x12\x35"
 
 
-def read_ulog(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
+def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 0) -> Iterator[list[Columns]]:
     """The messages of a ``.ulg``, in one batch, ordered by time.
+
+    Parameters
+    ----------
+    path
+    wanted
+        Names of the messages to give; all by default.
+    starts_at
+        Bytes in front of the log.
 
     Raises
     ------
@@ -35,7 +44,8 @@ def read_ulog(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[
     try:
         # pyulog prints its warnings; standard output belongs to the result.
         with path.open("rb") as file, contextlib.redirect_stdout(sys.stderr):
-            log = ULog(file, list(TOPICS))
+            file.seek(starts_at)
+            log = ULog(file if starts_at == 0 else io.BytesIO(file.read()), list(TOPICS))
     except Exception as error:  # whatever pyulog meets in damaged bytes
         raise _nothing_in(path) from error
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
@@ -64,7 +74,7 @@ def _columns(log: Any) -> list[Columns]:
     base_s = unix_time_base_s(log)
     system = system_id(log.initial_parameters.get("MAV_SYS_ID"))
     return [
-        message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields)
+        message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields, "ulog")
         for m, numbers in zip(messages, orders, strict=True)
         if len(numbers)
     ]
