@@ -34,6 +34,8 @@ from tests.mavlink.autopilot_logs import (
 G = 9.80665
 FLIGHT_S = 40.0
 FIRST_STEP_S = 20.0
+HEALTHY = (0, 0, 30.0, 1, 1)
+"""Errors, temperature and health of gyro and accelerometer, as IMU has them."""
 
 
 def elevator_us(t: float) -> int:
@@ -75,8 +77,8 @@ def dataflash_flight(
             for at_s, mode in (changes or {}).items()
             if t <= at_s < t + 0.02
         ]
-        log.append(dataflash_record("IMU", us, 0, 0.0, q, 0.0, 0.1, 0.0, -G))
-        log.append(dataflash_record("IMU", us, 1, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0))
+        log.append(dataflash_record("IMU", us, 0, 0.0, q, 0.0, 0.1, 0.0, -G, *HEALTHY))
+        log.append(dataflash_record("IMU", us, 1, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, *HEALTHY))
         log.append(dataflash_record("RCOU", us + 300, 1500, elevator_us(t), 1400, 1500))
         if i % 2 == 0:
             log.append(dataflash_record("ATT", us + 600, 0.0, 1.0, 0.0, math.degrees(theta), 0.0, 90.0))
@@ -85,7 +87,7 @@ def dataflash_flight(
             log.append(dataflash_record("BARO", us + 800, 0, 120.0, 1e5, 20.0, 0.75))
             log.append(dataflash_record("XKF1", us + 900, 0, 0.0, 0.0, 0.0, 20.0, 5.0, -0.5))
             log.append(dataflash_record("CTUN", us + 1000, 0.0, 0.0, 0.0, 0.0, 45.0, 0.0, 0.0, 24.5))
-            log.append(dataflash_record("ARSP", us + 1100, 0, 25.0))
+            log.append(dataflash_record("ARSP", us + 1100, 0, 25.0, 0.0, 0.0, 0.0, 0.0, 1, 1))
             log.append(dataflash_record("POS", us + 1200, 47.1, 8.5, 500.0, 100.25))
             if switched:
                 log.append(dataflash_record("RCIN", us + 1250, *[1500] * 8, switch_us(t)))
