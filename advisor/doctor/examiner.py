@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.doctor.asking import how_to_ask
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Belief, expect, frequency
 from advisor.doctor.instruments import (
@@ -17,13 +16,16 @@ from advisor.doctor.instruments import (
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Survey
-from advisor.flight.events import ManeuverFlown
+from advisor.flight.asking import how_to_get, how_to_speed_up, name_at_hand
+from advisor.flight.events import ManeuverFlown, Notice
+from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus
+from advisor.flight.vehicle import Vehicle
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
@@ -53,13 +55,14 @@ class Examiner:
         self._stream = FlightStream(aircraft, target_system)
         self._survey: Survey | None = None
         self._maneuvers: list[Maneuver] = []
+        self._notes: list[str] = []
 
     def feed(self, columns: Sequence[Columns]) -> None:
         """Take the next messages."""
         self._keep(self._stream.feed(columns))
         vehicle = self._stream.vehicle
         if self._survey is None and vehicle is not None:
-            self._survey = Survey(vehicle.system, vehicle.component)
+            self._survey = Survey(vehicle)
         if self._survey is not None:
             self._survey.feed(columns)
 
@@ -82,20 +85,20 @@ class Examiner:
             for name, status in self._stream.channels.items()
             if name in paced or name != "elevator"
         }
-        autopilot = vehicle.autopilot if vehicle else ""
         found = problems(vehicle, self._stream.other_systems, self._stream.elevator, channels, 1, {})
-        limits = [_stopping(problem) for problem in found if problem.code != "rate"]
+        limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate"]
         speed = self._airspeed(paced)
         complete = {"elevator", "q"} <= paced.keys() and (
             "alpha" in paced or ("a_z" in paced and speed is not None)
         )
-        if complete:
-            limits += rate_limits(paced, belief, autopilot, speed)
-        period_s = 2.0 * np.pi / frequency(belief.model)
-        limits += steadiness_limits(arrivals, {p.message for p in paced.values()}, period_s)
         if vehicle is not None and complete:
-            limits += self._speed_limits(paced, belief, autopilot, speed)
-            limits += alpha_limits(self._stream.channels["alpha"], autopilot) if "alpha" in paced else []
+            limits += rate_limits(paced, belief, vehicle, speed)
+        period_s = 2.0 * np.pi / frequency(belief.model)
+        carrier = vehicle.carrier if vehicle else "telemetry"
+        limits += steadiness_limits(arrivals, {p.message for p in paced.values()}, period_s, carrier)
+        if vehicle is not None and complete:
+            limits += self._speed_limits(paced, belief, vehicle, speed)
+            limits += alpha_limits(self._stream.channels["alpha"], vehicle) if "alpha" in paced else []
         elevator = self._elevator()
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
         limits += clock_limits(clocks) if clocks else []
@@ -111,10 +114,12 @@ class Examiner:
             limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
             expectation=expect(belief, rates, speed) if complete else None,
             belief=belief,
+            notes=(*self._notes, *(self._survey.pauses if self._survey else ())),
         )
 
     def _keep(self, events: Sequence[object]) -> None:
         self._maneuvers += [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+        self._notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
 
     def _belief(self) -> Belief:
         """The aircraft and its noise as far as they are known: the file's model, else what was flown."""
@@ -176,17 +181,20 @@ class Examiner:
         return AlphaFound(source, status.provenance, paced["alpha"].renewed_hz)
 
     def _speed_limits(
-        self, paced: dict[str, Paced], belief: Belief, autopilot: str, speed: float | None
+        self, paced: dict[str, Paced], belief: Belief, vehicle: Vehicle, speed: float | None
     ) -> list[Limit]:
         """Without air speed or specific force some errors are larger."""
         if speed is None:
             text = "No air speed arrives: derivatives cannot be referred to one speed, nor a_z be used"
-            fix = how_to_ask("VFR_HUD", autopilot) + "; or give airspeed_m_s in the aircraft file"
+            fix = _fast("VFR_HUD", vehicle) + "; or give airspeed_m_s in the aircraft file"
             cost = cost_of_missing("a_z", paced, belief, None)
             return [Limit("no_airspeed", text, fix, std_ratio=cost)]
         if "a_z" not in paced:
-            text = "No specific force arrives (RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU)"
-            fix = how_to_ask("HIGHRES_IMU" if autopilot == "px4" else "RAW_IMU", autopilot)
+            message = "HIGHRES_IMU" if vehicle.autopilot == "px4" else "RAW_IMU"
+            any_of = "RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU"
+            named = any_of if vehicle.carrier == "telemetry" else name_at_hand(message, vehicle)
+            text = f"No specific force arrives ({named})"
+            fix = _fast(message, vehicle)
             cost = cost_of_missing("a_z", paced, belief, speed)
             return [Limit("no_accelerometer", text, fix, std_ratio=cost)]
         return []
@@ -203,9 +211,16 @@ def _believable(flown: Estimate) -> bool:
     return moved and explained and sharp and not {"M_alpha", "M_delta_e"} & flown.not_identifiable.keys()
 
 
-def _stopping(problem: Problem) -> Limit:
+def _fast(message: str, vehicle: Vehicle) -> str:
+    """How to have a message that never came, at a good rate."""
+    if vehicle.carrier == "telemetry":
+        return how_to_speed_up(message, vehicle)
+    return how_to_get([message], vehicle)
+
+
+def _stopping(problem: Problem, vehicle: Vehicle | None) -> Limit:
     fix = problem.fix.rstrip(".")
-    if problem.code == "no_elevator":
+    if problem.code == "no_elevator" and (vehicle is None or vehicle.carrier == "telemetry"):
         fix += "; on a live link --request-rates asks the vehicle for them"
     return Limit(problem.code, problem.text.rstrip("."), fix, stops=True)
 

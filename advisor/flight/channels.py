@@ -84,6 +84,7 @@ _STAMPS = {
 }
 """VFR_HUD has no stamp: it takes that of the last ATTITUDE."""
 
+GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
 DERIVED_ALPHA = "theta - asin(VFR_HUD.climb / airspeed)"
 SLOWEST_FLIGHT_M_S = 4.0
 """Below this air speed nothing flies, and no angle of attack can be derived."""
@@ -155,6 +156,11 @@ def derived_alpha(hud: Columns, t: FloatArray, attitude: FloatArray, airspeed: f
     path = np.arcsin(np.clip(sine * GRAVITY_M_S2 / size, -1.0, 1.0))
     alpha = np.where(flying, up - path, np.nan)
     return _decoded("alpha", DERIVED_ALPHA, "derived", t, alpha, hud)
+
+
+def given_airspeed(attitude: Columns, t: FloatArray, airspeed_m_s: float) -> Decoded:
+    """The air speed that the aircraft file gives, at the stamps of ATTITUDE, for a log that has none."""
+    return _decoded("airspeed", GIVEN_AIRSPEED, "given", t, np.full(len(t), airspeed_m_s), attitude)
 
 
 def _decoded(

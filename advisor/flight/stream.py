@@ -17,6 +17,7 @@ from advisor.flight.boots import Master, by_boot
 from advisor.flight.channels import (
     Decoded,
     derived_alpha,
+    given_airspeed,
     named_value,
     quantities,
     stamps,
@@ -279,6 +280,8 @@ class FlightStream:
 
     def _decode(self, columns: Columns, t: FloatArray, attitude: FloatArray) -> Iterator[Decoded]:
         yield from quantities(columns, t)
+        if columns.name == "ATTITUDE" and self._aircraft.airspeed_m_s is not None:
+            yield given_airspeed(columns, t, self._aircraft.airspeed_m_s)
         if columns.name == "VFR_HUD":
             yield derived_alpha(columns, t, attitude, self._aircraft.airspeed_m_s)
         elif columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):

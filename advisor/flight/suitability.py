@@ -12,25 +12,16 @@ from collections.abc import Collection, Mapping
 from math import isfinite
 
 from advisor.beside import beside
-from advisor.flight.surfaces import Surface, joined_numbers
+from advisor.flight.asking import GOOD_HZ, how_to_get, how_to_speed_up, name_at_hand
+from advisor.flight.surfaces import Surface, joined_numbers, listed
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
 
 SLOWEST_HZ = 8.0
 """Least rate of elevator, pitch rate and angle of attack, whatever the aircraft."""
-_ASK_HZ = 50
 _MOTION = ("a_z", "airspeed", "theta")
 """Channels that stand in for an angle of attack, besides the pitch rate."""
-
-# Stream groups of ArduPilot, which hold a message's rate: SRn_<group>, since 4.7 MAVn_<group>.
-_GROUPS = {
-    "ATTITUDE": "EXTRA1",
-    "AOA_SSA": "EXTRA1",
-    "VFR_HUD": "EXTRA2",
-    "SERVO_OUTPUT_RAW": "RC_CHAN",
-    "RAW_IMU": "RAW_SENS",
-}
 
 
 def problems(
@@ -121,10 +112,13 @@ def _missing(
     elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
 ) -> list[Problem]:
     found = [elevator] if isinstance(elevator, Problem) else []
+    if vehicle.carrier != "telemetry":
+        return [*found, *_not_logged(elevator, channels, vehicle)]
     if "q" not in channels:
         # Its stamps are the vehicle's clock: without it no other channel can be placed either.
         text = "There is no pitch rate: no ATTITUDE arrived."
-        return [*found, Problem("no_pitch_rate", text, f"Ask for ATTITUDE: {_ask('ATTITUDE', vehicle)}.")]
+        fix = f"Ask for ATTITUDE: {how_to_speed_up('ATTITUDE', vehicle)}."
+        return [*found, Problem("no_pitch_rate", text, fix)]
     if isinstance(elevator, Surface) and "elevator" not in channels:
         outputs = joined_numbers(elevator.outputs)
         found.append(
@@ -147,6 +141,32 @@ def _missing(
     return found
 
 
+def _not_logged(
+    elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
+) -> list[Problem]:
+    """All that a log of the autopilot's own lacks, in one problem."""
+    lacks: dict[str, tuple[str, str]] = {}
+    if "q" not in channels:
+        lacks["no_pitch_rate"] = ("pitch rate", "ATTITUDE")
+    if isinstance(elevator, Surface) and "elevator" not in channels:
+        lacks["no_elevator"] = (
+            f"pulse of servo output {joined_numbers(elevator.outputs)}",
+            "SERVO_OUTPUT_RAW",
+        )
+    if "alpha" not in channels and not motion_stands_in(channels):
+        lacks["no_alpha"] = ("angle of attack", "AOA_SSA")
+        if "airspeed" not in channels:
+            lacks["no_airspeed"] = ("air speed", "VFR_HUD")
+    if not lacks:
+        return []
+    if "a_z" not in channels:
+        lacks["no_accelerometer"] = ("specific force", "HIGHRES_IMU")
+    told = listed([f"no {what} ({name_at_hand(message, vehicle)})" for what, message in lacks.values()])
+    fix = how_to_get([message for _, message in lacks.values()], vehicle)
+    given = "; or give airspeed_m_s in the aircraft file" if "no_airspeed" in lacks else ""
+    return [Problem(next(iter(lacks)), f"The log holds {told}.", f"{_sentence(fix)}{given}.")]
+
+
 def motion_stands_in(channels: Collection[str]) -> bool:
     """Whether an estimate needs no angle of attack: specific force, air speed and attitude arrive."""
     return all(name in channels for name in _MOTION)
@@ -161,12 +181,18 @@ def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[P
     return [
         Problem(
             "rate",
-            f"{message} arrives {_at(rate_hz)}, too slow to identify a short period "
-            f"(at least {SLOWEST_HZ:g} Hz, better {_ASK_HZ} Hz).",
-            f"Ask for {_ASK_HZ} Hz: {_ask(message, vehicle)}.",
+            f"{name_at_hand(message, vehicle)} arrives {_at(rate_hz)}, too slow to identify a short period "
+            f"(at least {SLOWEST_HZ:g} Hz, better {GOOD_HZ} Hz).",
+            f"Ask for {GOOD_HZ} Hz: {how_to_speed_up(message, vehicle)}."
+            if vehicle.carrier == "telemetry"
+            else f"{_sentence(how_to_speed_up(message, vehicle))}.",
         )
         for message, rate_hz in slow.items()
     ]
+
+
+def _sentence(text: str) -> str:
+    return text[0].upper() + text[1:]
 
 
 def _at(rate_hz: float) -> str:
@@ -176,11 +202,3 @@ def _at(rate_hz: float) -> str:
 def _message(status: ChannelStatus) -> str:
     """Name of the message that sets the rate of a channel."""
     return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
-
-
-def _ask(message: str, vehicle: Vehicle) -> str:
-    group = _GROUPS.get(message)
-    if vehicle.autopilot == "ardupilot" and group:
-        parameters = f"SR0_{group} (MAV1_{group} in newer firmware)"
-        return f"set {parameters} to {_ASK_HZ}, or run live with --request-rates"
-    return f"set its rate on the vehicle to {_ASK_HZ} Hz, or run live with --request-rates"

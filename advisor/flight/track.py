@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.channels import DERIVED_ALPHA, READINGS, Decoded
+from advisor.flight.channels import DERIVED_ALPHA, GIVEN_AIRSPEED, READINGS, Decoded
 from advisor.flight.messages import FloatArray, IntArray
 from advisor.flight.record import UNITS, Channel
 
@@ -106,6 +106,7 @@ class Tracks:
         self._sources: dict[str, list[str]] = {}
         for reading in READINGS:
             self._sources.setdefault(reading.channel, []).append(reading.source)
+        self._sources["airspeed"].append(GIVEN_AIRSPEED)
         named = alpha_source.removeprefix("named_value:")
         self._sources["alpha"] = {
             "auto": ["AOA_SSA.AOA", DERIVED_ALPHA],

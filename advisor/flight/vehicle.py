@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from advisor.flight.messages import Columns
+from advisor.flight.messages import Carrier, Columns
 
 # Numbers of MAV_AUTOPILOT and MAV_TYPE, MAVLink common.xml.
 _AUTOPILOT_INVALID = 8
@@ -37,6 +37,8 @@ class Vehicle:
     """MAV_TYPE of its heartbeat."""
     firmware: str | None = None
     """Version as the vehicle states it; None until it does."""
+    carrier: Carrier = "telemetry"
+    """What brings its messages: a mend must fit this."""
 
     def __str__(self) -> str:
         return f"{self.autopilot} {self.system}/{self.component}"
@@ -79,7 +81,9 @@ class VehicleFinder:
             return False
         if self.vehicle is None and self._target in (None, heartbeat.system):
             name = _AUTOPILOTS.get(autopilot, f"autopilot {autopilot}")
-            self.vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind)
+            self.vehicle = Vehicle(
+                heartbeat.system, heartbeat.component, name, kind, carrier=heartbeat.carrier
+            )
             self.others.discard(heartbeat.system)
             return True
         if self.vehicle is None or heartbeat.system != self.vehicle.system:
