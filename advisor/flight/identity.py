@@ -1,6 +1,7 @@
 """What the vehicle says of itself: who it is, its firmware, its mode, what its outputs drive."""
 
 from collections.abc import Sequence
+from math import isfinite, nan
 
 from advisor.aircraft import Elevator
 from advisor.flight.elevator_outputs import find_elevator
@@ -13,11 +14,14 @@ from advisor.problems import Problem
 _BUNDLED = b"Bundled aircraft"
 """How the simulator of this project introduces itself in a STATUSTEXT."""
 
+_RELEASES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
+"""Least FIRMWARE_VERSION_TYPE (MAVLink common.xml), the lowest byte of a version, and how users write it."""
+
 READER = b"Log reader: "
 """How a reader of logs begins the sentences that its STATUSTEXTs carry to the user."""
 
 READER_NOTICE = "log_reader"
-"""Code of the notice that carries such a sentence."""
+"""Code of the notice that carries such a sentence, or says how a change in flight was read."""
 _GROUND_STATION = 190
 """Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
 
@@ -39,6 +43,7 @@ class Identity:
         self._firmware: dict[int, str] = {}
         self._parameters: dict[tuple[int, int], dict[str, float]] = {}
         self._said = ""
+        self._changes_said: set[tuple[str, float]] = set()
         self.mode = ""
         """Flight mode of the newest heartbeat."""
         self.simulated = False
@@ -72,14 +77,24 @@ class Identity:
             return "simulated"
         return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
 
-    def learn(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Take messages among which at most the first changes anything."""
+    def learn(self, piece: Sequence[Columns], now_s: float = nan, flown: bool = False) -> list[FlightEvent]:
+        """Take messages among which at most the first changes anything.
+
+        Parameters
+        ----------
+        piece
+            Messages, in order of arrival.
+        now_s
+            Vehicle time of the newest sample, s since boot.
+        flown
+            A test input has been flown: the elevator's scale stays as it was then.
+        """
         events: list[FlightEvent] = []
         for columns in piece:
             if columns.name == "HEARTBEAT":
                 events += self._heartbeat(columns)
             elif columns.name == "PARAM_VALUE":
-                events += self._parameter(columns)
+                events += self._parameter(columns, now_s, flown)
             elif columns.name == "AUTOPILOT_VERSION":
                 self._version(columns)
             elif columns.name == "STATUSTEXT":
@@ -105,27 +120,60 @@ class Identity:
             self.mode = mode_name(vehicle, int(columns.fields["custom_mode"][0]))
         return events
 
-    def _parameter(self, columns: Columns) -> list[FlightEvent]:
+    def _parameter(self, columns: Columns, now_s: float, flown: bool) -> list[FlightEvent]:
         known = self._parameters.setdefault((columns.system, columns.component), {})
+        events: list[FlightEvent] = []
         changed = False
         for raw, value in zip(
             columns.fields["param_id"].tolist(), columns.fields["param_value"], strict=True
         ):
             name = raw.rstrip(b"\0").decode("ascii", "replace")
-            if name.startswith("SERVO") and known.get(name) != float(value):
-                known[name] = float(value)
-                changed = True
+            if not name.startswith("SERVO") or known.get(name) == float(value):
+                continue
+            before = known.get(name)
+            known[name] = float(value)
+            if before is not None and self._scales_elevator():
+                events += self._rescaled(name, before, float(value), now_s, flown)
+                if flown:
+                    known[name] = before
+                    continue
+            changed = True
         vehicle = self._finder.vehicle
         if changed and vehicle and (columns.system, columns.component) in _speakers(vehicle):
-            return self._settle_surfaces()
-        return []
+            events += self._settle_surfaces()
+        return events
+
+    def _known_parameters(self) -> dict[str, float]:
+        vehicle = self._finder.vehicle
+        parameters: dict[str, float] = {}
+        for speaker in _speakers(vehicle) if vehicle else ():
+            parameters |= self._parameters.get(speaker, {})
+        return parameters
+
+    def _scales_elevator(self) -> bool:
+        """Whether the parameters have changed what the elevator's pulses mean."""
+        return (
+            isinstance(self.elevator, Surface)
+            and find_elevator(self._elevator, self._known_parameters()) != self.elevator
+        )
+
+    def _rescaled(
+        self, name: str, before: float, value: float, now_s: float, flown: bool
+    ) -> list[FlightEvent]:
+        """What a change of a known parameter does to the elevator: once for each value."""
+        if (name, value) in self._changes_said:
+            return []
+        self._changes_said.add((name, value))
+        at = f" at {now_s:.1f} s" if isfinite(now_s) else ""
+        used = (
+            f"the elevator is counted with {before:g} all the same, for its linkage has not changed"
+            if flown
+            else f"the elevator is counted with {value:g} from then on"
+        )
+        return [Notice(READER_NOTICE, f"{name} changed from {before:g} to {value:g}{at}: {used}.")]
 
     def _settle_surfaces(self) -> list[FlightEvent]:
-        vehicle = self._finder.vehicle
-        assert vehicle is not None
-        parameters: dict[str, float] = {}
-        for speaker in _speakers(vehicle):
-            parameters |= self._parameters.get(speaker, {})
+        parameters = self._known_parameters()
         self.elevator = find_elevator(self._elevator, parameters)
         found = {
             "elevator": self.elevator,
@@ -142,8 +190,14 @@ class Identity:
     def _version(self, columns: Columns) -> None:
         packed = int(columns.fields["flight_sw_version"][0])
         if packed:
-            version = f"{packed >> 24 & 0xFF}.{packed >> 16 & 0xFF}.{packed >> 8 & 0xFF}"
-            self._firmware[columns.system] = version
+            kind = next((name for least, name in _RELEASES if packed & 0xFF >= least), "")
+            version = f"{packed >> 24 & 0xFF}.{packed >> 16 & 0xFF}.{packed >> 8 & 0xFF}{kind}"
+            self._version_told(columns.system, version)
+
+    def _version_told(self, system: int, version: str) -> None:
+        """Keep the fuller spelling: a text says 4.8.0-beta1 where the message says 4.8.0-beta."""
+        if not self._firmware.get(system, "").startswith(version):
+            self._firmware[system] = version
 
     def _text(self, columns: Columns) -> list[FlightEvent]:
         text = bytes(columns.fields["text"][0])
@@ -153,7 +207,9 @@ class Identity:
             self.simulated = True
         words = text.split()
         if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
-            self._firmware.setdefault(columns.system, words[1][1:].decode("ascii", "replace"))
+            told = words[1][1:].decode("ascii", "replace")
+            if told.startswith(self._firmware.get(columns.system, "")):
+                self._version_told(columns.system, told)
         return []
 
 

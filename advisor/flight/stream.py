@@ -99,6 +99,7 @@ class FlightStream:
         self._elevator_message: str | None = None
         self._cutting.begin(self._who.mode)
         self._first_s = np.nan
+        self._flown_before = self._cutting.maneuvers
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
         self._attitude = np.full((1, 2), np.nan)
@@ -218,7 +219,8 @@ class FlightStream:
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Columns within which neither vehicle nor parameters nor mode change."""
         mode = self._who.mode
-        events = self._who.learn(piece)
+        flown = self._cutting.maneuvers > self._flown_before
+        events = self._who.learn(piece, self._master_s, flown)
         vehicle = self._who.vehicle
         if vehicle is None:
             return events
