@@ -28,7 +28,7 @@ KERNELS := $(shell grep -rlE --include='*.py' 'njit|@kernel' advisor sim benchma
 
 # What tests, checks and benchmarks need beyond running: installed only for them.
 .venv/.developed: .venv/.compiled
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev,report,logs,jsbsim,bench]'
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev,report,jsbsim,bench]'
 	touch $@
 
 setup: .venv/.compiled ## build .venv with the advisor in it

@@ -21,7 +21,7 @@ from advisor.flight.events import (
     Rebooted,
     VehicleFound,
 )
-from advisor.flight.identity import SENSOR_NOTICE
+from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import MARK_NOTICES, Mark
 from advisor.flight.messages import Columns
@@ -90,7 +90,7 @@ class Campaign:
         self._history: list[Flown] = []
         self._notices: list[str] = []
         self._mark_notes: list[str] = []
-        self._sensor_notes: list[str] = []
+        self._reader_notes: list[str] = []
         self._activity: list[Activity] = []
         self._judged: tuple[JudgedManeuver, ...] = ()
         self._flight_test = flight_test((), aircraft.campaign, aircraft)
@@ -134,7 +134,7 @@ class Campaign:
             enough=settled.enough if settled else None,
             estimate_from=tuple(j.maneuver.number for j in self._judged if j.verdict.accepted),
             elevator_notes=stream.elevator_notes,
-            sensor_notes=tuple(self._sensor_notes),
+            reader_notes=tuple(self._reader_notes),
             mark_notes=tuple(self._mark_notes),
             notices=tuple(self._notices),
             activity=tuple(self._activity),
@@ -207,8 +207,8 @@ class Campaign:
                     self._log(text)
                     if code in MARK_NOTICES:
                         self._mark_notes.append(text)
-                    if code == SENSOR_NOTICE:
-                        self._sensor_notes.append(text)
+                    if code == READER_NOTICE:
+                        self._reader_notes.append(text)
                 case VehicleFound(vehicle):
                     self._log(f"following {vehicle}")
                 case Rebooted(boot):

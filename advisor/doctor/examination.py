@@ -63,6 +63,8 @@ class Examination:
     """None when a needed channel is missing altogether."""
     belief: Belief
     """What the expected errors and the demands on rates rest on."""
+    notes: tuple[str, ...] = ()
+    """What was chosen in reading the log, and where the autopilot wrote none, in sentences."""
 
     @property
     def verdict(self) -> Verdict:

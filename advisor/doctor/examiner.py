@@ -16,7 +16,8 @@ from advisor.doctor.instruments import (
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Survey
-from advisor.flight.events import ManeuverFlown
+from advisor.flight.events import ManeuverFlown, Notice
+from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
@@ -53,13 +54,14 @@ class Examiner:
         self._stream = FlightStream(aircraft, target_system)
         self._survey: Survey | None = None
         self._maneuvers: list[Maneuver] = []
+        self._notes: list[str] = []
 
     def feed(self, columns: Sequence[Columns]) -> None:
         """Take the next messages."""
         self._keep(self._stream.feed(columns))
         vehicle = self._stream.vehicle
         if self._survey is None and vehicle is not None:
-            self._survey = Survey(vehicle.system, vehicle.component)
+            self._survey = Survey(vehicle)
         if self._survey is not None:
             self._survey.feed(columns)
 
@@ -83,15 +85,16 @@ class Examiner:
             if name in paced or name != "elevator"
         }
         found = problems(vehicle, self._stream.other_systems, self._stream.elevator, channels, 1, {})
-        limits = [_stopping(problem) for problem in found if problem.code != "rate"]
+        limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate"]
         speed = self._airspeed(paced)
         complete = {"elevator", "q"} <= paced.keys() and (
             "alpha" in paced or ("a_z" in paced and speed is not None)
         )
         if vehicle is not None and complete:
-            limits += rate_limits(paced, belief, vehicle.mends, speed)
+            limits += rate_limits(paced, belief, vehicle, speed)
         period_s = 2.0 * np.pi / frequency(belief.model)
-        limits += steadiness_limits(arrivals, {p.message for p in paced.values()}, period_s)
+        carrier = vehicle.carrier if vehicle else "telemetry"
+        limits += steadiness_limits(arrivals, {p.message for p in paced.values()}, period_s, carrier)
         if vehicle is not None and complete:
             limits += self._speed_limits(paced, belief, vehicle, speed)
             limits += alpha_limits(self._stream.channels["alpha"], vehicle) if "alpha" in paced else []
@@ -110,10 +113,12 @@ class Examiner:
             limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
             expectation=expect(belief, rates, speed) if complete else None,
             belief=belief,
+            notes=(*self._notes, *(self._survey.pauses if self._survey else ())),
         )
 
     def _keep(self, events: Sequence[object]) -> None:
         self._maneuvers += [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+        self._notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
 
     def _belief(self) -> Belief:
         """The aircraft and its noise as far as they are known: the file's model, else what was flown."""
@@ -180,12 +185,14 @@ class Examiner:
         """Without air speed or specific force some errors are larger."""
         if speed is None:
             text = "No air speed arrives: derivatives cannot be referred to one speed, nor a_z be used"
-            fix = vehicle.mends.faster("VFR_HUD") + "; or give airspeed_m_s in the aircraft file"
+            fix = _fast("VFR_HUD", vehicle) + "; or give airspeed_m_s in the aircraft file"
             cost = cost_of_missing("a_z", paced, belief, None)
             return [Limit("no_airspeed", text, fix, std_ratio=cost)]
         if "a_z" not in paced:
-            text = "No specific force arrives (RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU)"
-            fix = vehicle.mends.faster("RAW_IMU")
+            any_of = "RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU"
+            named = any_of if vehicle.carrier == "telemetry" else vehicle.mends.called("RAW_IMU")
+            text = f"No specific force arrives ({named})"
+            fix = _fast("RAW_IMU", vehicle)
             cost = cost_of_missing("a_z", paced, belief, speed)
             return [Limit("no_accelerometer", text, fix, std_ratio=cost)]
         return []
@@ -202,9 +209,16 @@ def _believable(flown: Estimate) -> bool:
     return moved and explained and sharp and not {"M_alpha", "M_delta_e"} & flown.not_identifiable.keys()
 
 
-def _stopping(problem: Problem) -> Limit:
+def _fast(message: str, vehicle: Vehicle) -> str:
+    """How to have a message that never came, at a good rate."""
+    if vehicle.carrier == "telemetry":
+        return vehicle.mends.faster(message)
+    return vehicle.mends.present([message])
+
+
+def _stopping(problem: Problem, vehicle: Vehicle | None) -> Limit:
     fix = problem.fix.rstrip(".")
-    if problem.code == "no_elevator":
+    if problem.code == "no_elevator" and (vehicle is None or vehicle.carrier == "telemetry"):
         fix += "; on a live link --request-rates asks the vehicle for them"
     return Limit(problem.code, problem.text.rstrip("."), fix, stops=True)
 

@@ -18,21 +18,25 @@ STRAYED_SHARE = 0.01
 """Of a message's stamps; around a reboot a few always fit on neither clock."""
 
 _A_VANE = "fit a vane that sends NAMED_VALUE_FLOAT (alpha.source: named_value:NAME)"
+_RECORD_IT = " and record the telemetry, for ArduPilot's own log does not keep it"
 
 
 def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
     """What it means that the angle of attack is no vane's."""
     if alpha.provenance != "derived":
         return []
+    vane = _A_VANE + (_RECORD_IT if vehicle.carrier == "dataflash" else "")
     if alpha.source.startswith("AOA_SSA"):
-        text = "AOA_SSA is the autopilot's own estimate, not a vane: late, and blind to gusts"
-        return [Limit("alpha_derived", text, f"fly in calm air, or {_A_VANE}")]
+        name = vehicle.mends.called("AOA_SSA")
+        text = f"{name} is the autopilot's own estimate, not a vane: late, and blind to gusts"
+        return [Limit("alpha_derived", text, f"fly in calm air, or {vane}")]
     text = "Angle of attack is derived from pitch, climb rate and air speed: late, and blind to gusts"
     better = ""
     if vehicle.autopilot == "ardupilot":
-        over = " over MAVLink 2" if vehicle.record == "telemetry" else ""
-        better = f"ask for {vehicle.mends.called('AOA_SSA')}{over}: {vehicle.mends.faster('AOA_SSA')}; or "
-    return [Limit("alpha_derived", text, better + _A_VANE)]
+        over_link = f"ask for AOA_SSA over MAVLink 2: {vehicle.mends.faster('AOA_SSA')}"
+        better = over_link if vehicle.carrier == "telemetry" else vehicle.mends.present(["AOA_SSA"])
+        better += "; or "
+    return [Limit("alpha_derived", text, better + vane)]
 
 
 def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:

@@ -1,6 +1,7 @@
 """ATTITUDE_QUATERNION read as the ATTITUDE that a vehicle does not send."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -53,16 +54,16 @@ def _as_attitude(c: Columns, rows: int) -> Columns:
         "yaw": np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
     }
     kept = {name: values for name, values in fields.items() if name not in (*_QUATERNION, "repr_offset_q")}
-    return Columns("ATTITUDE", c.system, c.component, c.order[:rows], c.arrival_s[:rows], kept | angles)
+    return replace(
+        c, name="ATTITUDE", order=c.order[:rows], arrival_s=c.arrival_s[:rows], fields=kept | angles
+    )
 
 
 def _joined(first: Columns, then: Columns) -> Columns:
     """Two batches of one type, one after the other."""
-    return Columns(
-        then.name,
-        then.system,
-        then.component,
-        np.concatenate([first.order, then.order]),
-        np.concatenate([first.arrival_s, then.arrival_s]),
-        {name: np.concatenate([first.fields[name], values]) for name, values in then.fields.items()},
+    return replace(
+        then,
+        order=np.concatenate([first.order, then.order]),
+        arrival_s=np.concatenate([first.arrival_s, then.arrival_s]),
+        fields={name: np.concatenate([first.fields[name], values]) for name, values in then.fields.items()},
     )

@@ -84,6 +84,8 @@ _STAMPS = {
 }
 """VFR_HUD of a link has no stamp: it takes that of the last ATTITUDE. Autopilots' own logs stamp it."""
 
+GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
+
 
 @dataclass(frozen=True, slots=True)
 class Decoded:
@@ -128,6 +130,11 @@ def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
     )
     y = np.where(mine, np.asarray(columns.fields["value"], dtype=np.float64), np.nan)
     return _decoded("alpha", f"NAMED_VALUE_FLOAT.{name}", "vane", t, y, columns)
+
+
+def given_airspeed(attitude: Columns, t: FloatArray, airspeed_m_s: float) -> Decoded:
+    """The air speed that the aircraft file gives, at the stamps of ATTITUDE, for a log that has none."""
+    return _decoded("airspeed", GIVEN_AIRSPEED, "given", t, np.full(len(t), airspeed_m_s), attitude)
 
 
 def _decoded(

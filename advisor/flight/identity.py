@@ -1,26 +1,30 @@
 """What the vehicle says of itself: who it is, its firmware, its mode, what its outputs drive."""
 
 from collections.abc import Sequence
+from math import isfinite, nan
 
 from advisor.aircraft import Elevator
 from advisor.flight.elevator_outputs import find_elevator
 from advisor.flight.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.messages import Columns
 from advisor.flight.modes import in_hover, mode_name
-from advisor.flight.parameters import Parameters
+from advisor.flight.parameters import Parameters, read_by
 from advisor.flight.surfaces import Surface
 from advisor.flight.vehicle import Vehicle, VehicleFinder
-from advisor.flight.wiring import AILERON, RUDDER
+from advisor.flight.wiring import AILERON, RUDDER, Wiring
 from advisor.problems import Problem
 
 _BUNDLED = b"Bundled aircraft"
 """How the simulator of this project introduces itself in a STATUSTEXT."""
 
+_RELEASES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
+"""Least FIRMWARE_VERSION_TYPE (MAVLink common.xml), the lowest byte of a version, and how users write it."""
+
 READER = b"Log reader: "
 """How a reader of logs begins the sentences that its STATUSTEXTs carry to the user."""
 
-SENSOR_NOTICE = "sensor"
-"""Code of the notice that says which of several like sensors flew."""
+READER_NOTICE = "log_reader"
+"""Code of the notice that carries such a sentence, or says how a change in flight was read."""
 _ON_ROTORS = (1, 2, 3)
 """MAV_VTOL_STATE: transition to forward flight, transition to hover, hover; 4 is forward flight."""
 _GROUND_STATION = 190
@@ -46,9 +50,10 @@ class Identity:
         self._said = ""
         self._mode = ""
         self._hovers = False
+        self._changes_said: set[tuple[str, float]] = set()
         self.simulated = False
         """The bundled aircraft has introduced itself: its vane is simulated."""
-        self.elevator: Surface | Problem = find_elevator(elevator, self._parameters.wiring((), ""))
+        self.elevator: Surface | Problem = find_elevator(elevator, self._wiring())
         """The elevator's outputs and scale, or why there is none."""
         self.surfaces: dict[str, Surface] = {}
         """Elevator, aileron and rudder, as far as they are known."""
@@ -82,14 +87,24 @@ class Identity:
             return "simulated"
         return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
 
-    def learn(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Take messages among which at most the first changes anything."""
+    def learn(self, piece: Sequence[Columns], now_s: float = nan, flown: bool = False) -> list[FlightEvent]:
+        """Take messages among which at most the first changes anything.
+
+        Parameters
+        ----------
+        piece
+            Messages, in order of arrival.
+        now_s
+            Vehicle time of the newest sample, s since boot.
+        flown
+            A test input has been flown: the elevator's scale stays as it was then.
+        """
         events: list[FlightEvent] = []
         for columns in piece:
             if columns.name == "HEARTBEAT":
                 events += self._heartbeat(columns)
             elif columns.name == "PARAM_VALUE":
-                events += self._parameter(columns)
+                events += self._parameter(columns, now_s, flown)
             elif columns.name == "EXTENDED_SYS_STATE":
                 self._flies_on(columns)
             elif columns.name == "AUTOPILOT_VERSION":
@@ -118,17 +133,54 @@ class Identity:
             self._mode = mode_name(vehicle.autopilot, vehicle.type, custom)
         return events
 
-    def _parameter(self, columns: Columns) -> list[FlightEvent]:
-        changed = self._parameters.hear(columns)
-        vehicle = self._finder.vehicle
+    def _parameter(self, columns: Columns, now_s: float, flown: bool) -> list[FlightEvent]:
+        vehicle, sender = self._finder.vehicle, (columns.system, columns.component)
+        autopilot = vehicle.autopilot if vehicle else ""
+        events: list[FlightEvent] = []
+        changed = False
+        for name, before, stated in self._parameters.news(columns):
+            self._parameters.keep(sender, name, stated)
+            if before is not None and self._scales_elevator():
+                was, is_ = read_by(autopilot, before), read_by(autopilot, stated)
+                events += self._rescaled(name, was, is_, now_s, flown)
+                if flown:
+                    self._parameters.keep(sender, name, before)
+                    continue
+            changed = True
         if changed and vehicle and (columns.system, columns.component) in _speakers(vehicle):
-            return self._settle_surfaces()
-        return []
+            events += self._settle_surfaces()
+        return events
+
+    def _wiring(self) -> Wiring:
+        vehicle = self._finder.vehicle
+        if vehicle is None:
+            return self._parameters.wiring((), "")
+        return self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
+
+    def _scales_elevator(self) -> bool:
+        """Whether the parameters have changed what the elevator's pulses mean."""
+        return (
+            isinstance(self.elevator, Surface)
+            and find_elevator(self._elevator, self._wiring()) != self.elevator
+        )
+
+    def _rescaled(
+        self, name: str, before: float, value: float, now_s: float, flown: bool
+    ) -> list[FlightEvent]:
+        """What a change of a known parameter does to the elevator: once for each value."""
+        if (name, value) in self._changes_said:
+            return []
+        self._changes_said.add((name, value))
+        at = f" at {now_s:.1f} s" if isfinite(now_s) else ""
+        used = (
+            f"the elevator is counted with {before:g} all the same, for its linkage has not changed"
+            if flown
+            else f"the elevator is counted with {value:g} from then on"
+        )
+        return [Notice(READER_NOTICE, f"{name} changed from {before:g} to {value:g}{at}: {used}.")]
 
     def _settle_surfaces(self) -> list[FlightEvent]:
-        vehicle = self._finder.vehicle
-        assert vehicle is not None
-        wiring = self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
+        wiring = self._wiring()
         self.elevator = find_elevator(self._elevator, wiring)
         found = {
             "elevator": self.elevator,
@@ -150,18 +202,26 @@ class Identity:
     def _version(self, columns: Columns) -> None:
         packed = int(columns.fields["flight_sw_version"][0])
         if packed:
-            version = f"{packed >> 24 & 0xFF}.{packed >> 16 & 0xFF}.{packed >> 8 & 0xFF}"
-            self._firmware[columns.system] = version
+            kind = next((name for least, name in _RELEASES if packed & 0xFF >= least), "")
+            version = f"{packed >> 24 & 0xFF}.{packed >> 16 & 0xFF}.{packed >> 8 & 0xFF}{kind}"
+            self._version_told(columns.system, version)
+
+    def _version_told(self, system: int, version: str) -> None:
+        """Keep the fuller spelling: a text says 4.8.0-beta1 where the message says 4.8.0-beta."""
+        if not self._firmware.get(system, "").startswith(version):
+            self._firmware[system] = version
 
     def _text(self, columns: Columns) -> list[FlightEvent]:
         text = bytes(columns.fields["text"][0])
         if text.startswith(READER):
-            return [Notice(SENSOR_NOTICE, f"{text.removeprefix(READER).decode()}.")]
+            return [Notice(READER_NOTICE, f"{text.removeprefix(READER).decode()}.")]
         if text.startswith(_BUNDLED):
             self.simulated = True
         words = text.split()
         if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
-            self._firmware.setdefault(columns.system, words[1][1:].decode("ascii", "replace"))
+            told = words[1][1:].decode("ascii", "replace")
+            if told.startswith(self._firmware.get(columns.system, "")):
+                self._version_told(columns.system, told)
         return []
 
 

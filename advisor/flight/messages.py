@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.mends import Record
+from advisor.mends import Carrier
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -34,9 +34,8 @@ class Columns:
     fields: Mapping[str, NDArray[Any]]
     """Field name to raw values, shape (n,) or (n, k), in the units of the message definition.
     Text fields are arrays of ``bytes`` (NumPy kind ``S``)."""
-    record: Record = "telemetry"
-    """What held the values: messages of a link or its log, or the autopilot's own log. Only the sentences
-    about the vehicle depend on this, as its heartbeat has it."""
+    carrier: Carrier = "telemetry"
+    """What brings the messages. Only the words about the vehicle depend on this, as its heartbeat has it."""
 
     def __len__(self) -> int:
         return len(self.order)

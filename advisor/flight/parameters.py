@@ -1,6 +1,6 @@
 """The parameters that vehicles and ground stations have stated, each decoded as its autopilot encodes it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -14,6 +14,8 @@ _PREFIXES = (*ardupilot_wiring.PREFIXES, *px4_wiring.PREFIXES)
 
 Sender = tuple[int, int]
 """System and component."""
+Stated = tuple[float, float]
+"""A value as it reads where integers are converted to floating point, and where their bytes are put there."""
 
 
 def tells_of_outputs(name: str) -> bool:
@@ -26,6 +28,11 @@ def names_in(columns: Columns) -> list[str]:
     return [raw.rstrip(b"\0").decode("ascii", "replace") for raw in columns.fields["param_id"].tolist()]
 
 
+def read_by(autopilot: str, stated: Stated) -> float:
+    """The value as this autopilot means it."""
+    return stated[autopilot == "px4"]
+
+
 class Parameters:
     """Keeps those parameters that say what the servo outputs are.
 
@@ -34,21 +41,22 @@ class Parameters:
     """
 
     def __init__(self) -> None:
-        self._known: dict[Sender, dict[str, tuple[float, float]]] = {}
+        self._known: dict[Sender, dict[str, Stated]] = {}
 
-    def hear(self, columns: Columns) -> bool:
-        """Take PARAM_VALUE messages of one sender; true where one of them is news."""
-        known = self._known.setdefault((columns.system, columns.component), {})
+    def news(self, columns: Columns) -> Iterator[tuple[str, Stated | None, Stated]]:
+        """Name, value before and new value of the parameters that change what is known."""
         cast = np.asarray(columns.fields["param_value"])
         kinds = np.broadcast_to(columns.fields.get("param_type", np.zeros(len(cast))), cast.shape)
         bytewise = cast.astype(np.float32).view(np.int32)
-        changed = False
         for name, kind, value, whole in zip(names_in(columns), kinds, cast, bytewise, strict=True):
             stated = float(value), float(whole) if int(kind) in _INTEGERS else float(value)
-            if tells_of_outputs(name) and known.get(name) != stated:
-                known[name] = stated
-                changed = True
-        return changed
+            before = self._known.get((columns.system, columns.component), {}).get(name)
+            if tells_of_outputs(name) and before != stated:
+                yield name, before, stated
+
+    def keep(self, sender: Sender, name: str, stated: Stated) -> None:
+        """From now on the sender's parameter has this value."""
+        self._known.setdefault(sender, {})[name] = stated
 
     def wiring(self, senders: Sequence[Sender], autopilot: str) -> Wiring:
         """What the parameters of these senders say of the outputs; the last sender wins.
@@ -64,4 +72,5 @@ class Parameters:
         stated = {
             name: values[is_px4] for sender in senders for name, values in self._known.get(sender, {}).items()
         }
-        return px4_wiring.px4_wiring(stated) if is_px4 else ardupilot_wiring.ardupilot_wiring(stated)
+        find = px4_wiring.px4_wiring if autopilot == "px4" else ardupilot_wiring.ardupilot_wiring
+        return find(stated)

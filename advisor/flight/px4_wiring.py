@@ -61,7 +61,7 @@ WORDS = Words(
 
 
 @dataclass(frozen=True, slots=True)
-class Carrier:
+class ServoOutput:
     """The output that carries a servo."""
 
     number: int
@@ -77,17 +77,17 @@ def banks(parameters: Parameters) -> list[str]:
     return [group for group in GROUPS if any(parameters.get(f"{group}_FUNC{k}", 0.0) for k in OUTPUTS)]
 
 
-def carriers(parameters: Parameters) -> list[Carrier]:
+def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
     """The first output of each servo; servo n on output n + 1 where no function of any output is known."""
-    found: dict[int, Carrier] = {}
+    found: dict[int, ServoOutput] = {}
     for bank, group in enumerate(banks(parameters)):
         for k in OUTPUTS:
             servo = int(parameters.get(f"{group}_FUNC{k}", 0.0)) - _SERVO_1
             if servo in _SERVOS:
-                carrier = Carrier(16 * bank + k, servo, _scale(group, k, parameters))
-                found.setdefault(servo, carrier)
+                output = ServoOutput(16 * bank + k, servo, _scale(group, k, parameters))
+                found.setdefault(servo, output)
     if not banks(parameters):
-        found = {servo: Carrier(servo + 1, servo, GROUPS["PWM_MAIN"]) for servo in _SERVOS}
+        found = {servo: ServoOutput(servo + 1, servo, GROUPS["PWM_MAIN"]) for servo in _SERVOS}
     return list(found.values())
 
 
@@ -96,12 +96,12 @@ def px4_wiring(parameters: Parameters) -> Wiring:
     surfaces = dict(_surfaces(parameters))
     if not surfaces:
         return _followers(parameters)
-    carried = [carrier for carrier in carriers(parameters) if carrier.servo in surfaces]
+    carried = [output for output in servo_outputs(parameters) if output.servo in surfaces]
     return Wiring(
         WORDS,
-        {carrier.number: surfaces[carrier.servo] for carrier in carried},
-        {carrier.number: _turned(carrier, parameters) for carrier in carried},
-        frozenset(carrier.number for carrier in carried if _effect(carrier.servo, parameters)),
+        {output.number: surfaces[output.servo] for output in carried},
+        {output.number: _turned(output, parameters) for output in carried},
+        frozenset(output.number for output in carried if _effect(output.servo, parameters)),
     )
 
 
@@ -122,10 +122,10 @@ def _effect(n: int, parameters: Parameters) -> float:
     return parameters.get(f"CA_SV_CS{n}_TRQ_P", 0.0)
 
 
-def _turned(carrier: Carrier, parameters: Parameters) -> Scale:
+def _turned(output: ServoOutput, parameters: Parameters) -> Scale:
     """Scale of an output by what its surface does to the nose."""
-    lowers = _effect(carrier.servo, parameters) < 0.0
-    return replace(carrier.scale, reversed=carrier.scale.reversed != lowers)
+    lowers = _effect(output.servo, parameters) < 0.0
+    return replace(output.scale, reversed=output.scale.reversed != lowers)
 
 
 def _scale(group: str, k: int, parameters: Parameters) -> Scale:

@@ -14,7 +14,7 @@ from advisor.aircraft import Aircraft
 from advisor.flight.attitude import Attitudes
 from advisor.flight.banks import Banks, merged
 from advisor.flight.boots import Master, by_boot
-from advisor.flight.channels import Decoded, named_value, quantities, stamps
+from advisor.flight.channels import Decoded, given_airspeed, named_value, quantities, stamps
 from advisor.flight.clocks import BootClock
 from advisor.flight.commanded import Commanded, commanded
 from advisor.flight.cutting import Cutting
@@ -94,6 +94,7 @@ class FlightStream:
         self._elevator_message: str | None = None
         self._cutting.begin(self._who.mode)
         self._first_s = np.nan
+        self._flown_before = self._cutting.maneuvers
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
 
@@ -212,7 +213,8 @@ class FlightStream:
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Columns within which neither vehicle nor parameters nor mode change."""
         mode = self._who.mode
-        events = self._who.learn(piece)
+        flown = self._cutting.maneuvers > self._flown_before
+        events = self._who.learn(piece, self._master_s, flown)
         vehicle = self._who.vehicle
         if vehicle is None:
             return events
@@ -273,6 +275,8 @@ class FlightStream:
 
     def _decode(self, columns: Columns, t: FloatArray) -> Iterator[Decoded]:
         yield from quantities(columns, t)
+        if columns.name == "ATTITUDE" and self._aircraft.airspeed_m_s is not None:
+            yield given_airspeed(columns, t, self._aircraft.airspeed_m_s)
         if columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
             yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))
 

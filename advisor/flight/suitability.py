@@ -12,10 +12,10 @@ from collections.abc import Collection, Mapping
 from math import isfinite
 
 from advisor.beside import beside
-from advisor.flight.surfaces import Surface, joined_numbers
+from advisor.flight.surfaces import Surface, joined_numbers, listed
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
-from advisor.mends import GOOD_HZ
+from advisor.mends import GOOD_HZ, sentence
 from advisor.problems import Problem
 
 SLOWEST_HZ = 8.0
@@ -113,10 +113,12 @@ def _missing(
 ) -> list[Problem]:
     mends = vehicle.mends
     found = [elevator] if isinstance(elevator, Problem) else []
+    if vehicle.carrier != "telemetry":
+        return [*found, *_not_logged(elevator, channels, vehicle)]
     if "q" not in channels:
         # Its stamps are the vehicle's clock: without it no other channel can be placed either.
         text = f"There is no pitch rate: no {mends.called('ATTITUDE')} arrived."
-        return [*found, Problem("no_pitch_rate", text, _sentence(mends.present(["ATTITUDE"])))]
+        return [*found, Problem("no_pitch_rate", text, sentence(mends.faster("ATTITUDE")))]
     if isinstance(elevator, Surface) and "elevator" not in channels:
         outputs = joined_numbers(elevator.outputs)
         found.append(
@@ -124,7 +126,7 @@ def _missing(
                 "no_elevator",
                 f"Servo output {outputs}, the elevator, never carried a pulse "
                 f"({mends.called('SERVO_OUTPUT_RAW')}).",
-                f"{_sentence(mends.present(['SERVO_OUTPUT_RAW']), '')}, "
+                f"{sentence(mends.present(['SERVO_OUTPUT_RAW']), '')}, "
                 "or set elevator.output in the aircraft file.",
             )
         )
@@ -134,11 +136,37 @@ def _missing(
             Problem(
                 "no_alpha",
                 f"There is no angle of attack, and the motion cannot stand in for it: no {absent} arrived.",
-                f"{_sentence(mends.present(['RAW_IMU', 'VFR_HUD']), '')}; "
+                f"{sentence(mends.present(['RAW_IMU', 'VFR_HUD']), '')}; "
                 f"a vane may send {mends.called('NAMED_VALUE_FLOAT')} (alpha.source).",
             )
         )
     return found
+
+
+def _not_logged(
+    elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
+) -> list[Problem]:
+    """All that a log of the autopilot's own lacks, in one problem."""
+    lacks: dict[str, tuple[str, str]] = {}
+    if "q" not in channels:
+        lacks["no_pitch_rate"] = ("pitch rate", "ATTITUDE")
+    if isinstance(elevator, Surface) and "elevator" not in channels:
+        lacks["no_elevator"] = (
+            f"pulse of servo output {joined_numbers(elevator.outputs)}",
+            "SERVO_OUTPUT_RAW",
+        )
+    if "alpha" not in channels and not motion_stands_in(channels):
+        lacks["no_alpha"] = ("angle of attack", "AOA_SSA")
+        if "airspeed" not in channels:
+            lacks["no_airspeed"] = ("air speed", "VFR_HUD")
+    if not lacks:
+        return []
+    if "a_z" not in channels:
+        lacks["no_accelerometer"] = ("specific force", "HIGHRES_IMU")
+    told = listed([f"no {what} ({vehicle.mends.called(message)})" for what, message in lacks.values()])
+    fix = vehicle.mends.present([message for _, message in lacks.values()])
+    given = "; or give airspeed_m_s in the aircraft file" if "no_airspeed" in lacks else ""
+    return [Problem(next(iter(lacks)), f"The log holds {told}.", f"{sentence(fix, given)}.")]
 
 
 def motion_stands_in(channels: Collection[str]) -> bool:
@@ -158,7 +186,7 @@ def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[P
             "rate",
             f"{mends.called(message)} arrives {_at(rate_hz)}, too slow to identify a short period "
             f"(at least {SLOWEST_HZ:g} Hz, better {GOOD_HZ} Hz).",
-            _sentence(mends.faster(message)),
+            sentence(mends.faster(message)),
         )
         for message, rate_hz in slow.items()
     ]
@@ -171,8 +199,3 @@ def _at(rate_hz: float) -> str:
 def _message(status: ChannelStatus) -> str:
     """Name of the message that sets the rate of a channel."""
     return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
-
-
-def _sentence(clause: str, stop: str = ".") -> str:
-    """A clause with a capital at its beginning and a full stop, or nothing, at its end."""
-    return clause[:1].upper() + clause[1:] + stop

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.channels import READINGS, Decoded
+from advisor.flight.channels import GIVEN_AIRSPEED, READINGS, Decoded
 from advisor.flight.derived_alpha import DERIVED_ALPHA, DerivedAlpha
 from advisor.flight.record import UNITS, Channel
 from advisor.flight.track import ChannelStatus, Track
@@ -28,6 +28,7 @@ class Tracks:
         self._sources: dict[str, list[str]] = {}
         for reading in READINGS:
             self._sources.setdefault(reading.channel, []).append(reading.source)
+        self._sources["airspeed"].append(GIVEN_AIRSPEED)
         named = alpha_source.removeprefix("named_value:")
         self._sources["alpha"] = {
             "auto": ["AOA_SSA.AOA", DERIVED_ALPHA],

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from advisor.flight.messages import Columns
-from advisor.mends import Mends, Record, mends_of
+from advisor.mends import Carrier, Mends, mends_of
 
 # Numbers of MAV_AUTOPILOT and MAV_TYPE, MAVLink common.xml.
 _AUTOPILOT_INVALID = 8
@@ -26,8 +26,8 @@ class Vehicle:
     """MAV_TYPE of its heartbeat."""
     firmware: str | None = None
     """Version as the vehicle states it; None until it does."""
-    record: Record = "telemetry"
-    """What holds its messages: telemetry, or its own log."""
+    carrier: Carrier = "telemetry"
+    """What brings its messages: a mend must fit this."""
 
     def __str__(self) -> str:
         return f"{self.autopilot} {self.system}/{self.component}"
@@ -40,7 +40,7 @@ class Vehicle:
     @property
     def mends(self) -> Mends:
         """What can be done about messages that are missing or slow, in the words of this autopilot."""
-        return mends_of(self.autopilot, self.record)
+        return mends_of(self.autopilot, self.carrier)
 
     def with_firmware(self, firmware: str) -> "Vehicle":
         """The same vehicle, its version known."""
@@ -75,7 +75,9 @@ class VehicleFinder:
             return False
         if self.vehicle is None and self._target in (None, heartbeat.system):
             name = _AUTOPILOTS.get(autopilot, f"autopilot {autopilot}")
-            self.vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind, record=heartbeat.record)
+            self.vehicle = Vehicle(
+                heartbeat.system, heartbeat.component, name, kind, carrier=heartbeat.carrier
+            )
             self.others.discard(heartbeat.system)
             return True
         if self.vehicle is None or heartbeat.system != self.vehicle.system:

@@ -1,7 +1,6 @@
 """What an ArduPilot log says, as the messages its telemetry would have carried."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,46 +8,51 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from advisor.flight.identity import READER
-from advisor.flight.messages import Columns
-from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
-from advisor.mavlink.equivalent import (
-    MAV_PARAM_TYPE_REAL32,
-    MAV_TYPE_FIXED_WING,
-    air_data,
-    message,
-    system_id,
+from advisor.flight.messages import Columns, IntArray
+from advisor.mavlink.ardupilot_vehicle import (
+    VEHICLE_RECORDS,
+    heartbeats,
+    in_todays_parameters,
+    parameter_fields,
+    system_of,
+    version_fields,
 )
-from advisor.mavlink.sensors import flown, said
+from advisor.mavlink.body_rates import RATE_RECORDS, body_rates, calmed
+from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
+from advisor.mavlink.equivalent import air_data, message
+from advisor.mavlink.eras import SENSORS_APART, Clocked, in_todays_names
+from advisor.mavlink.sensors import Said, flown, said
 from advisor.problems import UnusableInputError
 
 _RECORDS: dict[str, set[str]] = {
+    **VEHICLE_RECORDS,
+    **RATE_RECORDS,
+    "ACC": {"AccX", "AccY", "AccZ"},
     "AOA": {"AOA", "SSA"},
     "ARSP": {"Airspeed"},
     "ATT": {"Roll", "Pitch", "Yaw"},
     "BARO": {"CRt"},
-    "CTUN": {"As"},
+    "CTUN": set(),
+    "EKF1": {"VD"},
     "GPS": {"GWk", "GMS"},
     "IMU": {"GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ"},
-    "MODE": {"ModeNum"},
-    "MSG": {"Message"},
-    "PARM": {"Name", "Value"},
+    "NKF1": {"VD"},
+    "NTUN": {"Arspd"},
     "POS": {"Lat", "Lng", "Alt", "RelHomeAlt"},
     "RCIN": {"C1"},
     "RCOU": {"C1"},
     "RCO2": set(),
     "RCO3": set(),
-    "VER": {"Maj", "Min", "Pat", "FWT"},
     "XKF1": {"VD"},
 }
 """Records, and the fields needed of each: without them (another kind of vehicle, an older version)
 a record counts as missing."""
+_AIR_SPEED = (("ARSP", "Airspeed"), ("CTUN", "As"), ("NTUN", "Arspd"))
+"""Records that hold the air speed, the best first, and the field that does."""
+_CLIMB = (("XKF1", "VD"), ("NKF1", "VD"), ("EKF1", "VD"))
+"""Records of the estimators' rate of descent, the newest estimator first."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 """Records of which a vehicle may carry several, and the quantities that they hold."""
-_ARDUPILOTMEGA = 3  # MAV_AUTOPILOT
-_BUILD_TO_MAV_TYPE = {1: 10, 2: 2, 3: MAV_TYPE_FIXED_WING, 4: 5, 7: 12, 12: 7, 13: 4}
-"""VER.BU: rover, copter, plane, antenna tracker, submarine, airship, helicopter."""
-_TITLES = {"ArduPlane": MAV_TYPE_FIXED_WING, "ArduCopter": 2, "ArduRover": 10, "ArduSub": 12}
-"""Firmware names in MSG, for logs older than VER."""
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
@@ -59,10 +63,12 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
     UnusableInputError
         When it holds neither attitude, inertial sensors, nor servo outputs.
     """
+    apart = (name for names in SENSORS_APART.values() for name in names)
+    read = in_todays_names(read_tables(path, (*_RECORDS, *apart)))
     tables = {
         name: table
-        for name, table in read_tables(path, _RECORDS).items()
-        if _RECORDS[name] <= table.fields.keys()
+        for name, table in read.tables.items()
+        if name in _RECORDS and _RECORDS[name] <= table.fields.keys()
     }
     if not tables.keys() & {"ATT", "IMU", "RCOU"}:
         raise UnusableInputError(
@@ -72,79 +78,94 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
         )
     names = None if wanted is None else set(wanted)
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
-        columns = list(_Translation(tables).columns())
-    columns = [
-        replace(c, record="dataflash") for c in columns if len(c) and (names is None or c.name in names)
-    ]
+        columns = list(_Translation(Clocked(tables, read.epoch_s)).columns())
+    columns = [c for c in columns if len(c) and (names is None or c.name in names)]
     if columns:
         yield columns
 
 
 class _Translation:
-    def __init__(self, tables: dict[str, Table]) -> None:
-        self._tables = {name: flown(table) if name in _SENSORS else table for name, table in tables.items()}
-        self._base_s = gps_time_base_s(tables.get("GPS"))
-        self._system = self._system_id()
+    def __init__(self, read: Clocked) -> None:
+        self._tables = dict(read.tables)
+        self._said: list[Said] = []
+        if read.epoch_s:
+            self._said.append(Said(0, 0, "Stamps count from 1970: times are given from the first record on"))
+        for name, quantity in _SENSORS.items():
+            if name in self._tables:
+                every = self._tables[name]
+                self._tables[name] = flown(every)
+                self._said += said(every, self._tables[name], quantity)
+        self._tables = {name: table for name, table in self._tables.items() if len(table)}
+        if "PARM" in self._tables:
+            self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
+        self._base_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
+        self._system = system_of(self._tables)
 
     def columns(self) -> Iterator[Columns]:
-        yield self._heartbeat()
+        order, time_us, fields = heartbeats(self._tables)
+        yield self._made("HEARTBEAT", order, time_us, fields)
+        yield from self._attitude()
+        yield from self._highres_imu()
         translations = {
-            "ATT": self._attitude,
-            "IMU": self._highres_imu,
             "AOA": self._aoa_ssa,
             "POS": self._global_position_int,
             "RCIN": self._rc_channels,
-            "PARM": self._param_value,
-            "VER": self._autopilot_version,
         }
-        if "ATT" not in self._tables and "IMU" in self._tables:
-            yield self._attitude(None)
         for name, translate in translations.items():
             if name in self._tables:
                 yield translate(self._tables[name])
+        if "PARM" in self._tables:
+            yield self._message("PARAM_VALUE", self._tables["PARM"], parameter_fields(self._tables["PARM"]))
+        if "VER" in self._tables:
+            yield self._message("AUTOPILOT_VERSION", self._tables["VER"], version_fields(self._tables["VER"]))
         yield from self._servo_outputs()
-        air = self._tables.get("ARSP", self._tables.get("CTUN"))
-        if air is not None:
-            yield self._vfr_hud(air)
+        yield from self._vfr_hud()
         yield self._statustext()
-
-    def _system_id(self) -> int:
-        """As the parameters give it, under its old or its new name."""
-        parm = self._tables.get("PARM")
-        if parm is not None:
-            for name, value in zip(parm.fields["Name"].tolist(), parm.fields["Value"].tolist(), strict=True):
-                if name in (b"SYSID_THISMAV", b"MAV_SYSID"):
-                    return system_id(value)
-        return system_id(None)
 
     def _message(self, name: str, table: Table, fields: dict[str, ArrayLike], place: int = 0) -> Columns:
         """A message made of each record; ``place`` keeps several made of one record in order."""
-        return message(name, self._system, table.order + place, self._base_s + seconds(table.time_us), fields)
+        return self._made(name, table.order + place, table.time_us, fields)
 
-    def _attitude(self, att: Table | None) -> Columns:
-        """Angles at the stamps of ATT, rates at those of IMU."""
-        rows: list[tuple[Table, NDArray[np.float64]]] = []
-        if att is not None:
+    def _made(self, name: str, order: IntArray, time_us: IntArray, fields: dict[str, ArrayLike]) -> Columns:
+        arrival_s = self._base_s + seconds(time_us)
+        return message(name, self._system, order, arrival_s, fields, "dataflash")
+
+    def _attitude(self) -> Iterator[Columns]:
+        """Angles at the stamps of ATT, rates at those of their own records."""
+        blocks: list[tuple[IntArray, IntArray, NDArray[np.float64]]] = []
+        if "ATT" in self._tables:
+            att = self._tables["ATT"]
             angles = np.radians([att.fields[axis] for axis in ("Roll", "Pitch", "Yaw")])
-            rows.append((att, np.vstack([angles, np.full_like(angles, np.nan)])))
-        if "IMU" in self._tables:
-            imu = self._tables["IMU"]
-            rates = np.array([imu.fields[axis] for axis in ("GyrX", "GyrY", "GyrZ")], dtype=np.float64)
-            rows.append((imu, np.vstack([np.full_like(rates, np.nan), rates])))
-        order = np.concatenate([table.order for table, _ in rows])
-        time_us = np.concatenate([table.time_us for table, _ in rows])
-        values = np.hstack([values for _, values in rows])
+            blocks.append((att.order, att.time_us, np.vstack([angles, np.full_like(angles, np.nan)])))
+        rates = body_rates(self._tables)
+        if rates is not None:
+            nothing = np.full_like(rates.values, np.nan)
+            blocks.append((rates.order, rates.time_us, np.vstack([nothing, rates.values])))
+            if rates.said:
+                text = f"The log holds no IMU records: the angular rates are {rates.said}"
+                self._said.append(Said(int(rates.order[0]), int(rates.time_us[0]), text))
+        if not blocks:
+            return
+        order, time_us = (np.concatenate([block[k] for block in blocks]) for k in (0, 1))
+        values = np.hstack([block[2] for block in blocks])
         names = ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed")
         fields: dict[str, Any] = dict(zip(names, values, strict=True))
         fields["time_boot_ms"] = _milliseconds(time_us)
-        return message("ATTITUDE", self._system, order, self._base_s + seconds(time_us), fields)
+        yield self._made("ATTITUDE", order, time_us, fields)
 
-    def _highres_imu(self, imu: Table) -> Columns:
+    def _highres_imu(self) -> Iterator[Columns]:
+        if "IMU" in self._tables:
+            imu = self._tables["IMU"]
+        elif "ACC" in self._tables:
+            imu = calmed(self._tables["ACC"])
+        else:
+            return
         fields: dict[str, ArrayLike] = {"time_usec": imu.time_us}
         for axis in "XYZ":
             fields[f"{axis.lower()}acc"] = imu.fields[f"Acc{axis}"]
-            fields[f"{axis.lower()}gyro"] = imu.fields[f"Gyr{axis}"]
-        return self._message("HIGHRES_IMU", imu, fields, place=1)
+            if f"Gyr{axis}" in imu.fields:
+                fields[f"{axis.lower()}gyro"] = imu.fields[f"Gyr{axis}"]
+        yield self._message("HIGHRES_IMU", imu, fields, place=1)
 
     def _aoa_ssa(self, aoa: Table) -> Columns:
         angles = {"AOA": aoa.fields["AOA"], "SSA": aoa.fields["SSA"]}
@@ -184,29 +205,35 @@ class _Translation:
         }
         return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
-    def _vfr_hud(self, air: Table) -> Columns:
+    def _vfr_hud(self) -> Iterator[Columns]:
         """Air speed, climb rate and throttle, each at the stamps of its own record."""
-        name = "Airspeed" if "Airspeed" in air.fields else "As"
-        rows = [{**_place(air), "airspeed": air.fields[name].astype(np.float64)}]
-        climb = self._field("XKF1", ("VD",), -1.0) or self._field("BARO", ("CRt",))
-        for field, found in (("climb", climb), ("throttle", self._field("CTUN", ("ThO", "ThrOut")))):
-            if found is not None:
-                table, values = found
-                # A second place in the order, for the air speed of CTUN takes the first.
-                rows.append({**_place(table, 2 if field == "throttle" else 1), field: values})
-        fields: dict[str, ArrayLike] = dict(air_data(*rows))
-        order, time_us = np.asarray(fields.pop("order")), np.asarray(fields["time_usec"])
-        return message("VFR_HUD", self._system, order, self._base_s + seconds(time_us), fields)
+        climb = self._first(_CLIMB)
+        found = {
+            "airspeed": self._first(_AIR_SPEED),
+            "climb": None if climb is None else (climb[0], -climb[1]),
+            "throttle": self._first((("CTUN", "ThO"),)),
+        }
+        if found["climb"] is None:
+            found["climb"] = self._first((("BARO", "CRt"),))
+        rows = [
+            # The places of one record follow each other: CTUN may hold an air speed and the throttle.
+            {"order": one[0].order + place, "time_usec": one[0].time_us, field: one[1]}
+            for place, (field, one) in enumerate(found.items(), start=1)
+            if one is not None
+        ]
+        if rows:
+            fields: dict[str, ArrayLike] = dict(air_data(*rows))
+            order = np.asarray(fields.pop("order"))
+            yield self._made("VFR_HUD", order, np.asarray(fields["time_usec"]), fields)
 
-    def _field(
-        self, record: str, names: tuple[str, ...], factor: float = 1.0
-    ) -> tuple[Table, NDArray[np.float64]] | None:
-        """A record's first instance and the first of these fields that it has, None without any."""
-        if record not in self._tables:
-            return None
-        table = self._tables[record].first_instance()
-        name = next((name for name in names if name in table.fields), None)
-        return None if name is None else (table, factor * table.fields[name].astype(np.float64))
+    def _first(self, places: Iterable[tuple[str, str]]) -> tuple[Table, NDArray[np.float64]] | None:
+        """The first record that has its field, and the values of the field; None where none has."""
+        for name, field in places:
+            if name in self._tables and field in self._tables[name].fields:
+                table = self._tables[name]
+                table = table if name in _SENSORS else table.first_instance()
+                return table, table.fields[field].astype(np.float64)
+        return None
 
     def _global_position_int(self, pos: Table) -> Columns:
         fields: dict[str, ArrayLike] = {
@@ -218,78 +245,17 @@ class _Translation:
         }
         return self._message("GLOBAL_POSITION_INT", pos, fields)
 
-    def _param_value(self, parm: Table) -> Columns:
-        fields: dict[str, ArrayLike] = {
-            "param_id": parm.fields["Name"],
-            "param_value": parm.fields["Value"],
-            "param_type": MAV_PARAM_TYPE_REAL32,
-            "param_count": len(parm),
-            "param_index": np.arange(len(parm)),
-        }
-        return self._message("PARAM_VALUE", parm, fields)
-
     def _statustext(self) -> Columns:
-        """The vehicle's own texts, and which of several like sensors flew."""
+        """The vehicle's own texts, and what was chosen in reading the log."""
         msg = self._tables.get("MSG")
         own = [] if msg is None else zip(msg.order, msg.time_us, msg.fields["Message"].tolist(), strict=True)
         # A record's own messages take its place and the one after it.
         read = [
-            (one.order + 2, one.time_us, READER + one.text.encode())
-            for name, quantity in _SENSORS.items()
-            if name in self._tables
-            for one in said(self._tables[name], quantity)
+            (one.order + 2 + k, one.time_us, READER + one.text.encode()) for k, one in enumerate(self._said)
         ]
-        texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S128")])
+        texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")])
         fields: dict[str, ArrayLike] = {"severity": 6, "text": texts["text"]}
-        arrival_s = self._base_s + seconds(texts["time_us"])
-        return message("STATUSTEXT", self._system, texts["order"], arrival_s, fields)
-
-    def _autopilot_version(self, ver: Table) -> Columns:
-        parts = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))
-        major, minor, patch, kind = parts
-        return self._message(
-            "AUTOPILOT_VERSION",
-            ver,
-            {"flight_sw_version": major << 24 | minor << 16 | patch << 8 | kind},
-        )
-
-    def _heartbeat(self) -> Columns:
-        """One before everything else, so that the vehicle is known, and two at each change of mode.
-
-        A log tells of a change when it happens. The mode of before lasted until then, which the first of the
-        two says: heard once a second, as over a link, it may have ended any time since the heartbeat before.
-        """
-        order, modes, time_us = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(1, np.int64)
-        if "MODE" in self._tables:
-            mode = self._tables["MODE"]
-            numbers = mode.fields["ModeNum"].astype(np.int64)
-            changes = np.column_stack([np.append(numbers[:1], numbers[:-1]), numbers])
-            order = np.append(order, np.column_stack([mode.order - 1, mode.order]))
-            modes = np.append(numbers[:1], changes)
-            time_us = np.append(mode.time_us[:1], np.repeat(mode.time_us, 2))
-        fields: dict[str, ArrayLike] = {
-            "type": self._mav_type(),
-            "autopilot": _ARDUPILOTMEGA,
-            "base_mode": 1,  # custom_mode is in use
-            "custom_mode": modes,
-            "mavlink_version": 3,
-        }
-        return message("HEARTBEAT", self._system, order, self._base_s + seconds(time_us), fields)
-
-    def _mav_type(self) -> int:
-        ver, msg = self._tables.get("VER"), self._tables.get("MSG")
-        if ver is not None and "BU" in ver.fields:
-            return _BUILD_TO_MAV_TYPE.get(int(ver.fields["BU"][0]), MAV_TYPE_FIXED_WING)
-        for text in msg.fields["Message"].tolist() if msg is not None else ():
-            for title, kind in _TITLES.items():
-                if text.startswith(title.encode()):
-                    return kind
-        return MAV_TYPE_FIXED_WING
-
-
-def _place(table: Table, place: int = 1) -> dict[str, NDArray[Any]]:
-    """Where records stand in the order of arrival, and their stamps."""
-    return {"order": table.order + place, "time_usec": table.time_us}
+        return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
 
 
 def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from advisor.flight.messages import Columns, FloatArray, IntArray
 from advisor.mavlink.definitions import DEFINITIONS
+from advisor.mends import Carrier
 
 AUTOPILOT_COMPONENT = 1  # MAV_COMP_ID_AUTOPILOT1
 MAV_TYPE_FIXED_WING = 1
@@ -21,7 +22,12 @@ MAV_PARAM_TYPE_REAL32 = 9
 
 
 def message(
-    name: str, system: int, order: IntArray, arrival_s: FloatArray, fields: Mapping[str, ArrayLike]
+    name: str,
+    system: int,
+    order: IntArray,
+    arrival_s: FloatArray,
+    fields: Mapping[str, ArrayLike],
+    carrier: Carrier,
 ) -> Columns:
     """Messages of one type from the values at hand, put into their order.
 
@@ -37,6 +43,8 @@ def message(
         Field name to shape (n,), or a scalar for all, in the units of the definition. Integers
         are cut to the size of the field, as a vehicle's counters wrap; texts and floating-point
         values are kept as they are, and so are fields that the definition lacks (a stamp).
+    carrier : Carrier
+        The kind of log.
     """
     n = len(order)
     layout = DEFINITIONS[name].layout
@@ -54,7 +62,7 @@ def message(
         columns[field] = np.broadcast_to(values, (n, *wire.shape))[rows]
     for field in fields.keys() - columns.keys():
         columns[field] = np.asarray(fields[field])[rows]
-    return Columns(name, system, AUTOPILOT_COMPONENT, order[rows], arrival_s[rows], columns)
+    return Columns(name, system, AUTOPILOT_COMPONENT, order[rows], arrival_s[rows], columns, carrier)
 
 
 def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:

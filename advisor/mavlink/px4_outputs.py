@@ -11,7 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from advisor.flight.messages import FloatArray, IntArray
-from advisor.flight.px4_wiring import FOLLOWS_PITCH, OUTPUTS, STANDS_FOR_ELEVATOR, banks, carriers, px4_wiring
+from advisor.flight.px4_wiring import (
+    FOLLOWS_PITCH,
+    OUTPUTS,
+    STANDS_FOR_ELEVATOR,
+    banks,
+    px4_wiring,
+    servo_outputs,
+)
 from advisor.mavlink.px4_pitch import Command, followers, pitch_commands
 from advisor.mavlink.px4_topics import TimedMessages, Topic, Topics, best, first, published_us
 
@@ -80,13 +87,13 @@ def _of_instance(port: int, topic: Topic) -> TimedMessages:
 def _of_servos(servos: Topic, parameters: Mapping[str, float]) -> list[TimedMessages]:
     """The pulses that normalised servo commands become at the outputs which carry them."""
     ports: dict[int, dict[int, FloatArray]] = {}
-    for carrier in carriers(parameters):
-        field = f"control[{carrier.servo}]"
+    for output in servo_outputs(parameters):
+        field = f"control[{output.servo}]"
         if field in servos:
-            scale = carrier.scale
+            scale = output.scale
             command = servos[field].astype(np.float64) * (-1.0 if scale.reversed else 1.0)
             pulses = np.interp(command, [-1.0, 0.0, 1.0], [scale.low_us, scale.trim_us, scale.high_us])
-            port, k = divmod(carrier.number - 1, 16)
+            port, k = divmod(output.number - 1, 16)
             ports.setdefault(port, {})[k + 1] = np.where(np.isfinite(command), pulses, np.nan)
     return [_pulses(port, published_us(servos), pulses) for port, pulses in ports.items()]
 

@@ -1,9 +1,9 @@
-"""PX4's own log (``.ulg``), read by pyulog, an extra."""
+"""PX4's own log (``.ulg``), read by pyulog."""
 
 import contextlib
+import io
 import sys
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,31 +14,35 @@ from advisor.mavlink.equivalent import message, system_id
 from advisor.mavlink.px4_log import translate
 from advisor.mavlink.px4_topics import TOPICS, topics_of
 from advisor.mavlink.px4_vehicle import unix_time_base_s
+from advisor.mends import mends_of, sentence
 from advisor.problems import UnusableInputError
 
 MAGIC = b"ULog\x01\x12\x35"
 
 
-def read_ulog(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
+def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 0) -> Iterator[list[Columns]]:
     """The messages of a ``.ulg``, in one batch, ordered by time.
+
+    Parameters
+    ----------
+    path
+    wanted
+        Names of the messages to give; all by default.
+    starts_at
+        Bytes in front of the log.
 
     Raises
     ------
     UnusableInputError
-        When pyulog is not installed, or the file holds neither attitude, sensors, nor outputs.
+        When the file holds neither attitude, sensors, nor outputs.
     """
-    try:
-        from pyulog import ULog
-    except ImportError:
-        raise UnusableInputError(
-            "no_pyulog",
-            f"{path.name} is a PX4 log, and pyulog, which reads them, is not installed.",
-            "Install it with: pip install 'inflight-advisor[logs]'.",
-        ) from None
+    from pyulog import ULog  # here, for no other command needs to wait for its import
+
     try:
         # pyulog prints its warnings; standard output belongs to the result.
         with path.open("rb") as file, contextlib.redirect_stdout(sys.stderr):
-            log = ULog(file, list(TOPICS))
+            file.seek(starts_at)
+            log = ULog(file if starts_at == 0 else io.BytesIO(file.read()), list(TOPICS))
     except Exception as error:  # whatever pyulog meets in damaged bytes
         raise _nothing_in(path) from error
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
@@ -46,14 +50,15 @@ def read_ulog(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[
     if not {c.name for c in columns} & {"ATTITUDE", "HIGHRES_IMU", "SERVO_OUTPUT_RAW"}:
         raise _nothing_in(path)
     names = None if wanted is None else set(wanted)
-    yield [replace(c, record="ulog") for c in columns if names is None or c.name in names]
+    yield [c for c in columns if names is None or c.name in names]
 
 
 def _nothing_in(path: Path) -> UnusableInputError:
     return UnusableInputError(
         "no_messages",
         f"{path.name} holds no attitude, sensor or actuator topics of PX4.",
-        "Set SDLOG_PROFILE so that they are logged, or give a .tlog.",
+        f"{sentence(mends_of('px4', 'ulog').present(['ATTITUDE', 'RAW_IMU', 'SERVO_OUTPUT_RAW']), '')}, "
+        "or give a .tlog.",
     )
 
 
@@ -68,7 +73,7 @@ def _columns(log: Any) -> list[Columns]:
     base_s = unix_time_base_s(topics)
     system = system_id(log.initial_parameters.get("MAV_SYS_ID"))
     return [
-        message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields)
+        message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields, "ulog")
         for m, numbers in zip(messages, orders, strict=True)
         if len(numbers)
     ]

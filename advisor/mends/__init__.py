@@ -4,7 +4,7 @@ A vehicle is heard over telemetry, live or from a ``.tlog``, or read from the lo
 Each of these calls the same values by other names and has other settings for their rates.
 """
 
-from advisor.mends.choice import Record, mends_of
-from advisor.mends.mends import GOOD_HZ, Mends
+from advisor.mends.choice import Carrier, mends_of
+from advisor.mends.mends import GOOD_HZ, Mends, sentence
 
-__all__ = ["GOOD_HZ", "Mends", "Record", "mends_of"]
+__all__ = ["GOOD_HZ", "Carrier", "Mends", "mends_of", "sentence"]

@@ -7,23 +7,23 @@ from advisor.mends.mends import Mends
 from advisor.mends.telemetry import ArduPilotTelemetry, OtherTelemetry, Px4Telemetry
 from advisor.mends.ulog import Ulog
 
-Record = Literal["telemetry", "dataflash", "ulog"]
+Carrier = Literal["telemetry", "dataflash", "ulog"]
 """Messages of a link or a ``.tlog``, ArduPilot's own log (``.bin``), PX4's own log (``.ulg``)."""
 
 
-def mends_of(autopilot: str, record: Record) -> Mends:
+def mends_of(autopilot: str, carrier: Carrier) -> Mends:
     """The mends for a vehicle.
 
     Parameters
     ----------
     autopilot
         ``ardupilot``, ``px4``, or another name.
-    record
-        What holds the vehicle's messages.
+    carrier
+        What brings the vehicle's messages.
     """
-    if record == "dataflash":
+    if carrier == "dataflash":
         return Dataflash()
-    if record == "ulog":
+    if carrier == "ulog":
         return Ulog()
     telemetry: dict[str, Mends] = {"ardupilot": ArduPilotTelemetry(), "px4": Px4Telemetry()}
     return telemetry.get(autopilot, OtherTelemetry())

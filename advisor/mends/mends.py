@@ -21,3 +21,8 @@ class Mends(Protocol):
 
     def present(self, messages: Sequence[str]) -> str:
         """A clause without a full stop: how the values of messages come at all."""
+
+
+def sentence(clause: str, end: str = ".") -> str:
+    """A clause with a capital at its beginning and an end."""
+    return clause[:1].upper() + clause[1:] + end

@@ -10,8 +10,10 @@ _TOPICS = {
     "RAW_IMU": "sensor_combined",
     "HIGHRES_IMU": "sensor_combined",
     "GLOBAL_POSITION_INT": "vehicle_local_position",
+    "AOA_SSA": "vehicle_local_position",
     "NAMED_VALUE_FLOAT": "debug_key_value",
 }
+"""Topics in place of messages; the climb rate of the position gives the angle of attack that PX4 lacks."""
 
 _DEFAULT, _REPLAY, _HIGH_RATE, _DEBUG = (
     (0, "default set"),
