@@ -89,8 +89,8 @@ def refusal(name: str, beginning: bytes) -> Problem:
     if beginning.startswith(b"ULogEnc"):
         return Problem(
             "encrypted",
-            f"{name} is an encrypted ULog.",
-            "Decrypt it with the key of the vehicle and give the .ulg.",
+            f"{name} is an encrypted log of PX4.",
+            "Decrypt it with PX4's Tools/decrypt_ulog.py and the private key, and give the .ulg.",
         )
     if text.startswith(b"fmt, 128"):
         return Problem(

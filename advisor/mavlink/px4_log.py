@@ -30,6 +30,6 @@ def translate(log: Any, topics: Topics) -> list[TimedMessages]:
         *px4_vehicle.vtol_states(topics),
         *px4_vehicle.version(log, start_us),
         *px4_vehicle.stated(log, moved.found, start_us),
-        *px4_vehicle.remarks(said, start_us),
+        *px4_vehicle.remarks([*said, *px4_vehicle.dropouts(log)], start_us),
         *messages,
     ]

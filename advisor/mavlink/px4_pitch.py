@@ -48,10 +48,11 @@ def pitch_commands(topics: Topics) -> list[Command]:
 def followers(outputs: Topic, command: Command) -> dict[int, float]:
     """Outputs that follow the pitch command: number from 1 to 1.0, or -1.0 where they follow its opposite."""
     at, known = published_us(outputs), published_us(command.topic)
-    inside = (at >= known[0]) & (at <= known[-1])
-    axes = {name: np.interp(at[inside], known, values) for name, values in command.axes.items()}
+    told = {name: np.interp(at, known, values) for name, values in command.axes.items()}
+    inside = (at >= known[0]) & (at <= known[-1]) & np.all(np.isfinite([*told.values()]), axis=0)
+    axes = {name: values[inside] for name, values in told.items()}
     pitch = axes.pop("pitch")
-    if np.count_nonzero(inside) < _LEAST_SAMPLES or not np.ptp(pitch) > 0.0:
+    if len(pitch) < _LEAST_SAMPLES or not np.ptp(pitch) > 0.0:
         return {}
     others = np.column_stack([np.ones(len(pitch)), *axes.values()])
     freed = _without(others, pitch)

@@ -1,6 +1,7 @@
 """How a PX4 log tells of the vehicle: its kind, its modes, its firmware, its parameters, its words."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -99,7 +100,19 @@ def _mav_type(parameters: Mapping[str, Any], status: Topic | None) -> int:
 
 def parameters_of(log: Any) -> dict[str, float]:
     """The parameters that are numbers, as they were when the log began."""
-    return {name: float(v) for name, v in log.initial_parameters.items() if isinstance(v, int | float)}
+    initial = log.initial_parameters.items()
+    return {name: float(v) for name, v in initial if isinstance(v, int | float) and isfinite(v)}
+
+
+def dropouts(log: Any) -> list[str]:
+    """A sentence on the times in which the logger could not write; none where it always could."""
+    lasted_s = [dropout.duration * 1e-3 for dropout in log.dropouts]
+    if not lasted_s:
+        return []
+    return [
+        f"Logging dropped out {len(lasted_s)} times, for {max(lasted_s):.2f} s at the longest: use a faster "
+        "card, or log less (SDLOG_PROFILE)"
+    ]
 
 
 def stated(log: Any, further: Mapping[str, float], start_us: int) -> Iterator[TimedMessages]:
