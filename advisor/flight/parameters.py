@@ -1,6 +1,7 @@
 """The parameters that vehicles and ground stations have stated, each decoded as its autopilot encodes it."""
 
 from collections.abc import Iterator, Sequence
+from math import isfinite
 
 import numpy as np
 
@@ -68,9 +69,11 @@ class Parameters:
         autopilot
             As the vehicle's identity names it.
         """
-        is_px4 = autopilot == "px4"
         stated = {
-            name: values[is_px4] for sender in senders for name, values in self._known.get(sender, {}).items()
+            name: value
+            for sender in senders
+            for name, values in self._known.get(sender, {}).items()
+            if isfinite(value := read_by(autopilot, values))
         }
         find = px4_wiring.px4_wiring if autopilot == "px4" else ardupilot_wiring.ardupilot_wiring
         return find(stated)
