@@ -70,14 +70,16 @@ def _varies(values: FloatArray) -> bool:
 
 def _assigned(instances: Sequence[Topic], parameters: Mapping[str, float]) -> dict[int, Topic]:
     """Instances by the number of the group whose functions agree best with what moves, from 0."""
-    left = list(instances)
-    found: dict[int, Topic] = {}
+    agreements = []
     for bank, group in enumerate(banks(parameters) or ["PWM_MAIN"]):
-        if left:
-            used = {k for k in OUTPUTS if parameters.get(f"{group}_FUNC{k}")}
-            agreement = [sum(1 if k in used else -1 for k in OUTPUTS if _moves(topic, k)) for topic in left]
-            found[bank] = left.pop(int(np.argmax(agreement)))
-    return found
+        used = {k for k in OUTPUTS if parameters.get(f"{group}_FUNC{k}")}
+        for n, topic in enumerate(instances):
+            agreements.append((sum(-1 if k in used else 1 for k in OUTPUTS if _moves(topic, k)), bank, n))
+    found: dict[int, int] = {}
+    for _, bank, n in sorted(agreements):
+        if bank not in found and n not in found.values():
+            found[bank] = n
+    return {bank: instances[n] for bank, n in found.items()}
 
 
 def _of_instance(port: int, topic: Topic) -> TimedMessages:

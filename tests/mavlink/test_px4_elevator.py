@@ -68,6 +68,11 @@ def test_an_output_of_the_auxiliary_bank_counts_from_17_where_the_main_bank_driv
     assert outputs == (18,)
 
 
+def test_a_single_instance_belongs_to_the_bank_whose_outputs_move(tmp_path: Path) -> None:
+    wired = {"CA_SV_CS0_TYPE": 3, "CA_SV_CS0_TRQ_P": 1.0, "PWM_MAIN_FUNC1": 101, "PWM_AUX_FUNC2": 201}
+    assert elevator(with_outputs(flight(**wired), {2: up}).write(tmp_path))[0] == (18,)
+
+
 @pytest.mark.parametrize("said", [{"PWM_MAIN_REV": 0b1000}, {"CA_SV_CS1_TRQ_P": -1.0}])
 def test_a_reversed_output_and_a_surface_that_lowers_the_nose_count_the_other_way(tmp_path, said) -> None:
     log = with_outputs(flight(**PLANE | said), {1: 1500.0, 4: down})
