@@ -100,8 +100,10 @@ def _rate(channels: list[Channel], period_s: float) -> list[Reason]:
     for c in channels:
         if not c.rate_hz >= needed_hz:
             rate, needed = beside(c.rate_hz, needed_hz, 1)
-            message = c.source.partition(".")[0]
-            text = f"{c.name} arrived at {rate} Hz (this aircraft needs {needed}); ask for more of {message}"
+            text = (
+                f"{c.name} arrived at {rate} Hz (this aircraft needs {needed}); "
+                "let it come faster, advisor doctor says how"
+            )
             reasons.append(Reason("rate", text, c.rate_hz, needed_hz))
     return reasons
 

@@ -17,7 +17,7 @@ DRIFTING_PERCENT = 1.0
 STRAYED_SHARE = 0.01
 """Of a message's stamps; around a reboot a few always fit on neither clock."""
 
-_A_VANE = "fit a vane that sends NAMED_VALUE_FLOAT (alpha.source: named_value:NAME)"
+_A_VANE = "fit a vane that sends {} (alpha.source: named_value:NAME)"
 _RECORD_IT = " and record the telemetry, for ArduPilot's own log does not keep it"
 
 
@@ -25,7 +25,9 @@ def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
     """What it means that the angle of attack is no vane's."""
     if alpha.provenance != "derived":
         return []
-    vane = _A_VANE + (_RECORD_IT if vehicle.carrier == "dataflash" else "")
+    vane = _A_VANE.format(vehicle.mends.called("NAMED_VALUE_FLOAT")) + (
+        _RECORD_IT if vehicle.carrier == "dataflash" else ""
+    )
     if alpha.source.startswith("AOA_SSA"):
         name = vehicle.mends.called("AOA_SSA")
         text = f"{name} is the autopilot's own estimate, not a vane: late, and blind to gusts"

@@ -73,7 +73,7 @@ def rate_limits(
             Limit(
                 "renewal" if repeats else "rate",
                 f"{arrives}: {_samples(channel.renewed_hz, fewest_hz, enough_hz, _PLAIN[name], period_s)}",
-                _staircase(message) if repeats else vehicle.mends.faster(channel.message),
+                _staircase(message, vehicle) if repeats else vehicle.mends.faster(channel.message),
                 stops=channel.renewed_hz < fewest_hz and not (name == "alpha" and stands_in),
                 std_ratio=_ratio(alone, best),
             )
@@ -134,10 +134,10 @@ def cost_of_missing(
     return _ratio(expect(belief, rates, airspeed_m_s), with_it)
 
 
-def _staircase(message: str) -> str:
+def _staircase(message: str, vehicle: Vehicle) -> str:
     return (
         f"no setting helps: the sender itself renews {message} at this pace; a vane that sends "
-        "NAMED_VALUE_FLOAT (alpha.source: named_value:NAME) can be faster"
+        f"{vehicle.mends.called('NAMED_VALUE_FLOAT')} (alpha.source: named_value:NAME) can be faster"
     )
 
 

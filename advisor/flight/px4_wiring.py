@@ -47,6 +47,8 @@ _ROLES = {
 }
 """Values of CA_SV_CSn_TYPE."""
 _CUSTOM = 12
+_AXES = {AILERON: "R", RUDDER: "Y"}
+"""Axes of surfaces that do not pitch."""
 
 WORDS = Words(
     function="CA_SV_CSn_TYPE",
@@ -100,8 +102,8 @@ def px4_wiring(parameters: Parameters) -> Wiring:
     return Wiring(
         WORDS,
         {output.number: surfaces[output.servo] for output in carried},
-        {output.number: _turned(output, parameters) for output in carried},
-        frozenset(output.number for output in carried if _effect(output.servo, parameters)),
+        {output.number: _turned(output, surfaces[output.servo], parameters) for output in carried},
+        frozenset(output.number for output in carried if _effect(output.servo, "P", parameters)),
     )
 
 
@@ -111,20 +113,20 @@ def _surfaces(parameters: Parameters) -> Iterator[tuple[int, Role]]:
     for n in _SURFACES:
         kind = int(parameters.get(f"CA_SV_CS{n}_TYPE", 0.0))
         if n < count and kind:
-            pitches_alone = _effect(n, parameters) and not any(
-                parameters.get(f"CA_SV_CS{n}_TRQ_{axis}", 0.0) for axis in "RY"
+            pitches_alone = _effect(n, "P", parameters) and not any(
+                _effect(n, axis, parameters) for axis in "RY"
             )
             yield n, ELEVATOR if kind == _CUSTOM and pitches_alone else _ROLES.get(kind, Role(""))
 
 
-def _effect(n: int, parameters: Parameters) -> float:
-    """Torque of surface ``n`` in pitch; 0 where it is unknown."""
-    return parameters.get(f"CA_SV_CS{n}_TRQ_P", 0.0)
+def _effect(n: int, axis: str, parameters: Parameters) -> float:
+    """Torque of surface ``n`` in roll, pitch or yaw (R, P, Y); 0 where it is unknown."""
+    return parameters.get(f"CA_SV_CS{n}_TRQ_{axis}", 0.0)
 
 
-def _turned(output: ServoOutput, parameters: Parameters) -> Scale:
-    """Scale of an output by what its surface does to the nose."""
-    lowers = _effect(output.servo, parameters) < 0.0
+def _turned(output: ServoOutput, role: Role, parameters: Parameters) -> Scale:
+    """Scale of an output by what its surface does about the axis that it is for."""
+    lowers = _effect(output.servo, _AXES.get(role, "P"), parameters) < 0.0
     return replace(output.scale, reversed=output.scale.reversed != lowers)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.attitude import euler_angles
 from advisor.mavlink.equivalent import side_by_side
 from advisor.mavlink.px4_topics import (
     TimedMessages,
@@ -39,10 +39,7 @@ def _attitude(topics: Topics) -> Iterator[TimedMessages]:
     records = []
     attitude = first(topics, "vehicle_attitude")
     if attitude is not None:
-        angles = _euler(vector(attitude, "q", 4))
-        records.append(
-            {"time_us": sampled_us(attitude), **dict(zip(("roll", "pitch", "yaw"), angles, strict=True))}
-        )
+        records.append({"time_us": sampled_us(attitude), **euler_angles(vector(attitude, "q", 4))})
     turning, gyro = first(topics, "vehicle_angular_velocity"), first(topics, "sensor_combined")
     chosen = best((turning, gyro))
     if chosen is not None:
@@ -52,15 +49,6 @@ def _attitude(topics: Topics) -> Iterator[TimedMessages]:
         fields: dict[str, ArrayLike] = dict(side_by_side(*records))
         time_us = np.asarray(fields.pop("time_us"))
         yield TimedMessages("ATTITUDE", time_us, {"time_boot_ms": milliseconds(time_us), **fields})
-
-
-def _euler(q: FloatArray) -> FloatArray:
-    """Roll, pitch and yaw in rad, shape (3, n), of quaternions (body to north-east-down), shape (4, n)."""
-    w, x, y, z = q
-    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
-    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0))
-    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-    return np.array([roll, pitch, yaw])
 
 
 def _highres_imu(topics: Topics) -> Iterator[TimedMessages]:

@@ -91,6 +91,15 @@ def test_elevons_are_read_together_and_their_roll_cancels(tmp_path: Path) -> Non
     assert first == pytest.approx(-STEP_RAD, rel=1e-3)
 
 
+def test_ailerons_that_move_in_opposite_directions_make_one_surface(tmp_path: Path) -> None:
+    ailerons = {"CA_SV_CS0_TRQ_R": -0.5, "CA_SV_CS2_TYPE": 2, "CA_SV_CS2_TRQ_R": 0.5, "PWM_MAIN_FUNC2": 203}
+    roll = lambda t: 100.0 * np.sin(t)  # noqa: E731
+    moved = {1: lambda t: 1500 - roll(t), 2: lambda t: 1500 + roll(t), 4: up}
+    _, (one,), _ = flown(with_outputs(flight(**PLANE | ailerons), moved).write(tmp_path))
+    aileron = one.maneuver.channels["aileron"]
+    assert np.ptp(aileron.y) == pytest.approx(2 * np.radians(25.0) * 0.2, rel=0.02)
+
+
 @pytest.mark.parametrize(("left", "right", "pair"), [(7, 8, "V-tail"), (13, 14, "A-tail")])
 def test_the_halves_of_a_tail_are_read_together(tmp_path: Path, left: int, right: int, pair: str) -> None:
     wired = {
