@@ -21,7 +21,7 @@ from advisor.mavlink.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
 from advisor.mavlink.equivalent import latest, message
 from advisor.mavlink.eras import SENSORS_APART, Clocked, in_todays_names
-from advisor.mavlink.sensors import Said, flown, said
+from advisor.mavlink.sensors import Said, flown, said, silent
 from advisor.problems import UnusableInputError
 
 _RECORDS: dict[str, set[str]] = {
@@ -49,8 +49,8 @@ _RECORDS: dict[str, set[str]] = {
 a record counts as missing."""
 _AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
 """Records that hold the air speed, the best first, and the field that does."""
-_CLIMB = (("XKF1", "VD"), ("NKF1", "VD"), ("EKF1", "VD"))
-"""Records of the estimators' rate of descent, the newest estimator first."""
+_CLIMB = ("XKF1", "NKF1", "EKF1")
+"""Records of the estimators, whose VD is the rate of descent, the newest estimator first."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 """Records of which a vehicle may carry several, and the quantities that they hold."""
 
@@ -88,6 +88,8 @@ class _Translation:
     def __init__(self, read: Clocked) -> None:
         self._tables = dict(read.tables)
         self._said: list[Said] = []
+        self._interrupted: set[str] = set()
+        """Records of sensors that were not healthy all the time."""
         if read.epoch_s:
             self._said.append(Said(0, 0, "Stamps count from 1970: times are given from the first record on"))
         for name, quantity in _SENSORS.items():
@@ -95,6 +97,8 @@ class _Translation:
                 every = self._tables[name]
                 self._tables[name] = flown(every)
                 self._said += said(every, self._tables[name], quantity)
+                if silent(every, self._tables[name]):
+                    self._interrupted.add(name)
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
@@ -206,31 +210,42 @@ class _Translation:
         return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
     def _vfr_hud(self) -> Iterator[Columns]:
-        for name, field in _AIR_SPEED.items():
-            air = self._tables.get(name)
-            if air is None or field not in air.fields:
-                continue
-            climb = np.full(len(air), np.nan)
-            for record, descent in _CLIMB:
-                climb = np.where(np.isnan(climb), -self._known(air, record, (descent,)), climb)
-            fields: dict[str, ArrayLike] = {
-                "airspeed": air.fields[field],
-                "throttle": self._known(air, "CTUN", ("ThO",)),
-                "alt": self._known(air, "POS", ("RelHomeAlt",)),
-                "climb": np.where(np.isnan(climb), self._known(air, "BARO", ("CRt",)), climb),
-            }
-            yield self._message("VFR_HUD", air, fields, place=1)
+        sources = [
+            (self._tables[name], field)
+            for name, field in _AIR_SPEED.items()
+            if name in self._tables and field in self._tables[name].fields
+        ]
+        if not sources:
             return
+        (air, field), *spare = sources
+        order, time_us, speed = air.order, air.time_us, air.fields[field].astype(np.float64)
+        if "ARSP" in self._interrupted and spare:
+            # The autopilot's own air speed goes on without a sensor.
+            stand_in, spare_field = spare[0]
+            rows = _away_from(air.time_us, stand_in.time_us)
+            text = f"Air speed: the autopilot's own ({spare_field}) stands in where no sensor was healthy"
+            self._said.append(Said(int(stand_in.order[0]), int(stand_in.time_us[0]), text))
+            order = np.concatenate([order, stand_in.order[rows]])
+            time_us = np.concatenate([time_us, stand_in.time_us[rows]])
+            speed = np.concatenate([speed, stand_in.fields[spare_field][rows]])
+        climb = np.full(len(order), np.nan)
+        for record in _CLIMB:
+            climb = np.where(np.isnan(climb), -self._known(order, record, "VD"), climb)
+        fields: dict[str, ArrayLike] = {
+            "airspeed": speed,
+            "throttle": self._known(order, "CTUN", "ThO"),
+            "alt": self._known(order, "POS", "RelHomeAlt"),
+            "climb": np.where(np.isnan(climb), self._known(order, "BARO", "CRt"), climb),
+        }
+        yield self._made("VFR_HUD", order + 1, time_us, fields)
 
-    def _known(self, at: Table, record: str, names: tuple[str, ...]) -> NDArray[np.float64]:
-        """The newest value of a field in another record, NaN where there is none."""
+    def _known(self, at: IntArray, record: str, name: str) -> NDArray[np.float64]:
+        """The newest value of a field in another record at each place, NaN where there is none."""
         table = self._tables.get(record)
-        if table is not None:
-            table = table.first_instance()
-            for name in names:
-                if name in table.fields:
-                    return latest(at.order, table.order, table.fields[name])
-        return np.full(len(at), np.nan)
+        if table is None or name not in table.fields:
+            return np.full(len(at), np.nan)
+        table = table.first_instance()
+        return latest(at, table.order, table.fields[name])
 
     def _global_position_int(self, pos: Table) -> Columns:
         fields: dict[str, ArrayLike] = {
@@ -253,6 +268,15 @@ class _Translation:
         texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")])
         fields: dict[str, ArrayLike] = {"severity": 6, "text": texts["text"]}
         return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
+
+
+def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
+    """Which of the other times lie further from all times than three of these are apart."""
+    if len(time_us) < 2:
+        return np.ones(len(other_us), dtype=np.bool_)
+    apart_us = np.abs(other_us - time_us[_nearest(other_us, time_us)])
+    far: NDArray[np.bool_] = apart_us > 3.0 * float(np.median(np.diff(time_us)))
+    return far
 
 
 def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:
