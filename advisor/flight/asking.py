@@ -66,15 +66,27 @@ _ULOG = {
     "AOA_SSA": "airspeed_validated",
     "VFR_HUD": "airspeed_validated",
 }
+_SDLOG2 = {
+    "ATTITUDE": "ATT",
+    "RAW_IMU": "IMU",
+    "HIGHRES_IMU": "IMU",
+    "SERVO_OUTPUT_RAW": "OUT0",
+    "AOA_SSA": "AIRS",
+    "VFR_HUD": "AIRS",
+}
+_NAMES = {
+    "dataflash": {message: record.name for message, record in _DATAFLASH.items()},
+    "ulog": _ULOG,
+    "sdlog2": _SDLOG2,
+}
+"""What each kind of log calls the records that stand for a message."""
 _HIGH_RATE = 4
 """Bit of SDLOG_PROFILE, "high rate" (PX4: logger parameters)."""
 
 
 def name_at_hand(message: str, vehicle: Vehicle) -> str:
     """The message as the user finds it: the record or topic of a log that the autopilot wrote."""
-    if vehicle.carrier == "dataflash" and message in _DATAFLASH:
-        return _DATAFLASH[message].name
-    return _ULOG.get(message, message) if vehicle.carrier == "ulog" else message
+    return _NAMES.get(vehicle.carrier, {}).get(message, message)
 
 
 def how_to_get(messages: list[str], vehicle: Vehicle) -> str:
@@ -91,9 +103,11 @@ def how_to_get(messages: list[str], vehicle: Vehicle) -> str:
         records = [_DATAFLASH[m] for m in messages]
         bits = dict.fromkeys(f"{r.name} by bit {r.bit} ({r.bit_name})" for r in records)
         return f"set LOG_BITMASK so that these are logged: {listed(list(bits))}; its default, 65535, has all"
+    names = listed(list(dict.fromkeys(name_at_hand(message, vehicle) for message in messages)))
     if vehicle.carrier == "ulog":
-        topics = dict.fromkeys(_ULOG[m] for m in messages)
-        return f"set bit 0 (default) of SDLOG_PROFILE, which logs {listed(list(topics))}"
+        return f"set bit 0 (default) of SDLOG_PROFILE, which logs {names}"
+    if vehicle.carrier == "sdlog2":
+        return f"set SDLOG_EXT to 1, so that sdlog2 logs {names}"
     return f"ask for {listed(messages)} (run live with --request-rates)"
 
 
@@ -108,6 +122,8 @@ def how_to_speed_up(message: str, vehicle: Vehicle) -> str:
     if vehicle.carrier == "ulog":
         topic = name_at_hand(message, vehicle)
         return f"set bit {_HIGH_RATE} (high rate) of SDLOG_PROFILE, which logs {topic} faster"
+    if vehicle.carrier == "sdlog2":
+        return f"set SDLOG_RATE to {GOOD_HZ}, at which sdlog2 logs {name_at_hand(message, vehicle)}"
     number = f"message {_IDS[message]}, " if message in _IDS else ""
     request = f"run live with --request-rates ({number}{1_000_000 // GOOD_HZ} us interval)"
     if vehicle.autopilot == "px4":

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-Carrier = Literal["telemetry", "dataflash", "ulog"]
-"""What brings the messages: a MAVLink link or its recording, ArduPilot's own log, PX4's own log."""
+Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2"]
+"""What brings the messages: a MAVLink link or its recording, ArduPilot's own log, PX4's own, and PX4's own
+before 2017."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,6 +21,7 @@ from advisor.mavlink.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
 from advisor.mavlink.equivalent import latest, message
 from advisor.mavlink.eras import SENSORS_APART, Clocked, in_todays_names
+from advisor.mavlink.sdlog2 import SDLOG2_RECORDS, Sdlog2, is_sdlog2
 from advisor.mavlink.sensors import Said, flown, said, silent
 from advisor.problems import UnusableInputError
 
@@ -56,7 +57,7 @@ _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
-    """The messages of a ``.bin``, in one batch.
+    """The messages of a ``.bin``, or of PX4's ``.px4log`` in its container, in one batch.
 
     Raises
     ------
@@ -64,7 +65,12 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
         When it holds neither attitude, inertial sensors, nor servo outputs.
     """
     apart = (name for names in SENSORS_APART.values() for name in names)
-    read = in_todays_names(read_tables(path, (*_RECORDS, *apart)))
+    stored = read_tables(path, (*_RECORDS, *SDLOG2_RECORDS, *apart))
+    names = None if wanted is None else set(wanted)
+    if is_sdlog2(stored):
+        yield from _batch(Sdlog2(stored).columns(), names)
+        return
+    read = in_todays_names(stored)
     tables = {
         name: table
         for name, table in read.tables.items()
@@ -76,12 +82,15 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
             f"{path.name} holds no ATT, IMU or RCOU records.",
             "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
         )
-    names = None if wanted is None else set(wanted)
+    yield from _batch(_Translation(Clocked(tables, read.epoch_s)).columns(), names)
+
+
+def _batch(columns: Iterator[Columns], names: set[str] | None) -> Iterator[list[Columns]]:
+    """All wanted messages in one batch; none where there are none."""
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
-        columns = list(_Translation(Clocked(tables, read.epoch_s)).columns())
-    columns = [c for c in columns if len(c) and (names is None or c.name in names)]
-    if columns:
-        yield columns
+        wanted = [c for c in columns if len(c) and (names is None or c.name in names)]
+    if wanted:
+        yield wanted
 
 
 class _Translation:
