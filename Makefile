@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality study-second pictures clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality study-second damage pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -96,6 +96,10 @@ robustness: .venv/.developed ## the estimator's own start on 2,000 random aircra
 
 study-quality: .venv/.developed ## good manoeuvres rejected, and other tests marked as studies
 	$(BIN)/python -m pytest -m study
+
+DAMAGE_CASES ?= 3400
+damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAMAGE_CASES of each of three kinds)
+	DAMAGE_CASES=$(DAMAGE_CASES) $(BIN)/python -m pytest --timeout 0 tests/test_damaged_logs.py
 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
 	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs

@@ -21,7 +21,8 @@ from advisor.mavlink.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
 from advisor.mavlink.equivalent import air_data, message
 from advisor.mavlink.eras import SENSORS_APART, Clocked, in_todays_names
-from advisor.mavlink.sensors import Said, flown, said
+from advisor.mavlink.sdlog2 import SDLOG2_RECORDS, Sdlog2, is_sdlog2
+from advisor.mavlink.sensors import Said, flown, said, silent
 from advisor.problems import UnusableInputError
 
 _RECORDS: dict[str, set[str]] = {
@@ -47,16 +48,16 @@ _RECORDS: dict[str, set[str]] = {
 }
 """Records, and the fields needed of each: without them (another kind of vehicle, an older version)
 a record counts as missing."""
-_AIR_SPEED = (("ARSP", "Airspeed"), ("CTUN", "As"), ("NTUN", "Arspd"))
+_AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
 """Records that hold the air speed, the best first, and the field that does."""
-_CLIMB = (("XKF1", "VD"), ("NKF1", "VD"), ("EKF1", "VD"))
-"""Records of the estimators' rate of descent, the newest estimator first."""
+_CLIMB = ("XKF1", "NKF1", "EKF1")
+"""Records of the estimators, whose VD is the rate of descent, the newest estimator first."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 """Records of which a vehicle may carry several, and the quantities that they hold."""
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
-    """The messages of a ``.bin``, in one batch.
+    """The messages of a ``.bin``, or of PX4's ``.px4log`` in its container, in one batch.
 
     Raises
     ------
@@ -64,7 +65,12 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
         When it holds neither attitude, inertial sensors, nor servo outputs.
     """
     apart = (name for names in SENSORS_APART.values() for name in names)
-    read = in_todays_names(read_tables(path, (*_RECORDS, *apart)))
+    stored = read_tables(path, (*_RECORDS, *SDLOG2_RECORDS, *apart))
+    names = None if wanted is None else set(wanted)
+    if is_sdlog2(stored):
+        yield from _batch(Sdlog2(stored).columns(), names)
+        return
+    read = in_todays_names(stored)
     tables = {
         name: table
         for name, table in read.tables.items()
@@ -76,18 +82,23 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
             f"{path.name} holds no ATT, IMU or RCOU records.",
             "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
         )
-    names = None if wanted is None else set(wanted)
+    yield from _batch(_Translation(Clocked(tables, read.epoch_s)).columns(), names)
+
+
+def _batch(columns: Iterator[Columns], names: set[str] | None) -> Iterator[list[Columns]]:
+    """All wanted messages in one batch; none where there are none."""
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
-        columns = list(_Translation(Clocked(tables, read.epoch_s)).columns())
-    columns = [c for c in columns if len(c) and (names is None or c.name in names)]
-    if columns:
-        yield columns
+        wanted = [c for c in columns if len(c) and (names is None or c.name in names)]
+    if wanted:
+        yield wanted
 
 
 class _Translation:
     def __init__(self, read: Clocked) -> None:
         self._tables = dict(read.tables)
         self._said: list[Said] = []
+        self._interrupted: set[str] = set()
+        """Records of sensors that were not healthy all the time."""
         if read.epoch_s:
             self._said.append(Said(0, 0, "Stamps count from 1970: times are given from the first record on"))
         for name, quantity in _SENSORS.items():
@@ -95,6 +106,8 @@ class _Translation:
                 every = self._tables[name]
                 self._tables[name] = flown(every)
                 self._said += said(every, self._tables[name], quantity)
+                if silent(every, self._tables[name]):
+                    self._interrupted.add(name)
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
@@ -207,31 +220,48 @@ class _Translation:
 
     def _vfr_hud(self) -> Iterator[Columns]:
         """Air speed, climb rate and throttle, each at the stamps of its own record."""
-        climb = self._first(_CLIMB)
-        found = {
-            "airspeed": self._first(_AIR_SPEED),
-            "climb": None if climb is None else (climb[0], -climb[1]),
-            "throttle": self._first((("CTUN", "ThO"),)),
-        }
-        if found["climb"] is None:
-            found["climb"] = self._first((("BARO", "CRt"),))
-        rows = [
+        sources = [
+            (self._tables[name], field)
+            for name, field in _AIR_SPEED.items()
+            if name in self._tables and field in self._tables[name].fields
+        ]
+        records = [] if not sources else [self._airspeed(*sources)]
+        descent = self._first([(record, "VD") for record in _CLIMB])
+        climb = self._first([("BARO", "CRt")]) if descent is None else (descent[0], -descent[1])
+        records += [
             # The places of one record follow each other: CTUN may hold an air speed and the throttle.
             {"order": one[0].order + place, "time_usec": one[0].time_us, field: one[1]}
-            for place, (field, one) in enumerate(found.items(), start=1)
+            for place, (field, one) in enumerate(
+                {"climb": climb, "throttle": self._first([("CTUN", "ThO")])}.items(), start=2
+            )
             if one is not None
         ]
-        if rows:
-            fields: dict[str, ArrayLike] = dict(air_data(*rows))
-            order = np.asarray(fields.pop("order"))
-            yield self._made("VFR_HUD", order, np.asarray(fields["time_usec"]), fields)
+        if not records:
+            return
+        fields: dict[str, ArrayLike] = dict(air_data(*records))
+        places = np.asarray(fields.pop("order"))
+        yield self._made("VFR_HUD", places, np.asarray(fields["time_usec"]), fields)
+
+    def _airspeed(self, source: tuple[Table, str], *spare: tuple[Table, str]) -> dict[str, NDArray[Any]]:
+        """The air speed of the best record, and of the next one where no sensor was healthy."""
+        air, field = source
+        order, time_us, speed = air.order, air.time_us, air.fields[field].astype(np.float64)
+        if "ARSP" in self._interrupted and spare:
+            # The autopilot's own air speed goes on without a sensor.
+            stand_in, spare_field = spare[0]
+            rows = _away_from(air.time_us, stand_in.time_us)
+            text = f"Air speed: the autopilot's own ({spare_field}) stands in where no sensor was healthy"
+            self._said.append(Said(int(stand_in.order[0]), int(stand_in.time_us[0]), text))
+            order = np.concatenate([order, stand_in.order[rows]])
+            time_us = np.concatenate([time_us, stand_in.time_us[rows]])
+            speed = np.concatenate([speed, stand_in.fields[spare_field][rows]])
+        return {"order": order + 1, "time_usec": time_us, "airspeed": speed}
 
     def _first(self, places: Iterable[tuple[str, str]]) -> tuple[Table, NDArray[np.float64]] | None:
         """The first record that has its field, and the values of the field; None where none has."""
         for name, field in places:
             if name in self._tables and field in self._tables[name].fields:
-                table = self._tables[name]
-                table = table if name in _SENSORS else table.first_instance()
+                table = self._tables[name].first_instance()
                 return table, table.fields[field].astype(np.float64)
         return None
 
@@ -256,6 +286,15 @@ class _Translation:
         texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")])
         fields: dict[str, ArrayLike] = {"severity": 6, "text": texts["text"]}
         return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
+
+
+def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
+    """Which of the other times lie further from all times than three of these are apart."""
+    if len(time_us) < 2:
+        return np.ones(len(other_us), dtype=np.bool_)
+    apart_us = np.abs(other_us - time_us[_nearest(other_us, time_us)])
+    far: NDArray[np.bool_] = apart_us > 3.0 * float(np.median(np.diff(time_us)))
+    return far
 
 
 def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:

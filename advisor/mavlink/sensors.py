@@ -98,22 +98,35 @@ def _changes(table: Table, quantity: str) -> list[Said]:
 
 
 def _silences(every: Table, table: Table, quantity: str) -> list[Said]:
-    """Stretches in which sensors were recorded and none was healthy."""
+    sentences = []
+    for first, last in silent(every, table):
+        start_s, end_s = every.time_us[[first, last]] / 1e6
+        text = f"{quantity}: no sensor was healthy from {start_s:.1f} to {end_s:.1f} s and none is used there"
+        sentences.append(Said(int(every.order[first]), int(every.time_us[first]), text))
+    return sentences
+
+
+def silent(every: Table, table: Table) -> list[tuple[int, int]]:
+    """Stretches in which sensors were recorded and none was healthy: rows of ``every``, first and last.
+
+    Parameters
+    ----------
+    every
+        The records of all sensors.
+    table
+        Those of the sensor that flew, as :func:`flown` gives them.
+    """
     if len(table) == len(every):
         return []
     # A stretch without a healthy sensor is longer than the time between two records of the sensor that flew.
     usual_us = float(np.median(np.diff(table.time_us))) if len(table) > 1 else 0.0
     edges = np.concatenate(([every.time_us[0] - usual_us], table.time_us, [every.time_us[-1] + usual_us]))
-    sentences = []
+    found = []
     for gap in np.flatnonzero(np.diff(edges) > 3.0 * max(usual_us, 1.0)).tolist():
-        within = (every.time_us > edges[gap]) & (every.time_us < edges[gap + 1])
-        if not np.any(within):
-            continue
-        row = int(np.argmax(within))
-        start_s, end_s = every.time_us[within][0] / 1e6, every.time_us[within][-1] / 1e6
-        text = f"{quantity}: no sensor was healthy from {start_s:.1f} to {end_s:.1f} s and none is used there"
-        sentences.append(Said(int(every.order[row]), int(every.time_us[row]), text))
-    return sentences
+        within = np.flatnonzero((every.time_us > edges[gap]) & (every.time_us < edges[gap + 1]))
+        if len(within):
+            found.append((int(within[0]), int(within[-1])))
+    return found
 
 
 def _numbers(table: Table) -> IntArray:

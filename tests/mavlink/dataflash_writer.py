@@ -10,6 +10,8 @@ Definitions = Mapping[str, tuple[str, str, Callable[[float], Mapping[str, float]
 _SIZES = {"B": 1, "M": 1, "h": 2, "H": 2, "c": 2, "C": 2, "i": 4, "I": 4, "f": 4, "e": 4, "L": 4, "n": 4}
 _SIZES |= {"Q": 8, "N": 16, "Z": 64}
 _PACK = {"B": "B", "M": "B", "Q": "Q", "I": "I", "f": "f"}
+HEALTH_AT = {"IMU": 37, "ARSP": 20}
+"""Where GH of IMU and H of ARSP lie behind the stamp."""
 _HEAD = b"\xa3\x95"
 
 
@@ -43,6 +45,7 @@ def rewritten(
     add: Definitions | None = None,
     per_att: int = 1,
     good_imu_apart: bool = False,
+    unhealthy: Mapping[str, tuple[float, float]] | None = None,
 ) -> bytes:
     """The log of the builders, changed.
 
@@ -62,6 +65,8 @@ def rewritten(
         Further records, so many in each ATT record's time of 0.04 s.
     good_imu_apart
         Records of sensor 0 become IMU2, without a number, and those of sensor 1, which stands still, IMU.
+    unhealthy
+        ``IMU`` or ``ARSP`` and when its sensors are stated to be unhealthy, s.
     """
     out, counted = [], dict.fromkeys(FORMATS, 0)
     layouts = {name: (form, columns) for name, (_, form, columns) in FORMATS.items()}
@@ -87,6 +92,10 @@ def rewritten(
             continue
         stamp = struct.unpack_from("<Q", record, 3)[0] + later_us
         fields = record[11:]
+        start_s, end_s = (unhealthy or {}).get(name, (0.0, 0.0))
+        if start_s <= stamp * 1e-6 < end_s:
+            at = HEALTH_AT[name]
+            fields = fields[:at] + b"\0" + fields[at + 1 :]
         if good_imu_apart and name == "IMU":
             out.append(_HEAD + bytes([40 + fields[0]]) + struct.pack("<Q", stamp) + fields[1:25])
             continue

@@ -87,6 +87,24 @@ def test_a_second_sensor_with_a_record_of_its_own_stands_in_for_a_dead_first(tmp
     assert said(read) == ["Angular rates and specific force: sensor 1 flew"]
 
 
+def test_a_sensor_that_fails_in_flight_is_not_used_from_then_on_and_it_is_said(tmp_path: Path) -> None:
+    read = messages(tmp_path, rewritten(dataflash_flight(30.0), unhealthy={"IMU": (21.0, 24.0)}))
+    t = read["HIGHRES_IMU"].fields["time_usec"] * 1e-6
+    assert not np.any((t > 21.0) & (t < 24.0))
+    assert np.count_nonzero(t > 24.0) == pytest.approx(350, abs=2)
+    assert "no sensor was healthy from 21.0 to 24.0 s" in said(read)[0]
+
+
+def test_the_autopilots_own_air_speed_stands_in_for_a_failed_tube(tmp_path: Path) -> None:
+    read = messages(tmp_path, rewritten(dataflash_flight(30.0), unhealthy={"ARSP": (21.0, 24.0)}))
+    hud = read["VFR_HUD"]
+    measured = np.isfinite(hud.fields["airspeed"])
+    t, speed = hud.fields["time_usec"][measured] * 1e-6, hud.fields["airspeed"][measured]
+    assert set(speed[(t > 21.2) & (t < 23.8)].tolist()) == {24.5}
+    assert set(speed[(t < 20.5) | (t > 24.5)].tolist()) == {25.0}
+    assert any("the autopilot's own (As) stands in" in sentence for sentence in said(read))
+
+
 def pid(t: float) -> dict[str, float]:
     return {"Act": np.degrees(motion(t)[1])}
 
