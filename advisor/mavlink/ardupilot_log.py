@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from advisor.flight.identity import READER
 from advisor.flight.messages import Columns, IntArray
+from advisor.mavlink.ardupilot_air import air
 from advisor.mavlink.ardupilot_vehicle import (
     VEHICLE_RECORDS,
     heartbeats,
@@ -19,7 +20,7 @@ from advisor.mavlink.ardupilot_vehicle import (
 )
 from advisor.mavlink.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
-from advisor.mavlink.equivalent import air_data, message
+from advisor.mavlink.equivalent import air_data, message, nearest
 from advisor.mavlink.eras import SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.sdlog2 import SDLOG2_RECORDS, Sdlog2, is_sdlog2
 from advisor.mavlink.sensors import Said, flown, said, silent
@@ -48,10 +49,6 @@ _RECORDS: dict[str, set[str]] = {
 }
 """Records, and the fields needed of each: without them (another kind of vehicle, an older version)
 a record counts as missing."""
-_AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
-"""Records that hold the air speed, the best first, and the field that does."""
-_CLIMB = ("XKF1", "NKF1", "EKF1")
-"""Records of the estimators, whose VD is the rate of descent, the newest estimator first."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 """Records of which a vehicle may carry several, and the quantities that they hold."""
 
@@ -196,7 +193,7 @@ class _Translation:
                 for field, values in table.fields.items():
                     if field[0] == "C" and field[1:].isdigit():
                         # The autopilot writes the records of one loop's outputs one after the other.
-                        at = _nearest(rcou.time_us, table.time_us)
+                        at = nearest(rcou.time_us, table.time_us)
                         pulses[int(field[1:])] = values if table is rcou else values[at]
         banks = []
         for port in range(2):
@@ -220,50 +217,12 @@ class _Translation:
 
     def _vfr_hud(self) -> Iterator[Columns]:
         """Air speed, climb rate and throttle, each at the stamps of its own record."""
-        sources = [
-            (self._tables[name], field)
-            for name, field in _AIR_SPEED.items()
-            if name in self._tables and field in self._tables[name].fields
-        ]
-        records = [] if not sources else [self._airspeed(*sources)]
-        descent = self._first([(record, "VD") for record in _CLIMB])
-        climb = self._first([("BARO", "CRt")]) if descent is None else (descent[0], -descent[1])
-        records += [
-            # The places of one record follow each other: CTUN may hold an air speed and the throttle.
-            {"order": one[0].order + place, "time_usec": one[0].time_us, field: one[1]}
-            for place, (field, one) in enumerate(
-                {"climb": climb, "throttle": self._first([("CTUN", "ThO")])}.items(), start=2
-            )
-            if one is not None
-        ]
-        if not records:
-            return
-        fields: dict[str, ArrayLike] = dict(air_data(*records))
-        places = np.asarray(fields.pop("order"))
-        yield self._made("VFR_HUD", places, np.asarray(fields["time_usec"]), fields)
-
-    def _airspeed(self, source: tuple[Table, str], *spare: tuple[Table, str]) -> dict[str, NDArray[Any]]:
-        """The air speed of the best record, and of the next one where no sensor was healthy."""
-        air, field = source
-        order, time_us, speed = air.order, air.time_us, air.fields[field].astype(np.float64)
-        if "ARSP" in self._interrupted and spare:
-            # The autopilot's own air speed goes on without a sensor.
-            stand_in, spare_field = spare[0]
-            rows = _away_from(air.time_us, stand_in.time_us)
-            text = f"Air speed: the autopilot's own ({spare_field}) stands in where no sensor was healthy"
-            self._said.append(Said(int(stand_in.order[0]), int(stand_in.time_us[0]), text))
-            order = np.concatenate([order, stand_in.order[rows]])
-            time_us = np.concatenate([time_us, stand_in.time_us[rows]])
-            speed = np.concatenate([speed, stand_in.fields[spare_field][rows]])
-        return {"order": order + 1, "time_usec": time_us, "airspeed": speed}
-
-    def _first(self, places: Iterable[tuple[str, str]]) -> tuple[Table, NDArray[np.float64]] | None:
-        """The first record that has its field, and the values of the field; None where none has."""
-        for name, field in places:
-            if name in self._tables and field in self._tables[name].fields:
-                table = self._tables[name].first_instance()
-                return table, table.fields[field].astype(np.float64)
-        return None
+        found = air(self._tables, "ARSP" in self._interrupted)
+        self._said += found.said
+        if found.records:
+            fields: dict[str, ArrayLike] = dict(air_data(*found.records))
+            order = np.asarray(fields.pop("order"))
+            yield self._made("VFR_HUD", order, np.asarray(fields["time_usec"]), fields)
 
     def _global_position_int(self, pos: Table) -> Columns:
         fields: dict[str, ArrayLike] = {
@@ -288,22 +247,5 @@ class _Translation:
         return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
 
 
-def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
-    """Which of the other times lie further from all times than three of these are apart."""
-    if len(time_us) < 2:
-        return np.ones(len(other_us), dtype=np.bool_)
-    apart_us = np.abs(other_us - time_us[_nearest(other_us, time_us)])
-    far: NDArray[np.bool_] = apart_us > 3.0 * float(np.median(np.diff(time_us)))
-    return far
-
-
 def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:
     return (time_us + 500) // 1000
-
-
-def _nearest(at_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Index of the record nearest to each time asked for, the earlier of two."""
-    after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
-    before = after - 1
-    after = np.minimum(after, len(time_us) - 1)
-    return np.where(at_us - time_us[before] <= time_us[after] - at_us, before, after)

@@ -110,3 +110,11 @@ def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
     """
     known = np.concatenate([[np.nan], np.asarray(values, dtype=np.float64)])
     return known[np.searchsorted(order, at, side="right")]
+
+
+def nearest(at_us: IntArray, time_us: IntArray) -> IntArray:
+    """Index of the record nearest to each time asked for, the earlier of two."""
+    after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
+    before = after - 1
+    after = np.minimum(after, len(time_us) - 1)
+    return np.where(at_us - time_us[before] <= time_us[after] - at_us, before, after)
