@@ -57,8 +57,15 @@ def topics_of(log: Any) -> dict[str, list[Topic]]:
     for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
         if {"timestamp"} | TOPICS[data.name] <= data.data.keys() and len(data.data["timestamp"]):
             by_time = np.argsort(data.data["timestamp"], kind="stable")
-            topics.setdefault(data.name, []).append({name: v[by_time] for name, v in data.data.items()})
+            topics.setdefault(data.name, []).append(
+                {name: _wide(v[by_time]) for name, v in data.data.items()}
+            )
     return topics
+
+
+def _wide(values: NDArray[Any]) -> NDArray[Any]:
+    """Floating-point values in double precision: damaged ones convert here, where nobody warns of them."""
+    return values.astype(np.float64) if values.dtype.kind == "f" else values
 
 
 def first(topics: Topics, name: str) -> Topic | None:
