@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import struct
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -18,6 +19,21 @@ from advisor.mends import mends_of, sentence
 from advisor.problems import UnusableInputError
 
 MAGIC = b"ULog\x01\x12\x35"
+
+
+class _Whole(io.BufferedReader):
+    """A file in which a read beyond the end fails, unless nothing is left.
+
+    Where damage in the definitions leads pyulog 1.3 beyond the end it steps back by what it wanted to read,
+    not by what it got, and never arrives.
+    """
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """That many bytes, or none at the end."""
+        data = super().read(size)
+        if size is not None and 0 < len(data) < size:
+            raise struct.error
+        return data
 
 
 def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 0) -> Iterator[list[Columns]]:
@@ -40,9 +56,9 @@ def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 
 
     try:
         # pyulog prints its warnings; standard output belongs to the result.
-        with path.open("rb") as file, contextlib.redirect_stdout(sys.stderr):
-            file.seek(starts_at)
-            log = ULog(file if starts_at == 0 else io.BytesIO(file.read()), list(TOPICS))
+        raw = io.FileIO(path) if starts_at == 0 else io.BytesIO(path.read_bytes()[starts_at:])
+        with _Whole(raw) as file, contextlib.redirect_stdout(sys.stderr):
+            log = ULog(file, list(TOPICS))
     except Exception as error:  # whatever pyulog meets in damaged bytes
         raise _nothing_in(path) from error
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number

@@ -122,3 +122,11 @@ def test_an_encrypted_log_is_told_how_to_decrypt(tmp_path: Path) -> None:
     path.write_bytes(b"ULogEnc\x01" + bytes(500))
     with pytest.raises(UnusableInputError, match=r"encrypted.*Tools/decrypt_ulog\.py"):
         list(open_log(path))
+
+
+@pytest.mark.timeout(20)
+def test_damage_that_leads_beyond_the_end_of_the_file_ends_in_a_sentence(tmp_path: Path) -> None:
+    path = tmp_path / "damaged.ulg"
+    path.write_bytes(b"ULog\x01\x12\x35\x01" + bytes(8) + message("Z", bytes(40))[:30])
+    with pytest.raises(UnusableInputError, match=r"damaged\.ulg holds no attitude"):
+        list(open_log(path))
