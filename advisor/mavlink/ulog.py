@@ -21,7 +21,7 @@ from advisor.problems import UnusableInputError
 MAGIC = b"ULog\x01\x12\x35"
 
 
-class _Whole(io.BufferedReader):
+class WholeFile(io.BufferedReader):
     """A file in which a read beyond the end fails, unless nothing is left.
 
     Where damage in the definitions leads pyulog 1.3 beyond the end it steps back by what it wanted to read,
@@ -57,7 +57,7 @@ def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 
     try:
         # pyulog prints its warnings; standard output belongs to the result.
         raw = io.FileIO(path) if starts_at == 0 else io.BytesIO(path.read_bytes()[starts_at:])
-        with _Whole(raw) as file, contextlib.redirect_stdout(sys.stderr):
+        with WholeFile(raw) as file, contextlib.redirect_stdout(sys.stderr):
             log = ULog(file, list(TOPICS))
     except Exception as error:  # whatever pyulog meets in damaged bytes
         raise _nothing_in(path) from error
