@@ -116,7 +116,8 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
         gap = float(np.max(np.diff(edges)))
         if gap > limit:
             missing, most_missing = beside(gap, limit, 1)
-            text = f"{missing} s of {c.name} are missing (limit {most_missing}); check the recording, fly it again"
+            lost = f"{missing} s of {c.name} are missing (limit {most_missing})"
+            text = f"{lost}; check the recording, fly it again"
             reasons.append(Reason("gap", text, gap, limit))
     return sorted(reasons, key=lambda reason: (-reason.value, reason.text))[:1]
 
