@@ -21,6 +21,9 @@ FASTEST_SAMPLES_HZ = 200.0
 SLOWEST_ANGLES_HZ = 20.0
 """The change of an angle over 1/20 s is the rate to 1 % for a natural frequency up to 10 rad/s, as of a small
 aircraft; angles that come more slowly give no rate."""
+GYRO_FILTER_HZ = 20.0
+"""INS_GYRO_FILTER where the log does not state it, ArduPlane's default: the corner of a second-order low-pass
+that every gyro reading of the autopilot has gone through."""
 _FROZEN_S = 1.0
 """A controller that does not run leaves its last rate standing, as ArduPlane's do in MANUAL."""
 
@@ -49,7 +52,22 @@ def body_rates(tables: Mapping[str, Table]) -> Rates | None:
         return _read(tables["PIDP"], (None, "Act", None), np.pi / 180.0, "from PIDP")
     if "RATE" in tables:
         return _read(tables["RATE"], ("R", "P", "Y"), np.pi / 180.0, "from RATE")
-    return _from_angles(tables["ATT"]) if "ATT" in tables else None
+    if "ATT" not in tables:
+        return None
+    return _from_angles(tables["ATT"], gyro_delay_s(tables.get("PARM")))
+
+
+def gyro_delay_s(parm: Table | None) -> float:
+    """How late the autopilot's gyro readings are at the frequencies of flight, s.
+
+    That of a second-order Butterworth low-pass, √2 / (2π f), with f of INS_GYRO_FILTER; 11 ms at 20 Hz, where
+    12 ms were measured in a log of ArduPlane 4.5 (logs/arduplane-calm.tlog).
+    """
+    corner_hz = GYRO_FILTER_HZ
+    if parm is not None:
+        stated = parm.fields["Value"][parm.fields["Name"] == b"INS_GYRO_FILTER"]
+        corner_hz = float(stated[0]) if len(stated) else corner_hz
+    return float(np.sqrt(2.0) / (2.0 * np.pi * corner_hz)) if corner_hz > 0.0 else 0.0
 
 
 def calmed(table: Table) -> Table:
@@ -83,8 +101,11 @@ def _stands_still(pid: Table) -> bool:
     return bool(np.max(np.diff(edges_us)) > 1e6 * _FROZEN_S)
 
 
-def _from_angles(att: Table) -> Rates | None:
-    """Rates from the change of the angles from record to record, placed in the middle between them."""
+def _from_angles(att: Table, delay_s: float) -> Rates | None:
+    """Rates from the change of the angles from record to record, as late as the gyro's would be.
+
+    The angle of attack is late, too: beside a rate that is not, derivatives come out wrong by half.
+    """
     t = att.time_us.astype(np.float64) * 1e-6
     step_s = np.diff(t)
     if len(step_s) == 0 or not 0.0 < np.median(step_s) <= 1.0 / SLOWEST_ANGLES_HZ:
@@ -101,6 +122,6 @@ def _from_angles(att: Table) -> Rates | None:
             d_yaw * np.cos(theta) * np.cos(bank) - d_pitch * np.sin(bank),
         ]
     )
-    middle_us = (att.time_us[rows] + att.time_us[rows + 1]) // 2
+    middle_us = (att.time_us[rows] + att.time_us[rows + 1]) // 2 + round(1e6 * delay_s)
     hz = 1.0 / float(np.median(step_s))
     return Rates(att.order[rows + 1] + 1, middle_us, values, f"derived from the angles of ATT at {hz:.0f} Hz")
