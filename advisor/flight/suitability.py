@@ -132,11 +132,12 @@ def _missing(
         )
     if "alpha" not in channels and not motion_stands_in(channels):
         absent = " nor ".join(name for name in _MOTION if name not in channels)
+        or_else = ", or for AOA_SSA" if vehicle.autopilot == "ardupilot" else ""
         found.append(
             Problem(
                 "no_alpha",
                 f"There is no angle of attack, and the motion cannot stand in for it: no {absent} arrived.",
-                f"{sentence(mends.present(['RAW_IMU', 'VFR_HUD']), '')}; "
+                f"{sentence(mends.present(['RAW_IMU', 'VFR_HUD']), or_else)}; "
                 f"a vane may send {mends.called('NAMED_VALUE_FLOAT')} (alpha.source).",
             )
         )
