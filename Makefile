@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality survival study-second pictures clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality survival study-second damage pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -28,7 +28,7 @@ KERNELS := $(shell grep -rlE --include='*.py' 'njit|@kernel' advisor sim benchma
 
 # What tests, checks and benchmarks need beyond running: installed only for them.
 .venv/.developed: .venv/.compiled
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev,report,logs,jsbsim,bench]'
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev,report,jsbsim,bench]'
 	touch $@
 
 setup: .venv/.compiled ## build .venv with the advisor in it
@@ -104,6 +104,10 @@ study-quality: .venv/.developed ## good manoeuvres rejected, and other tests mar
 
 survival: .venv/.developed ## a live campaign in which fifty processes are killed (three minutes)
 	$(BIN)/python -m pytest -m study tests/link/test_never_lost.py
+
+DAMAGE_CASES ?= 3400
+damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAMAGE_CASES of each of three kinds)
+	DAMAGE_CASES=$(DAMAGE_CASES) $(BIN)/python -m pytest --timeout 0 tests/test_damaged_logs.py
 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
 	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs

@@ -8,7 +8,7 @@ from advisor.decision.quality import judge_quality
 from advisor.flight.kinematics import check_alpha
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marked_input import MARKED
-from advisor.flight.vehicle import closes_pitch_loop
+from advisor.flight.modes import closes_pitch_loop
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
 from advisor.oem.solution import Method

@@ -25,7 +25,7 @@ from advisor.flight.events import (
     Rebooted,
     VehicleFound,
 )
-from advisor.flight.identity import SENSOR_NOTICE
+from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import MARK_NOTICES, Mark
 from advisor.flight.messages import Columns
@@ -97,7 +97,7 @@ class Campaign:
         self._history: list[Flown] = []
         self._notices = EventLog(NOTICES)
         self._mark_notes: tuple[str, ...] = ()
-        self._sensor_notes: tuple[str, ...] = ()
+        self._reader_notes: tuple[str, ...] = ()
         self._activity: tuple[Activity, ...] = ()
         self._judged: tuple[JudgedManeuver, ...] = ()
         self._course = Course(aircraft.campaign)
@@ -146,8 +146,8 @@ class Campaign:
             enough=settled.enough if settled else None,
             estimate_from=tuple(judged.maneuver.number for judged in joined),
             elevator_notes=stream.elevator_notes,
-            sensor_notes=(
-                *self._sensor_notes,
+            reader_notes=(
+                *self._reader_notes,
                 *(f"{d.sentence}; {d.fix}." for d in stream.frozen if not d.stops),
             ),
             elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
@@ -226,8 +226,8 @@ class Campaign:
                     self._log(text)
                     if code in MARK_NOTICES:
                         self._mark_notes += (text,)
-                    if code == SENSOR_NOTICE:
-                        self._sensor_notes += (text,)
+                    if code == READER_NOTICE:
+                        self._reader_notes += (text,)
                 case NoData(problems):
                     for problem in problems:
                         self._log(f"NO DATA: {problem}", self._stream.now_s)

@@ -54,8 +54,8 @@ class CampaignState:
     """Numbers of the manoeuvres that ``model`` is made from."""
     elevator_notes: tuple[str, ...] = ()
     """What is assumed of the elevator's scale and sense, in sentences."""
-    sensor_notes: tuple[str, ...] = ()
-    """Which of several like sensors flew, in sentences; empty where the first of each flew throughout."""
+    reader_notes: tuple[str, ...] = ()
+    """What the reader of the log had to choose or to leave out, in sentences."""
     elevator_guess: Guess | None = None
     """Which output may be the elevator, while nothing says it."""
     other_vehicles: tuple[int, ...] = ()

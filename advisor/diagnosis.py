@@ -8,7 +8,8 @@ import numpy as np
 
 from advisor.aircraft import Aircraft
 from advisor.by_hand import ByHand
-from advisor.flight.events import ManeuverFlown
+from advisor.flight.events import ManeuverFlown, Notice
+from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
@@ -67,6 +68,7 @@ def _recorded(
         name = printable(log.name)
         wrong += [Problem(p.code, f"{name}: {p.text}", p.fix) for p in stream.problems()]
         notes += stream.elevator_notes
+        notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
         for maneuver in (e.maneuver for e in events if isinstance(e, ManeuverFlown)):
             because = decided.excluded_because(maneuver)
             if because is None:

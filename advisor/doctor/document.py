@@ -81,6 +81,7 @@ def doctor_document(findings: Examination | None, problem: Problem | None = None
             "renewed_hz": number(alpha.renewed_hz),
         },
         "limits": [_limit(limit) for limit in findings.limits],
+        "notes": list(findings.notes),
         "expected_std": expectation and {name: number(std) for name, std in expectation.std.items()},
         "expected_for": expectation
         and {

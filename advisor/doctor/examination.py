@@ -33,9 +33,9 @@ class ElevatorFound:
 
     outputs: tuple[int, ...]
     resolution_deg: float
-    """Deflection of the smallest step that SERVO_OUTPUT_RAW can express: 1 us of one output."""
+    """Deflection of the smallest step that an output can express: 1 us of one output."""
     calibrated: bool
-    """False: scaled by SERVOn_MIN/TRIM/MAX and assumed full strokes."""
+    """False: scaled by the limits in the parameters and assumed full strokes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +63,8 @@ class Examination:
     """None when a needed channel is missing altogether."""
     belief: Belief
     """What the expected errors and the demands on rates rest on."""
+    notes: tuple[str, ...] = ()
+    """What was chosen in reading the log, and where the autopilot wrote none, in sentences."""
 
     @property
     def verdict(self) -> Verdict:

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.doctor.asking import how_to_ask
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Belief, expect, frequency
 from advisor.doctor.instruments import (
@@ -19,13 +18,15 @@ from advisor.doctor.instruments import (
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Survey, bank_name
-from advisor.flight.events import ManeuverFlown
+from advisor.flight.events import ManeuverFlown, Notice
+from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
 from advisor.flight.suitability import problems
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus
+from advisor.flight.vehicle import Vehicle
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
@@ -56,14 +57,14 @@ class Examiner:
         self._survey: Survey | None = None
         self._surveyed_system: int | None = None
         self._maneuvers: list[Maneuver] = []
+        self._notes: list[str] = []
 
     def feed(self, columns: Sequence[Columns]) -> None:
         """Take the next messages."""
         self._keep(self._stream.feed(columns))
         vehicle = self._stream.vehicle
         if vehicle is not None and vehicle.system != self._surveyed_system:
-            self._survey = Survey(vehicle.system, vehicle.component)
-            self._surveyed_system = vehicle.system
+            self._survey, self._surveyed_system = Survey(vehicle), vehicle.system
         if self._survey is not None:
             self._survey.feed(columns)
 
@@ -86,7 +87,6 @@ class Examiner:
             for name, status in self._stream.channels.items()
             if name in paced or name != "elevator"
         }
-        autopilot = vehicle.autopilot if vehicle else ""
         still = self._stream.frozen
         found = problems(
             vehicle,
@@ -103,15 +103,17 @@ class Examiner:
             "alpha" in paced or ("a_z" in paced and speed is not None)
         )
         # Against the aircraft's own pace where it can be told; else against what no aircraft gets by with.
-        limits = [_stopping(problem) for problem in found if problem.code != "rate" or not complete]
+        limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate" or not complete]
         limits += distrust_limits([*still, *(d for m in self._maneuvers for d in m.distrusts)])
-        if complete:
-            limits += rate_limits(paced, belief, autopilot, speed)
-        period_s = 2.0 * np.pi / frequency(belief.model)
-        limits += steadiness_limits(arrivals, {self._surveyed(p.message) for p in paced.values()}, period_s)
         if vehicle is not None and complete:
-            limits += self._speed_limits(paced, belief, autopilot, speed)
-            limits += alpha_limits(self._stream.channels["alpha"], autopilot) if "alpha" in paced else []
+            limits += rate_limits(paced, belief, vehicle, speed)
+        period_s = 2.0 * np.pi / frequency(belief.model)
+        carrier = vehicle.carrier if vehicle else "telemetry"
+        paced_by = {self._surveyed(p.message) for p in paced.values()}
+        limits += steadiness_limits(arrivals, paced_by, period_s, carrier)
+        if vehicle is not None and complete:
+            limits += self._speed_limits(paced, belief, vehicle, speed)
+            limits += alpha_limits(self._stream.channels["alpha"], vehicle) if "alpha" in paced else []
         elevator = self._elevator()
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
         limits += clock_limits(clocks) if clocks else []
@@ -128,10 +130,12 @@ class Examiner:
             limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
             expectation=expect(belief, rates, speed) if complete else None,
             belief=belief,
+            notes=(*self._notes, *(self._survey.pauses if self._survey else ())),
         )
 
     def _keep(self, events: Sequence[object]) -> None:
         self._maneuvers += [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+        self._notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
 
     def _belief(self) -> Belief:
         """The aircraft and its noise as far as they are known: the file's model, else what was flown."""
@@ -203,17 +207,19 @@ class Examiner:
         return AlphaFound(source, status.provenance, paced["alpha"].renewed_hz)
 
     def _speed_limits(
-        self, paced: dict[str, Paced], belief: Belief, autopilot: str, speed: float | None
+        self, paced: dict[str, Paced], belief: Belief, vehicle: Vehicle, speed: float | None
     ) -> list[Limit]:
         """Without air speed or specific force some errors are larger."""
         if speed is None:
             text = "No air speed arrives: derivatives cannot be referred to one speed, nor a_z be used"
-            fix = how_to_ask("VFR_HUD", autopilot) + "; or give airspeed_m_s in the aircraft file"
+            fix = _fast("VFR_HUD", vehicle) + "; or give airspeed_m_s in the aircraft file"
             cost = cost_of_missing("a_z", paced, belief, None)
             return [Limit("no_airspeed", text, fix, std_ratio=cost)]
         if "a_z" not in paced and "a_z" not in self._stream.channels:
-            text = "No specific force arrives (RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU)"
-            fix = how_to_ask("HIGHRES_IMU" if autopilot == "px4" else "RAW_IMU", autopilot)
+            any_of = "RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU"
+            named = any_of if vehicle.carrier == "telemetry" else vehicle.mends.called("RAW_IMU")
+            text = f"No specific force arrives ({named})"
+            fix = _fast("RAW_IMU", vehicle)
             cost = cost_of_missing("a_z", paced, belief, speed)
             return [Limit("no_accelerometer", text, fix, std_ratio=cost)]
         return []
@@ -230,9 +236,16 @@ def _believable(flown: Estimate) -> bool:
     return moved and explained and sharp and not {"M_alpha", "M_delta_e"} & flown.not_identifiable.keys()
 
 
-def _stopping(problem: Problem) -> Limit:
+def _fast(message: str, vehicle: Vehicle) -> str:
+    """How to have a message that never came, at a good rate."""
+    if vehicle.carrier == "telemetry":
+        return vehicle.mends.faster(message)
+    return vehicle.mends.present([message])
+
+
+def _stopping(problem: Problem, vehicle: Vehicle | None) -> Limit:
     fix = problem.fix.removeprefix("Mend: ").rstrip(".")
-    if problem.code == "no_elevator":
+    if problem.code == "no_elevator" and (vehicle is None or vehicle.carrier == "telemetry"):
         fix += "; on a live link --request-rates asks the vehicle for them"
     return Limit(problem.code, problem.text.rstrip("."), f"{fix[:1].lower()}{fix[1:]}", stops=True)
 

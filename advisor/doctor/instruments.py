@@ -4,12 +4,12 @@ from collections.abc import Collection, Iterable
 
 from advisor.aircraft import Elevator
 from advisor.beside import beside
-from advisor.doctor.asking import how_to_ask
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.survey import Clocks
 from advisor.flight.surfaces import joined_numbers
 from advisor.flight.track import ChannelStatus
 from advisor.flight.trust import Distrust
+from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
 
 COARSE_DEG = 0.5
@@ -19,19 +19,28 @@ DRIFTING_PERCENT = 1.0
 STRAYED_SHARE = 0.01
 """Of a message's stamps; around a reboot a few always fit on neither clock."""
 
-_A_VANE = "fit a vane that sends NAMED_VALUE_FLOAT (alpha.source: named_value:NAME)"
+_A_VANE = "fit a vane that sends {} (alpha.source: named_value:NAME)"
+_RECORD_IT = " and record the telemetry, for ArduPilot's own log does not keep it"
 
 
-def alpha_limits(alpha: ChannelStatus, autopilot: str) -> list[Limit]:
+def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
     """What it means that the angle of attack is no vane's."""
     if alpha.provenance != "derived":
         return []
+    vane = _A_VANE.format(vehicle.mends.called("NAMED_VALUE_FLOAT")) + (
+        _RECORD_IT if vehicle.carrier == "dataflash" else ""
+    )
     if alpha.source.startswith("AOA_SSA"):
-        text = "AOA_SSA is the autopilot's own estimate, not a vane: late, and blind to gusts"
-        return [Limit("alpha_derived", text, f"fly in calm air, or {_A_VANE}")]
+        name = vehicle.mends.called("AOA_SSA")
+        text = f"{name} is the autopilot's own estimate, not a vane: late, and blind to gusts"
+        return [Limit("alpha_derived", text, f"fly in calm air, or {vane}")]
     text = "Angle of attack is derived from pitch, climb rate and air speed: late, and blind to gusts"
-    better = f"ask for AOA_SSA over MAVLink 2: {how_to_ask('AOA_SSA', autopilot)}; or "
-    return [Limit("alpha_derived", text, (better if autopilot == "ardupilot" else "") + _A_VANE)]
+    better = ""
+    if vehicle.autopilot == "ardupilot":
+        over_link = f"ask for AOA_SSA over MAVLink 2: {vehicle.mends.faster('AOA_SSA')}"
+        better = over_link if vehicle.carrier == "telemetry" else vehicle.mends.present(["AOA_SSA"])
+        better += "; or "
+    return [Limit("alpha_derived", text, better + vane)]
 
 
 def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
@@ -45,7 +54,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
         limits.append(
             Limit(
                 "calibration",
-                f"{outputs} not calibrated: full strokes of SERVOn_MIN/TRIM/MAX count as 25 deg, "
+                f"{outputs} not calibrated: full strokes, as the parameters have them, count as 25 deg, "
                 "so Z_delta_e and M_delta_e have an assumed scale",
                 f"measure the deflection at three pulse widths and give {key} in the aircraft file",
             )

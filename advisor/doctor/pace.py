@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.beside import beside
-from advisor.doctor.asking import GOOD_HZ, how_to_ask
 from advisor.doctor.examination import Limit
 from advisor.doctor.expectation import Belief, Expectation, expect, frequency
 from advisor.doctor.survey import Arrival
 from advisor.flight.suitability import SLOWEST_HZ
+from advisor.flight.vehicle import Vehicle
+from advisor.mends import GOOD_HZ, Carrier
 
 FEWEST_PER_PERIOD = 6.0
 """Samples to one natural period below which the short period cannot be followed."""
@@ -21,6 +22,10 @@ GAP_INTERVALS = 3.0
 FALLEN = 0.6
 """Share of the usual rate below which a message counts as cut."""
 
+_DROPPED = (
+    "the autopilot could not write all records: log fewer or use a faster card; a manoeuvre with such a "
+    "gap is flown again"
+)
 _PLAIN = {"elevator": "elevator command", "q": "pitch rate", "alpha": "angle of attack"}
 
 
@@ -37,7 +42,7 @@ class Paced:
 
 
 def rate_limits(
-    paced: Mapping[str, Paced], belief: Belief, autopilot: str, airspeed_m_s: float | None
+    paced: Mapping[str, Paced], belief: Belief, vehicle: Vehicle, airspeed_m_s: float | None
 ) -> list[Limit]:
     """Limits for every channel that is slow for this aircraft.
 
@@ -60,14 +65,15 @@ def rate_limits(
             continue
         alone = expect(belief, {**good, name: channel.renewed_hz}, airspeed_m_s)
         repeats = channel.rate_hz >= enough_hz
-        arrives = f"{channel.message} arrives at {channel.rate_hz:.1f} Hz"
+        message = vehicle.mends.called(channel.message)
+        arrives = f"{message} arrives at {channel.rate_hz:.1f} Hz"
         if repeats:
             arrives += f" but is renewed at {channel.renewed_hz:.1f} Hz"
         limits.append(
             Limit(
                 "renewal" if repeats else "rate",
                 f"{arrives}: {_samples(channel.renewed_hz, fewest_hz, enough_hz, _PLAIN[name], period_s)}",
-                _staircase(channel) if repeats else how_to_ask(channel.message, autopilot),
+                _staircase(message, vehicle) if repeats else vehicle.mends.faster(channel.message),
                 stops=channel.renewed_hz < fewest_hz and not (name == "alpha" and stands_in),
                 std_ratio=_ratio(alone, best),
             )
@@ -87,7 +93,9 @@ def _samples(hz: float, fewest_hz: float, enough_hz: float, plain: str, period_s
     return f"{shown} samples of {plain} in a natural period of {period_s:.2f} s ({limits})"
 
 
-def steadiness_limits(arrivals: Mapping[str, Arrival], needed: set[str], period_s: float) -> list[Limit]:
+def steadiness_limits(
+    arrivals: Mapping[str, Arrival], needed: set[str], period_s: float, carrier: Carrier
+) -> list[Limit]:
     """Messages that came, but not all the time."""
     limits = []
     for name in sorted(needed & arrivals.keys()):
@@ -98,8 +106,10 @@ def steadiness_limits(arrivals: Mapping[str, Arrival], needed: set[str], period_
                     "rate_fell",
                     f"{name} came at {arrival.rate_hz:.1f} Hz, but at {arrival.lowest_hz:.1f} Hz over its "
                     "worst five seconds",
-                    "keep other ground stations from setting stream rates (MAVProxy --streamrate=-1; -1 in "
-                    "Mission Planner's telemetry rates) and check the radio link",
+                    _DROPPED
+                    if carrier != "telemetry"
+                    else "keep other ground stations from setting stream rates (MAVProxy --streamrate=-1; "
+                    "-1 in Mission Planner's telemetry rates) and check the radio link",
                 )
             )
         elif arrival.largest_gap_s > max(0.5 * period_s, GAP_INTERVALS / arrival.rate_hz):
@@ -107,7 +117,9 @@ def steadiness_limits(arrivals: Mapping[str, Arrival], needed: set[str], period_
                 Limit(
                     "gap",
                     f"{name} was missing for {arrival.largest_gap_s:.2f} s at its worst",
-                    "check the radio link and its antennas; a manoeuvre with such a gap is flown again",
+                    _DROPPED
+                    if carrier != "telemetry"
+                    else "check the radio link and its antennas; a manoeuvre with such a gap is flown again",
                 )
             )
     return limits
@@ -122,10 +134,10 @@ def cost_of_missing(
     return _ratio(expect(belief, rates, airspeed_m_s), with_it)
 
 
-def _staircase(channel: Paced) -> str:
+def _staircase(message: str, vehicle: Vehicle) -> str:
     return (
-        f"nothing on the link: the sender itself renews {channel.message} at this pace; a vane that sends "
-        "NAMED_VALUE_FLOAT (alpha.source: named_value:NAME) can be faster"
+        f"no setting helps: the sender itself renews {message} at this pace; a vane that sends "
+        f"{vehicle.mends.called('NAMED_VALUE_FLOAT')} (alpha.source: named_value:NAME) can be faster"
     )
 
 

@@ -10,6 +10,7 @@ from advisor.flight.attitude import Attitudes
 from advisor.flight.channels import stamps
 from advisor.flight.clocks import BootClock
 from advisor.flight.messages import Columns, FloatArray, cut
+from advisor.flight.vehicle import Vehicle
 
 # The field whose change shows that a message brings news and not the last value again.
 _TELLING = {
@@ -48,7 +49,7 @@ class Arrival:
     jitter_ms: float
     """Standard deviation of the intervals between stamps, gaps left out."""
     largest_gap_s: float
-    """Longest time between two messages within one boot."""
+    """Longest time between two messages within one boot, pauses of the log left out."""
     renewed_hz: float
     """How often the value changes while it changes at all; NaN where nothing tells."""
     lowest_hz: float
@@ -89,6 +90,15 @@ class _Sender:
         return changed
 
 
+@dataclass(frozen=True, slots=True)
+class _Pause:
+    """A stretch of one boot in which nothing was written."""
+
+    boot: int
+    start_s: float
+    end_s: float
+
+
 class Survey:
     """Follows every message of one vehicle.
 
@@ -97,12 +107,13 @@ class Survey:
 
     Parameters
     ----------
-    system, component
-        The vehicle.
+    vehicle
+        Whose messages count.
     """
 
-    def __init__(self, system: int, component: int) -> None:
-        self._who = (system, component)
+    def __init__(self, vehicle: Vehicle) -> None:
+        self._who = (vehicle.system, vehicle.component)
+        self._carrier = vehicle.carrier
         self._attitudes = Attitudes()
         self._clock = BootClock()
         self._master_s = np.nan
@@ -163,8 +174,40 @@ class Survey:
     @property
     def arrivals(self) -> list[Arrival]:
         """Every message that arrived, the most frequent first."""
-        found = [_arrival(name, sender) for name, sender in self._senders.items() if any(map(len, sender.t))]
+        pauses = self._pauses()
+        found = [
+            _arrival(name, sender, pauses)
+            for name, sender in self._senders.items()
+            if any(map(len, sender.t))
+        ]
         return sorted(found, key=lambda arrival: (-arrival.count, arrival.name))
+
+    @property
+    def pauses(self) -> list[str]:
+        """When the autopilot wrote nothing into a log of its own, one sentence each."""
+        because = " (LOG_DISARMED 0)" if self._carrier == "dataflash" else ""
+        return [
+            f"The autopilot logged nothing from {p.start_s:.1f} to {p.end_s:.1f} s, as it may while "
+            f"disarmed{because}: no link was lost."
+            for p in self._pauses()
+        ]
+
+    def _pauses(self) -> list[_Pause]:
+        """Stretches in which no message of any kind came; none for a link, whose faults they are."""
+        if self._carrier == "telemetry" or not self._clock_pairs:
+            return []
+        _, t, boot = np.concatenate(self._clock_pairs).T
+        others = [
+            np.column_stack([np.concatenate(s.t), np.concatenate(s.boot)]) for s in self._senders.values()
+        ]
+        every = np.concatenate([np.column_stack([t, boot]), *others])
+        every = every[np.all(np.isfinite(every), axis=1)]
+        every = every[np.lexsort((every[:, 0], every[:, 1]))]
+        silent = (np.diff(every[:, 0]) > _WINDOW_S) & (np.diff(every[:, 1]) == 0)
+        return [
+            _Pause(int(every[row, 1]), float(every[row, 0]), float(every[row + 1, 0]))
+            for row in np.flatnonzero(silent)
+        ]
 
 
 def bank_name(port: int) -> str:
@@ -189,8 +232,10 @@ def _telling(part: Columns) -> FloatArray:
     return np.column_stack(columns) if columns else np.empty((len(part), 0))
 
 
-def _arrival(name: str, sender: _Sender) -> Arrival:
+def _arrival(name: str, sender: _Sender, pauses: Sequence[_Pause]) -> Arrival:
     t, boot, news = np.concatenate(sender.t), np.concatenate(sender.boot), np.concatenate(sender.news)
+    # After a pause messages begin anew, as after a boot.
+    boot = boot + sum(((boot > p.boot) | (boot == p.boot) & (t > p.start_s)).astype(np.int64) for p in pauses)
     order = np.lexsort((t, boot))
     t, boot, news = t[order], boot[order], news[order]
     fresh = np.isfinite(t) & np.concatenate([[True], (np.diff(t) != 0.0) | (np.diff(boot) != 0)])

@@ -27,6 +27,7 @@ class ExaminationText:
         yield Text(f"{_SIGNS[found.verdict]} {found.verdict.upper()}", style=_STYLES[found.verdict])
         for limit in found.limits:
             yield from _told(limit)
+        yield from (Text(f"  note: {note}") for note in found.notes)
         yield Text()
         yield Text(self._who())
         yield Text(self._elevator())

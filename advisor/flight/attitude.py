@@ -1,10 +1,11 @@
 """ATTITUDE_QUATERNION read as the ATTITUDE that a vehicle does not send."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import Columns
+from advisor.flight.messages import Columns, FloatArray
 
 _QUATERNION = ("q1", "q2", "q3", "q4")
 
@@ -39,6 +40,22 @@ class Attitudes:
         return [*stand_ins.values(), *others]
 
 
+def euler_angles(q: FloatArray) -> dict[str, FloatArray]:
+    """Roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
+
+    Parameters
+    ----------
+    q
+        Shape (4, n): w, x, y, z of the turn from north-east-down into body axes.
+    """
+    w, x, y, z = q
+    return {
+        "roll": np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+        "pitch": np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)),
+        "yaw": np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+    }
+
+
 def _sender(c: Columns) -> tuple[int, int]:
     return c.system, c.component
 
@@ -46,23 +63,18 @@ def _sender(c: Columns) -> tuple[int, int]:
 def _as_attitude(c: Columns, rows: int) -> Columns:
     """The first rows as ATTITUDE; w, x, y, z of ``q1`` to ``q4`` turn north-east-down into body axes."""
     fields = {name: values[:rows] for name, values in c.fields.items()}
-    w, x, y, z = (np.asarray(fields[name], dtype=np.float64) for name in _QUATERNION)
-    angles = {
-        "roll": np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
-        "pitch": np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)),
-        "yaw": np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
-    }
+    angles = euler_angles(np.array([fields[name] for name in _QUATERNION], dtype=np.float64))
     kept = {name: values for name, values in fields.items() if name not in (*_QUATERNION, "repr_offset_q")}
-    return Columns("ATTITUDE", c.system, c.component, c.order[:rows], c.arrival_s[:rows], kept | angles)
+    return replace(
+        c, name="ATTITUDE", order=c.order[:rows], arrival_s=c.arrival_s[:rows], fields=kept | angles
+    )
 
 
 def _joined(first: Columns, then: Columns) -> Columns:
     """Two batches of one type, one after the other."""
-    return Columns(
-        then.name,
-        then.system,
-        then.component,
-        np.concatenate([first.order, then.order]),
-        np.concatenate([first.arrival_s, then.arrival_s]),
-        {name: np.concatenate([first.fields[name], values]) for name, values in then.fields.items()},
+    return replace(
+        then,
+        order=np.concatenate([first.order, then.order]),
+        arrival_s=np.concatenate([first.arrival_s, then.arrival_s]),
+        fields={name: np.concatenate([first.fields[name], values]) for name, values in then.fields.items()},
     )

@@ -5,7 +5,7 @@ two banks needs two messages for one sample.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -77,7 +77,7 @@ def _in_order(banks: Sequence[Columns]) -> Columns:
         if all(name in c.fields for c in banks)
     }
     arrival_s = np.concatenate([c.arrival_s for c in banks])[rows]
-    return Columns(banks[0].name, banks[0].system, banks[0].component, order[rows], arrival_s, fields)
+    return replace(banks[0], order=order[rows], arrival_s=arrival_s, fields=fields)
 
 
 class Banks:

@@ -13,7 +13,7 @@ from advisor.flight.pieces import between
 
 @dataclass(frozen=True, slots=True)
 class Master:
-    """The master clock of one boot, with the attitude that came with it."""
+    """The master clock of one boot."""
 
     boot: int
     """Number of the boot, 0 for the first."""
@@ -21,8 +21,6 @@ class Master:
     """Shape (n,): when each believed stamp arrived among all messages."""
     t: FloatArray
     """Shape (n,), s since boot."""
-    attitude: FloatArray
-    """Shape (n, 2): pitch and roll, rad."""
 
 
 def by_boot(
@@ -41,10 +39,9 @@ def by_boot(
     """
     attitude = next((c for c in columns if c.name == "ATTITUDE" and c.component == component), None)
     if attitude is None:
-        yield list(columns), Master(boot, np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 2)))
+        yield list(columns), Master(boot, np.empty(0, dtype=np.int64), np.empty(0))
         return
     ticks = clock.advance(np.asarray(attitude.fields["time_boot_ms"], dtype=np.int64))
-    angles = np.column_stack([np.asarray(attitude.fields[c], dtype=np.float64) for c in ("pitch", "roll")])
     boots, first = np.unique(ticks.boot, return_index=True)
     edges = [int(n) for n in attitude.order[first]]
     if boots[0] == boot:
@@ -54,5 +51,5 @@ def by_boot(
     edges.append(int(max(c.order[-1] for c in columns)) + 1)
     for number, (a, b) in zip(boots.tolist(), pairwise(edges), strict=True):
         believed = (ticks.boot == number) & np.isfinite(ticks.t)
-        master = Master(number, attitude.order[believed], ticks.t[believed], angles[believed])
+        master = Master(number, attitude.order[believed], ticks.t[believed])
         yield between(columns, a, b) if len(boots) > 1 else list(columns), master

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from advisor.flight.clocks import place
 from advisor.flight.messages import Columns, FloatArray
-from advisor.flight.motion import gravity_in_plane
 from advisor.gravity import GRAVITY_M_S2
 
 _ARMED = 128
@@ -86,12 +85,11 @@ _STAMPS = {
     "ACTUATOR_OUTPUT_STATUS": _USEC,
     "NAMED_VALUE_FLOAT": _BOOT_MS,
     "RC_CHANNELS": _BOOT_MS,
+    "VFR_HUD": _USEC,
 }
-"""VFR_HUD has no stamp: it takes that of the last ATTITUDE."""
+"""VFR_HUD of a link has no stamp: it takes that of the last ATTITUDE. Autopilots' own logs stamp it."""
 
-DERIVED_ALPHA = "theta - asin(VFR_HUD.climb / airspeed)"
-SLOWEST_FLIGHT_M_S = 4.0
-"""Below this air speed nothing flies, and no angle of attack can be derived."""
+GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,9 +114,9 @@ def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
     master_s
         Shape (n,), master clock when each arrived.
     """
-    if columns.name not in _STAMPS:
+    field, tick_s = _STAMPS.get(columns.name, ("", 0.0))
+    if field not in columns.fields:
         return master_s
-    field, tick_s = _STAMPS[columns.name]
     return place(columns.fields[field], tick_s, master_s)
 
 
@@ -139,39 +137,9 @@ def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
     return _decoded("alpha", f"NAMED_VALUE_FLOAT.{name}", "vane", t, y, columns)
 
 
-def derived_alpha(hud: Columns, t: FloatArray, attitude: FloatArray, airspeed: float | None) -> Decoded:
-    """Angle of attack in still air, θ − γ with sin γ = climb rate / air speed; in a bank, what makes that γ.
-
-    Parameters
-    ----------
-    hud
-        VFR_HUD messages.
-    t, attitude
-        Shapes (n,) and (n, 2): their vehicle time, and pitch and roll (rad) at that time.
-    airspeed
-        Used where the message has none, m/s.
-    """
-    v = np.asarray(hud.fields["airspeed"], dtype=np.float64)
-    if airspeed is not None:
-        v = np.where(v > SLOWEST_FLIGHT_M_S, v, airspeed)
-    flying = v > SLOWEST_FLIGHT_M_S
-    sine = np.divide(hud.fields["climb"], v, out=np.zeros_like(v), where=flying)
-    up, size = gravity_in_plane(attitude[:, 0], attitude[:, 1])
-    path = np.arcsin(np.clip(sine * GRAVITY_M_S2 / size, -1.0, 1.0))
-    alpha = np.where(flying, up - path, np.nan)
-    return _decoded("alpha", DERIVED_ALPHA, "derived", t, alpha, hud)
-
-
-def promised(new: Decoded, columns: Columns) -> NDArray[np.int64]:
-    """Orders of the messages that bring samples, or will once the aircraft flies.
-
-    No angle of attack can be derived while the aircraft stands, which is no fault of the stream.
-    """
-    if new.source != DERIVED_ALPHA:
-        return new.order
-    slow = np.asarray(columns.fields["airspeed"]) <= SLOWEST_FLIGHT_M_S
-    stands = slow & (np.asarray(columns.fields.get("groundspeed", np.inf)) <= SLOWEST_FLIGHT_M_S)
-    return columns.order[stands | np.isin(columns.order, new.order)]
+def given_airspeed(attitude: Columns, t: FloatArray, airspeed_m_s: float) -> Decoded:
+    """The air speed that the aircraft file gives, at the stamps of ATTITUDE, for a log that has none."""
+    return _decoded("airspeed", GIVEN_AIRSPEED, "given", t, np.full(len(t), airspeed_m_s), attitude)
 
 
 def _decoded(

@@ -12,13 +12,13 @@ from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.marked_input import marked_span
 from advisor.flight.marks import Mark
+from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.purpose import not_an_input
 from advisor.flight.record import UNITS
 from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.sense import Sense, turned
-from advisor.flight.track import Tracks
+from advisor.flight.tracks import Tracks
 from advisor.flight.trust import distrusted
-from advisor.flight.vehicle import closes_pitch_loop
 
 
 class Cutting:

@@ -1,51 +1,27 @@
 """The elevator: which servo outputs make it, how they are mixed, and what the user is told of that.
 
-Elevons, the halves of a V-tail and differential spoilers all follow the pitch demand upwards and the other
-demand in opposite directions (ArduPlane, ``servos.cpp``). The mean of the left and the right side is
-therefore the elevator, and the other demand cancels.
+Elevons, the halves of a V-tail or A-tail and differential spoilers all follow the pitch demand upwards and
+the other demand in opposite directions (ArduPlane, ``servos.cpp``; PX4's control allocation). The mean of the
+left and the right side is therefore the elevator, and the other demand cancels.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from advisor.aircraft import Elevator, ElevatorOutput, Pairs
-from advisor.flight.surfaces import (
-    ELEVATOR,
-    Calibration,
-    Parameters,
-    Part,
-    Surface,
-    functions_of,
-    in_shares,
-    joined_numbers,
-    listed,
-    scale_of,
-)
+from advisor.flight.surfaces import Calibration, Part, Surface, in_shares, joined_numbers, listed
+from advisor.flight.wiring import ELEVATOR, Role, Wiring
 from advisor.problems import Problem
 
-# SERVOn_FUNCTION of mixed outputs, ArduPilot's SRV_Channel.h: what it is, and on which side.
-_MIXED = {
-    77: ("elevon", "left"),
-    78: ("elevon", "right"),
-    79: ("V-tail", "left"),
-    80: ("V-tail", "right"),
-    16: ("differential spoiler", "left"),
-    86: ("differential spoiler", "left"),
-    17: ("differential spoiler", "right"),
-    87: ("differential spoiler", "right"),
-}
 _CANCELS = {
     "elevon": "what they do in roll cancels",
     "V-tail": "what they do in yaw cancels",
+    "A-tail": "what they do in yaw cancels",
     "differential spoiler": "what they do in roll and yaw cancels",
 }
-_ASSUMED = (
-    "No calibration: they are scaled by SERVOn_MIN/TRIM/MAX as full strokes of 25 deg, so Z_delta_e and "
-    "M_delta_e are per assumed degree."
-)
 
 
 def find_elevator(
-    elevator: Elevator, parameters: Parameters, why: str = "as the aircraft file says"
+    elevator: Elevator, wiring: Wiring, why: str = "as the aircraft file says"
 ) -> Surface | Problem:
     """Which outputs are the elevator, and their scales.
 
@@ -53,42 +29,42 @@ def find_elevator(
     ----------
     elevator
         As the aircraft file has it.
-    parameters
-        What is known of SERVOn_*; may be empty.
+    wiring
+        What the vehicle's parameters say of its outputs; may be nothing.
     why
         Why ``elevator.output`` is what it is, in words.
     """
     if elevator.outputs:
-        return _as_listed(elevator.outputs, parameters)
+        return _as_listed(elevator.outputs, wiring)
     if elevator.output != "auto":
-        return _as_given(elevator.output, elevator.calibration, parameters, why)
-    return _as_found(elevator.calibration, parameters)
+        return _as_given(elevator.output, elevator.calibration, wiring, why)
+    return _as_found(elevator.calibration, wiring)
 
 
-def _as_listed(outputs: Sequence[ElevatorOutput], parameters: Parameters) -> Surface | Problem:
+def _as_listed(outputs: Sequence[ElevatorOutput], wiring: Wiring) -> Surface | Problem:
     if len(outputs) == 1:
-        return _as_given(outputs[0].output, outputs[0].calibration, parameters, "as the aircraft file says")
+        return _as_given(outputs[0].output, outputs[0].calibration, wiring, "as the aircraft file says")
     parts = in_shares(
         Part(
             one.output,
-            Calibration(one.calibration) if one.calibration else scale_of(one.output, parameters),
+            Calibration(one.calibration) if one.calibration else wiring.scale(one.output),
             one.weight,
-            one.calibration is not None or _is_told(one.output, parameters),
+            one.calibration is not None or _is_told(one.output, wiring),
         )
         for one in outputs
     )
     calibrated = outputs[0].calibration is not None
-    sides = {_MIXED[f] for n, f in functions_of(parameters).items() if n in _numbers(parts) and f in _MIXED}
-    said = [_formed(parts, "as the aircraft file says", sorted({kind for kind, _ in sides}))]
+    halves = {wiring.roles[n] for n in _numbers(parts) if _is_half(n, wiring)}
+    said = [_formed(parts, "as the aircraft file says", sorted({half.surface for half in halves}))]
     said += [
         f"Only one side of the {kind} pair is among them: its other axis counts as elevator, too."
-        for kind in _one_sided(sides)
+        for kind in _one_sided(halves)
     ]
-    return Surface(parts, calibrated, " ".join(said if calibrated else [*said, _ASSUMED]))
+    return Surface(parts, calibrated, " ".join(said if calibrated else [*said, _assumed(wiring)]))
 
 
-def _as_given(output: int, calibration: Pairs | None, parameters: Parameters, why: str) -> Surface | Problem:
-    mixed, _ = _MIXED.get(functions_of(parameters).get(output, 0), ("", ""))
+def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) -> Surface | Problem:
+    mixed = wiring.roles[output].surface if _is_half(output, wiring) else ""
     if calibration is None:
         if mixed:
             return Problem(
@@ -97,7 +73,7 @@ def _as_given(output: int, calibration: Pairs | None, parameters: Parameters, wh
                 "Set elevator.output to auto: both halves are then read together. "
                 "Or list both in elevator.outputs.",
             )
-        return _uncalibrated(Part(output, scale_of(output, parameters)), why)
+        return _uncalibrated(Part(output, wiring.scale(output)), why, wiring)
     said = (
         f"Output {output} is one half of a mixed {mixed} pair, calibrated as an elevator in the aircraft "
         "file: what it does for the other axis counts as elevator, too."
@@ -105,77 +81,90 @@ def _as_given(output: int, calibration: Pairs | None, parameters: Parameters, wh
     return Surface((Part(output, Calibration(calibration)),), True, said if mixed else "")
 
 
-def _as_found(calibration: Pairs | None, parameters: Parameters) -> Surface | Problem:
-    functions = functions_of(parameters)
-    # Groups of outputs that each make a whole elevator: all with function 19, and all pairs of one kind.
-    groups = [[[n for n, function in functions.items() if function == ELEVATOR]]]
-    mixed = {n: _MIXED[function] for n, function in functions.items() if function in _MIXED}
+def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
+    # Groups of outputs that each make a whole elevator: all plain ones, and all pairs of one kind.
+    kinds = dict.fromkeys(role.surface for role in wiring.roles.values() if role.side)
+    groups = [[wiring.outputs_of(ELEVATOR)]]
     groups += [
-        [[n for n, half in mixed.items() if half == (kind, side)] for side in ("left", "right")]
-        for kind in dict.fromkeys(kind for kind, _ in mixed.values())
+        [wiring.outputs_of(Role(kind, "left")), wiring.outputs_of(Role(kind, "right"))] for kind in kinds
     ]
     whole = [sides for sides in groups if all(sides)]
     if not whole:
-        return _nothing_found(functions, mixed)
+        return _nothing_found(wiring)
     parts = in_shares(
-        Part(n, scale_of(n, parameters), 1.0 / (len(sides) * len(side)), _is_told(n, parameters))
+        Part(n, wiring.scale(n), 1.0 / (len(sides) * len(side)), _is_told(n, wiring))
         for sides in whole
         for side in sides
         for n in side
     )
-    kinds = list(dict.fromkeys(mixed[n][0] for n in _numbers(parts) if n in mixed))
+    found = list(dict.fromkeys(wiring.roles[n].surface for n in _numbers(parts) if _is_half(n, wiring)))
     if calibration is not None:
-        return _carried_over(calibration, parts, kinds, parameters)
+        return _carried_over(calibration, parts, found, wiring)
     if len(parts) == 1:
-        return _uncalibrated(parts[0], "SERVOn_FUNCTION 19")
-    return Surface(parts, False, f"{_formed(parts, _why(kinds), kinds)} {_ASSUMED}")
+        return _uncalibrated(parts[0], _why(found, wiring), wiring)
+    return Surface(parts, False, f"{_formed(parts, _why(found, wiring), found)} {_assumed(wiring)}")
 
 
 def _carried_over(
-    calibration: Pairs, parts: Sequence[Part], kinds: Sequence[str], parameters: Parameters
+    calibration: Pairs, parts: Sequence[Part], kinds: Sequence[str], wiring: Wiring
 ) -> Surface | Problem:
     """One calibration for all that was found: that of the first output, carried over to the others."""
     first, *others = _numbers(parts)
     if not others:
         return Surface((Part(first, Calibration(calibration)),), True, "")
-    untold = [n for n in (first, *others) if f"SERVO{n}_REVERSED" not in parameters]
+    untold = [n for n in (first, *others) if n not in wiring.told]
     if untold:
         return Problem(
             "no_elevator",
             f"elevator.calibration describes one output, but outputs {joined_numbers((first, *others))} act "
-            f"together, and SERVO{untold[0]}_REVERSED is not known.",
+            f"together, and {wiring.words.sense.format(n=untold[0])} is not known.",
             "Give elevator.outputs in place of it, with a calibration for each output.",
         )
-    measured = scale_of(first, parameters)
+    measured = wiring.scale(first)
     found = tuple(
         Part(
             part.output,
-            Calibration(calibration).carried_over(measured, scale_of(part.output, parameters)),
+            Calibration(calibration).carried_over(measured, wiring.scale(part.output)),
             part.share,
         )
         for part in parts
     )
-    turned = [n for n in others if scale_of(n, parameters).reversed != measured.reversed]
-    way = f", the other way round for {joined_numbers(turned)} (SERVOn_REVERSED)" if turned else ""
+    turned = [n for n in others if wiring.scale(n).reversed != measured.reversed]
+    way = (
+        f", the other way round for {joined_numbers(turned)} ({wiring.words.sense.format(n='n')})"
+        if turned
+        else ""
+    )
     said = (
         f"elevator.calibration is taken for output {first} and carried over to {joined_numbers(others)}, "
-        f"counted from SERVOn_TRIM{way}; elevator.outputs can hold one for each."
+        f"counted from {wiring.words.trim}{way}; elevator.outputs can hold one for each."
     )
-    return Surface(found, True, f"{_formed(found, _why(kinds), kinds)} {said}")
+    return Surface(found, True, f"{_formed(found, _why(kinds, wiring), kinds)} {said}")
 
 
-def _uncalibrated(part: Part, why: str) -> Surface:
+def _uncalibrated(part: Part, why: str, wiring: Wiring) -> Surface:
     said = (
-        f"No elevator.calibration: output {part.output} ({why}) is scaled by SERVOn_MIN/TRIM/MAX "
+        f"No elevator.calibration: output {part.output} ({why}) is scaled by {wiring.words.limits} "
         "as full strokes of 25 deg, so Z_delta_e and M_delta_e are per assumed degree."
     )
     return Surface((part,), False, said)
 
 
-def _is_told(n: int, parameters: Parameters) -> bool:
+def _assumed(wiring: Wiring) -> str:
+    return (
+        f"No calibration: they are scaled by {wiring.words.limits} as full strokes of 25 deg, so Z_delta_e "
+        "and M_delta_e are per assumed degree."
+    )
+
+
+def _is_half(n: int, wiring: Wiring) -> bool:
+    """Whether output ``n`` is known to be one half of a mixed pair."""
+    return n in wiring.roles and bool(wiring.roles[n].side)
+
+
+def _is_told(n: int, wiring: Wiring) -> bool:
     """Whether the parameters say which way a pitch demand moves output ``n``."""
-    function = functions_of(parameters).get(n)
-    return (function == ELEVATOR or function in _MIXED) and f"SERVO{n}_REVERSED" in parameters
+    return (wiring.roles.get(n) == ELEVATOR or _is_half(n, wiring)) and n in wiring.told
 
 
 def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
@@ -189,33 +178,35 @@ def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
     return f"The elevator is {made} ({why}){cancels}."
 
 
-def _why(kinds: Sequence[str]) -> str:
-    return listed([f"{kind} pair" for kind in kinds]) or "SERVOn_FUNCTION 19"
+def _why(kinds: Sequence[str], wiring: Wiring) -> str:
+    return listed([f"{kind} pair" for kind in kinds]) or wiring.assumed or wiring.words.elevator
 
 
-def _one_sided(sides: set[tuple[str, str]]) -> list[str]:
-    kinds = sorted(kind for kind, _ in sides)
+def _one_sided(halves: Collection[Role]) -> list[str]:
+    kinds = sorted(half.surface for half in halves)
     return [kind for kind in kinds if kinds.count(kind) == 1]
 
 
-def _nothing_found(functions: dict[int, int], mixed: dict[int, tuple[str, str]]) -> Problem:
+def _nothing_found(wiring: Wiring) -> Problem:
+    words = wiring.words
+    mixed = [n for n in wiring.roles if _is_half(n, wiring)]
     if mixed:
-        kinds = listed(sorted({kind for kind, _ in mixed.values()}))
+        kinds = listed(sorted({wiring.roles[n].surface for n in mixed}))
         return Problem(
             "no_elevator",
-            f"Output {joined_numbers(list(mixed))} is one side of a {kinds} pair without the other.",
-            "Record all SERVOn_FUNCTION, or list the elevator's outputs in elevator.outputs.",
+            f"Output {joined_numbers(mixed)} is one side of a {kinds} pair without the other.",
+            f"Record all {words.function}, or list the elevator's outputs in elevator.outputs.",
         )
-    if functions:
+    if wiring.roles:
         return Problem(
             "no_elevator",
-            "No output has SERVOn_FUNCTION 19 (elevator), nor an elevon or V-tail pair.",
+            f"No output has {words.elevator} (elevator), nor an elevon or V-tail pair.",
             "Set elevator.output and elevator.calibration, or elevator.outputs, in the aircraft file.",
         )
     return Problem(
         "no_elevator",
-        "Nothing says which servo output is the elevator: no SERVOn_FUNCTION was received.",
-        "Set elevator.output in the aircraft file (on most ArduPlane aircraft 2; several: elevator.outputs), "
+        words.unknown,
+        f"Set elevator.output in the aircraft file ({words.usual}; several: elevator.outputs), "
         "or record the parameters.",
     )
 

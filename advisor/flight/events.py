@@ -58,7 +58,7 @@ class Activity:
     """s since boot."""
     end_s: float
     reason: str
-    """``autopilot``, ``ground``, ``small``, ``no_information`` or ``unsettled``."""
+    """``autopilot``, ``ground``, ``hover``, ``small``, ``no_information`` or ``unsettled``."""
     text: str
     """A sentence for people."""
     stay_s: float

@@ -11,7 +11,7 @@ from math import radians
 
 import numpy as np
 
-from advisor.flight.channels import SLOWEST_FLIGHT_M_S
+from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.maneuver import Span
 from advisor.flight.record import Channel
 

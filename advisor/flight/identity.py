@@ -2,26 +2,35 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import isfinite, nan
 
 from advisor.aircraft import Elevator
 from advisor.flight.elevator_outputs import find_elevator
 from advisor.flight.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.messages import Columns
-from advisor.flight.surfaces import AILERON, RUDDER, Surface, find_surface
+from advisor.flight.modes import in_hover, mode_name
+from advisor.flight.parameters import Parameters, read_by
+from advisor.flight.surfaces import Surface
 from advisor.flight.trust import Distrust
-from advisor.flight.vehicle import Vehicle, VehicleFinder, mode_name
+from advisor.flight.vehicle import Vehicle, VehicleFinder
+from advisor.flight.wiring import AILERON, RUDDER, Wiring
 from advisor.printable import printable
 from advisor.problems import Problem
 
 _BUNDLED = b"Bundled aircraft"
 """How the simulator of this project introduces itself in a STATUSTEXT."""
 
+_RELEASES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
+"""Least FIRMWARE_VERSION_TYPE (MAVLink common.xml), the lowest byte of a version, and how users write it."""
+
 READER = b"Log reader: "
 """How a reader of logs begins the sentences that its STATUSTEXTs carry to the user."""
 
-SENSOR_NOTICE = "sensor"
-"""Code of the notice that says which of several like sensors flew."""
+READER_NOTICE = "log_reader"
+"""Code of the notice that carries such a sentence, or says how a change in flight was read."""
+_ON_ROTORS = (1, 2, 3)
+"""MAV_VTOL_STATE: transition to forward flight, transition to hover, hover; 4 is forward flight."""
 _GROUND_STATION = 190
 """Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
 
@@ -41,15 +50,16 @@ class Identity:
         self._elevator = elevator
         self._finder = VehicleFinder(target_system)
         self._firmware: dict[int, str] = {}
-        self._parameters: dict[tuple[int, int], dict[str, float]] = {}
+        self._parameters = Parameters()
         self._taken: Elevator | None = None
         self._said = ""
+        self._mode = ""
+        self._hovers = False
+        self._changes_said: set[tuple[str, float]] = set()
         self._following = Following(self._has_elevator)
-        self.mode = ""
-        """Flight mode of the newest heartbeat."""
         self.simulated = False
         """The bundled aircraft has introduced itself: its vane is simulated."""
-        self.elevator: Surface | Problem = find_elevator(elevator, {})
+        self.elevator: Surface | Problem = find_elevator(elevator, self._wiring())
         """The elevator's outputs and scale, or why there is none."""
         self.surfaces: dict[str, Surface] = {}
         """Elevator, aileron and rudder, as far as they are known."""
@@ -61,6 +71,11 @@ class Identity:
         if vehicle is not None and vehicle.system in self._firmware:
             return vehicle.with_firmware(self._firmware[vehicle.system])
         return vehicle
+
+    @property
+    def mode(self) -> str:
+        """Flight mode of the newest heartbeat, and whether rotors carry a VTOL aircraft."""
+        return in_hover(self._mode) if self._hovers and self._mode else self._mode
 
     @property
     def other_systems(self) -> frozenset[int]:
@@ -82,14 +97,26 @@ class Identity:
         """Of the channels that cannot be right, those that are wrong: the paper's model has one air speed."""
         return [d for d in found if not (self.simulated and d.channel == "airspeed")]
 
-    def learn(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Take messages among which at most the first changes anything."""
+    def learn(self, piece: Sequence[Columns], now_s: float = nan, flown: bool = False) -> list[FlightEvent]:
+        """Take messages among which at most the first changes anything.
+
+        Parameters
+        ----------
+        piece
+            Messages, in order of arrival.
+        now_s
+            Vehicle time of the newest sample, s since boot.
+        flown
+            A test input has been flown: the elevator's scale stays as it was then.
+        """
         events = self._choose(piece)
         for columns in piece:
             if columns.name == "HEARTBEAT":
                 events += self._heartbeat(columns)
             elif columns.name == "PARAM_VALUE":
-                events += self._parameter(columns)
+                events += self._parameter(columns, now_s, flown)
+            elif columns.name == "EXTENDED_SYS_STATE":
+                self._flies_on(columns)
             elif columns.name == "AUTOPILOT_VERSION":
                 self._version(columns)
             elif columns.name == "STATUSTEXT":
@@ -114,7 +141,7 @@ class Identity:
         assert before is not None
         self._finder.follow(vehicle)
         self._taken = None
-        self.mode = ""
+        self._mode, self._hovers = "", False
         return [
             VehicleFound(vehicle),
             Notice(
@@ -126,7 +153,8 @@ class Identity:
         ]
 
     def _has_elevator(self, vehicle: Vehicle) -> bool:
-        return isinstance(find_elevator(self._elevator, self._parameters_of(vehicle)), Surface)
+        wiring = self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
+        return isinstance(find_elevator(self._elevator, wiring), Surface)
 
     def _heartbeat(self, columns: Columns) -> list[FlightEvent]:
         events: list[FlightEvent] = []
@@ -144,35 +172,65 @@ class Identity:
             )
         vehicle = self._finder.vehicle
         if vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
-            self.mode = mode_name(vehicle, int(columns.fields["custom_mode"][0]))
+            custom = int(columns.fields["custom_mode"][0])
+            self._mode = mode_name(vehicle.autopilot, vehicle.type, custom)
         return events
 
-    def _parameter(self, columns: Columns) -> list[FlightEvent]:
-        known = self._parameters.setdefault((columns.system, columns.component), {})
+    def _parameter(self, columns: Columns, now_s: float, flown: bool) -> list[FlightEvent]:
+        vehicle, sender = self._finder.vehicle, (columns.system, columns.component)
+        autopilot = vehicle.autopilot if vehicle else ""
+        events: list[FlightEvent] = []
         changed = False
-        for raw, value in zip(
-            columns.fields["param_id"].tolist(), columns.fields["param_value"], strict=True
-        ):
-            name = raw.rstrip(b"\0").decode("ascii", "replace")
-            if name.startswith("SERVO") and known.get(name) != float(value):
-                known[name] = float(value)
-                changed = True
-        vehicle = self._finder.vehicle
+        for name, before, stated in self._parameters.news(columns):
+            self._parameters.keep(sender, name, stated)
+            if before is not None and self._scales_elevator():
+                was, is_ = read_by(autopilot, before), read_by(autopilot, stated)
+                events += self._rescaled(name, was, is_, now_s, flown)
+                if flown:
+                    self._parameters.keep(sender, name, before)
+                    continue
+            changed = True
         if changed and vehicle and (columns.system, columns.component) in _speakers(vehicle):
-            return self._settle_surfaces()
-        return []
+            events += self._settle_surfaces()
+        return events
+
+    def _wiring(self) -> Wiring:
+        vehicle = self._finder.vehicle
+        if vehicle is None:
+            return self._parameters.wiring((), "")
+        return self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
+
+    def _scales_elevator(self) -> bool:
+        """Whether the parameters have changed what the elevator's pulses mean."""
+        return (
+            isinstance(self.elevator, Surface)
+            and find_elevator(self._elevator, self._wiring()) != self.elevator
+        )
+
+    def _rescaled(
+        self, name: str, before: float, value: float, now_s: float, flown: bool
+    ) -> list[FlightEvent]:
+        """What a change of a known parameter does to the elevator: once for each value."""
+        if (name, value) in self._changes_said:
+            return []
+        self._changes_said.add((name, value))
+        at = f" at {now_s:.1f} s" if isfinite(now_s) else ""
+        used = (
+            f"the elevator is counted with {before:g} all the same, for its linkage has not changed"
+            if flown
+            else f"the elevator is counted with {value:g} from then on"
+        )
+        return [Notice(READER_NOTICE, f"{name} changed from {before:g} to {value:g}{at}: {used}.")]
 
     def _settle_surfaces(self) -> list[FlightEvent]:
-        vehicle = self._finder.vehicle
-        assert vehicle is not None
-        parameters = self._parameters_of(vehicle)
-        self.elevator = find_elevator(self._elevator, parameters)
+        wiring = self._wiring()
+        self.elevator = find_elevator(self._elevator, wiring)
         if isinstance(self.elevator, Problem) and self._taken is not None:
-            self.elevator = find_elevator(self._taken, parameters, "by a guess that a hand has taken")
+            self.elevator = find_elevator(self._taken, wiring, "by a guess that a hand has taken")
         found = {
             "elevator": self.elevator,
-            "aileron": find_surface(AILERON, parameters),
-            "rudder": find_surface(RUDDER, parameters),
+            "aileron": wiring.surface(AILERON),
+            "rudder": wiring.surface(RUDDER),
         }
         self.surfaces = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
         said = self.elevator.said if isinstance(self.elevator, Surface) else ""
@@ -181,23 +239,28 @@ class Identity:
         self._said = said
         return [Notice("elevator_scale", said)]
 
-    def _parameters_of(self, vehicle: Vehicle) -> dict[str, float]:
-        parameters: dict[str, float] = {}
-        for speaker in _speakers(vehicle):
-            parameters |= self._parameters.get(speaker, {})
-        return parameters
+    def _flies_on(self, columns: Columns) -> None:
+        vehicle = self._finder.vehicle
+        if vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
+            self._hovers = int(columns.fields["vtol_state"][0]) in _ON_ROTORS
 
     def _version(self, columns: Columns) -> None:
         packed = int(columns.fields["flight_sw_version"][0])
         if packed:
-            version = f"{packed >> 24 & 0xFF}.{packed >> 16 & 0xFF}.{packed >> 8 & 0xFF}"
-            self._firmware[columns.system] = version
+            kind = next((name for least, name in _RELEASES if packed & 0xFF >= least), "")
+            version = f"{packed >> 24 & 0xFF}.{packed >> 16 & 0xFF}.{packed >> 8 & 0xFF}{kind}"
+            self._version_told(columns.system, version)
+
+    def _version_told(self, system: int, version: str) -> None:
+        """Keep the fuller spelling: a text says 4.8.0-beta1 where the message says 4.8.0-beta."""
+        if not self._firmware.get(system, "").startswith(version):
+            self._firmware[system] = version
 
     def _text(self, columns: Columns) -> list[FlightEvent]:
         text = bytes(columns.fields["text"][0])
         if text.startswith(READER):
             said = text.removeprefix(READER).decode("utf-8", "replace")
-            return [Notice(SENSOR_NOTICE, f"{said}.")]
+            return [Notice(READER_NOTICE, f"{said}.")]
         taken = chosen(text, TAKE)
         if taken is not None and self._finder.vehicle is not None:
             self._taken = replace(self._elevator, output=taken)
@@ -209,8 +272,9 @@ class Identity:
             self.simulated = True
         words = text.split()
         if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
-            version = printable(words[1][1:].decode("ascii", "replace"))
-            self._firmware.setdefault(columns.system, version)
+            told = printable(words[1][1:].decode("ascii", "replace"))
+            if told.startswith(self._firmware.get(columns.system, "")):
+                self._version_told(columns.system, told)
         return []
 
 

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from advisor.mends import Carrier
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
@@ -32,6 +34,8 @@ class Columns:
     fields: Mapping[str, NDArray[Any]]
     """Field name to raw values, shape (n,) or (n, k), in the units of the message definition.
     Text fields are arrays of ``bytes`` (NumPy kind ``S``)."""
+    carrier: Carrier = "telemetry"
+    """What brings the messages. Only the words about the vehicle depend on this, as its heartbeat has it."""
 
     def __len__(self) -> int:
         return len(self.order)

@@ -1,6 +1,6 @@
 """Elevator samples out of several outputs, each counted the way in which the aircraft answers to it.
 
-Where neither a calibration nor SERVOn_REVERSED tells the sense of an output, adding outputs could cancel
+Where neither a calibration nor a parameter tells the sense of an output, adding outputs could cancel
 them. Their samples then wait until the pitch rate has told, at most a minute of the vehicle's clock.
 All is decided in the order of arrival, so that live and replay decide at the same sample.
 """
@@ -14,7 +14,7 @@ from advisor.flight.channels import Decoded
 from advisor.flight.commanded import Commanded, joined
 from advisor.flight.events import Notice
 from advisor.flight.surfaces import Surface, joined_numbers
-from advisor.flight.track import Tracks
+from advisor.flight.tracks import Tracks
 from advisor.problems import Problem
 
 _WINDOW_S = 15.0

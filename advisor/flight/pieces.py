@@ -1,14 +1,19 @@
 """Cutting a batch of columns where something changes that all later messages depend on."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from advisor.flight.messages import Columns
+from advisor.flight.parameters import names_in, tells_of_outputs
 
 _EVERY = 100_000
 """Longest piece in arrival orders (bytes of a log), so that memory stays bounded whatever the batch."""
+
+_STATES = {"HEARTBEAT": "custom_mode", "EXTENDED_SYS_STATE": "vtol_state"}
+"""Messages that repeat a state, and the field of the state."""
 
 
 def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list[Columns]]:
@@ -53,18 +58,18 @@ def between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
         if j > i:
             rows = slice(int(i), int(j))
             fields = {name: values[rows] for name, values in c.fields.items()}
-            found.append(Columns(c.name, c.system, c.component, c.order[rows], c.arrival_s[rows], fields))
+            found.append(replace(c, order=c.order[rows], arrival_s=c.arrival_s[rows], fields=fields))
     return found
 
 
 def _turning_points(c: Columns) -> list[int]:
-    if c.name == "HEARTBEAT":
-        mode = np.asarray(c.fields["custom_mode"], dtype=np.int64)
-        changed = np.concatenate(([True], mode[1:] != mode[:-1]))
+    if c.name in _STATES:
+        state = np.asarray(c.fields[_STATES[c.name]], dtype=np.int64)
+        changed = np.concatenate(([True], state[1:] != state[:-1]))
         return [int(n) for n in c.order[changed]]
     if c.name == "PARAM_VALUE":
-        servo = [raw.startswith(b"SERVO") for raw in c.fields["param_id"].tolist()]
-        return [int(n) for n in c.order[np.array(servo, dtype=bool)]]
+        telling = [tells_of_outputs(name) for name in names_in(c)]
+        return [int(n) for n in c.order[np.array(telling, dtype=bool)]]
     if c.name in ("STATUSTEXT", "AUTOPILOT_VERSION"):
         return [int(n) for n in c.order]
     return []

@@ -11,11 +11,11 @@ from math import degrees, isfinite, radians
 import numpy as np
 
 from advisor.beside import beside
-from advisor.flight.channels import SLOWEST_FLIGHT_M_S
+from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.excitation import excitation
 from advisor.flight.maneuver import Maneuver
+from advisor.flight.modes import closes_pitch_loop, has_an_errand, hovers, is_manual
 from advisor.flight.rest import SMALLEST_RAD
-from advisor.flight.vehicle import closes_pitch_loop, has_an_errand
 
 LEAST_PITCH_RATE_DEG_S = 1.0
 """Least answer of the pitch rate to a test input, deg/s: smaller ones drown in light turbulence. The gentlest
@@ -48,7 +48,7 @@ class Because:
     """Why a movement is no test input."""
 
     reason: str
-    """``autopilot``, ``ground``, ``small``, ``no_information`` or ``unsettled``."""
+    """``autopilot``, ``ground``, ``hover``, ``small``, ``no_information`` or ``unsettled``."""
     text: str
     """The reason in a sentence, with its number and limit."""
 
@@ -72,6 +72,8 @@ def not_an_input(maneuver: Maneuver, on_ground: str | None = None) -> Because | 
         return Because("ground", f"the elevator moved on the ground: {on_ground}")
     if _is_on_ground(maneuver):
         return Because("ground", "the elevator moved while the aircraft did not fly")
+    if hovers(maneuver.mode):
+        return Because("hover", f"the elevator moved in {maneuver.mode}, where rotors carry the aircraft")
     because = _tells_nothing(maneuver)
     inside = has_an_errand(maneuver.mode) or not _is_external(maneuver)
     if closes_pitch_loop(maneuver.mode) and (because or inside):
@@ -93,7 +95,7 @@ def _tells_nothing(maneuver: Maneuver) -> Because | None:
             "small", f"a correction: the pitch rate moved by {shown} deg/s only (at least {least})"
         )
     # An elevator that is known to be moved from outside needs nothing else to tell cause from effect.
-    outside = maneuver.mode == "MANUAL" or _is_external(maneuver)
+    outside = is_manual(maneuver.mode) or _is_external(maneuver)
     error = found.relative_error if outside else found.external_error
     if error > LARGEST_ERROR:
         known = "not at all"

@@ -16,8 +16,8 @@ _EXPLAINED = 0.7
 _OTHER: dict[InputKind, InputKind] = {"3-2-1-1": "reverse 3-2-1-1", "reverse 3-2-1-1": "3-2-1-1"}
 
 SAID = (
-    "The nose went the other way than the elevator's output suggests (SERVOn_REVERSED): its deflections "
-    "count with the other sign. Give a calibration if that is wrong, as for a canard."
+    "The nose went the other way than the elevator's output suggests: its deflections count with the other "
+    "sign. Give a calibration if that is wrong, as for a canard."
 )
 
 

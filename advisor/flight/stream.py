@@ -14,17 +14,11 @@ from advisor.aircraft import Aircraft
 from advisor.flight.attitude import Attitudes
 from advisor.flight.banks import Banks, merged
 from advisor.flight.boots import Master, by_boot
-from advisor.flight.channels import (
-    Decoded,
-    derived_alpha,
-    named_value,
-    promised,
-    quantities,
-    stamps,
-)
+from advisor.flight.channels import Decoded, given_airspeed, named_value, quantities, stamps
 from advisor.flight.clocks import BootClock
 from advisor.flight.commanded import Commanded, commanded
 from advisor.flight.cutting import Cutting
+from advisor.flight.derived_alpha import DERIVED_ALPHA, promised
 from advisor.flight.elevator_guess import EVERY_S, LATE_S, ElevatorGuess, Guess
 from advisor.flight.elevator_guess import KEEP_S as GUESS_S
 from advisor.flight.elevator_watch import SETTLE_S, ElevatorWatch
@@ -41,6 +35,7 @@ from advisor.flight.markers import HEARD, MarkerWatch
 from advisor.flight.marks import Due, Mark, Marks
 from advisor.flight.messages import Columns, FloatArray, arrivals
 from advisor.flight.mixing import Mixing
+from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.pieces import pieces
 from advisor.flight.record import Channel
 from advisor.flight.segmentation import LEAD_IN_S
@@ -49,9 +44,10 @@ from advisor.flight.sense import SAID
 from advisor.flight.service import Service
 from advisor.flight.suitability import problems, with_guess
 from advisor.flight.surfaces import Surface
-from advisor.flight.track import ChannelStatus, Tracks
+from advisor.flight.track import ChannelStatus
+from advisor.flight.tracks import Tracks
 from advisor.flight.trust import Distrust, frozen
-from advisor.flight.vehicle import Vehicle, closes_pitch_loop
+from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
 
 KEEP_S = 120.0
@@ -81,7 +77,7 @@ class FlightStream:
         self._who = Identity(aircraft.elevator, target_system)
         self._attitudes = Attitudes()
         self._clock = BootClock()
-        self._tracks = Tracks(aircraft.alpha.source)
+        self._tracks = Tracks(aircraft.alpha.source, aircraft.airspeed_m_s)
         self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.is_calibrated)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
@@ -109,9 +105,9 @@ class FlightStream:
         self._elevator_message: str | None = None
         self._cutting.begin(self._who.mode)
         self._first_s = np.nan
+        self._flown_before = self._cutting.maneuvers
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
-        self._attitude = np.full((1, 2), np.nan)
         self._guesses = ElevatorGuess()
         self._guessed_s = -np.inf
 
@@ -261,7 +257,8 @@ class FlightStream:
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Columns within which neither vehicle nor parameters nor mode change."""
         mode = self._who.mode
-        events = self._who.learn(piece)
+        flown = self._cutting.maneuvers > self._flown_before
+        events = self._who.learn(piece, self._master_s, flown)
         vehicle = self._who.vehicle
         if vehicle is None:
             return [*events, *self._service.advance(piece)]
@@ -307,7 +304,6 @@ class FlightStream:
         self._tracks.forget(max(self._watch.newest_s, self._master_s) - KEEP_S)
         orders = np.concatenate(([-1], master.order))
         clock = np.concatenate(([self._master_s], master.t))
-        attitude = _last_finite(np.concatenate((self._attitude, master.attitude)))
         elevator: list[Commanded] = []
         for columns in merged(part):
             now = np.searchsorted(orders, columns.order, side="right") - 1
@@ -318,10 +314,13 @@ class FlightStream:
             t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
-            for new in self._decode(columns, t, attitude[now]):
+            for new in self._decode(columns, t):
                 self._tracks.append(new)
                 if self._tracks.serves(new):
-                    self._service.take(new.channel, new.source, arrivals(columns, promised(new, columns)))
+                    self._service.take(new.channel, new.source, arrivals(columns, new.order))
+            if columns.name == "VFR_HUD" and self._tracks.derives_alpha:
+                bring = promised(columns, self._aircraft.airspeed_m_s)
+                self._service.take("alpha", DERIVED_ALPHA, arrivals(columns, bring))
             if columns.name in _OUTPUTS:
                 if isinstance(self.elevator, Problem):
                     self._guesses.hear(columns, t)
@@ -335,7 +334,7 @@ class FlightStream:
         if np.isnan(self._first_s) and len(master.t):
             self._first_s = float(master.t[0])
             self.marks.start_clock(self._first_s)
-        self._master_s, self._attitude = float(clock[-1]), attitude[-1:]
+        self._master_s = float(clock[-1])
         return [*self._feed_elevator(elevator), *self._guess_elevator()]
 
     def _guess_elevator(self) -> list[FlightEvent]:
@@ -352,11 +351,11 @@ class FlightStream:
             self.guess = guess or self.guess
         return events
 
-    def _decode(self, columns: Columns, t: FloatArray, attitude: FloatArray) -> Iterator[Decoded]:
+    def _decode(self, columns: Columns, t: FloatArray) -> Iterator[Decoded]:
         yield from quantities(columns, t)
-        if columns.name == "VFR_HUD":
-            yield derived_alpha(columns, t, attitude, self._aircraft.airspeed_m_s)
-        elif columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
+        if columns.name == "ATTITUDE" and self._aircraft.airspeed_m_s is not None:
+            yield given_airspeed(columns, t, self._aircraft.airspeed_m_s)
+        if columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
             yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))
 
     def _feed_elevator(self, moved: Sequence[Commanded]) -> list[FlightEvent]:
@@ -407,9 +406,3 @@ class FlightStream:
         if any(isinstance(event, ManeuverFlown) for event in events):
             self._note_rates()
         return events
-
-
-def _last_finite(values: FloatArray) -> FloatArray:
-    """Each row, or where it has a NaN the last one before it that has none."""
-    index = np.where(np.all(np.isfinite(values), axis=1), np.arange(len(values)), 0)
-    return values[np.maximum.accumulate(index)]

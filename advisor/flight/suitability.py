@@ -14,26 +14,17 @@ from math import isfinite, nan
 from advisor.beside import beside
 from advisor.flight.channels import READINGS
 from advisor.flight.elevator_guess import Guess
-from advisor.flight.surfaces import Surface, joined_numbers
+from advisor.flight.surfaces import Surface, joined_numbers, listed
 from advisor.flight.track import ChannelStatus
 from advisor.flight.trust import Distrust
 from advisor.flight.vehicle import Vehicle
+from advisor.mends import GOOD_HZ, sentence
 from advisor.problems import Problem
 
 SLOWEST_HZ = 8.0
 """Least rate of elevator, pitch rate and angle of attack, whatever the aircraft."""
-_ASK_HZ = 50
 _MOTION = ("a_z", "airspeed", "theta")
 """Channels that stand in for an angle of attack, besides the pitch rate."""
-
-# Stream groups of ArduPilot, which hold a message's rate: SRn_<group>, since 4.7 MAVn_<group>.
-_GROUPS = {
-    "ATTITUDE": "EXTRA1",
-    "AOA_SSA": "EXTRA1",
-    "VFR_HUD": "EXTRA2",
-    "SERVO_OUTPUT_RAW": "RC_CHAN",
-    "RAW_IMU": "RAW_SENS",
-}
 
 
 def problems(
@@ -146,29 +137,35 @@ def _missing(
     vehicle: Vehicle,
     seen: Collection[str],
 ) -> list[Problem]:
+    mends = vehicle.mends
     found = [elevator] if isinstance(elevator, Problem) else []
+    if vehicle.carrier != "telemetry":
+        return [*found, *_not_logged(elevator, channels, vehicle)]
     if "q" not in channels:
         # Its stamps are the vehicle's clock: without it no other channel can be placed either.
-        text = "There is no pitch rate: no ATTITUDE arrived."
-        found.append(Problem("no_pitch_rate", text, f"Ask for ATTITUDE: {_ask('ATTITUDE', vehicle)}."))
+        text = f"There is no pitch rate: no {mends.called('ATTITUDE')} arrived."
+        found.append(Problem("no_pitch_rate", text, sentence(mends.faster("ATTITUDE"))))
         channels = _sent(seen)
     if isinstance(elevator, Surface) and "elevator" not in channels:
         outputs = joined_numbers(elevator.outputs)
         found.append(
             Problem(
                 "no_elevator",
-                f"Servo output {outputs}, the elevator, never carried a pulse (SERVO_OUTPUT_RAW).",
-                "Ask for SERVO_OUTPUT_RAW (--request-rates), or set elevator.output in the aircraft file.",
+                f"Servo output {outputs}, the elevator, never carried a pulse "
+                f"({mends.called('SERVO_OUTPUT_RAW')}).",
+                f"{sentence(mends.present(['SERVO_OUTPUT_RAW']), '')}, "
+                "or set elevator.output in the aircraft file.",
             )
         )
     if "alpha" not in channels and not motion_stands_in(channels):
         absent = " nor ".join(name for name in _MOTION if name not in channels)
+        or_else = ", or for AOA_SSA" if vehicle.autopilot == "ardupilot" else ""
         found.append(
             Problem(
                 "no_alpha",
                 f"There is no angle of attack, and the motion cannot stand in for it: no {absent} arrived.",
-                "Ask for RAW_IMU and VFR_HUD (--request-rates), or for AOA_SSA; "
-                "a vane may send NAMED_VALUE_FLOAT (alpha.source).",
+                f"{sentence(mends.present(['RAW_IMU', 'VFR_HUD']), or_else)}; "
+                f"a vane may send {mends.called('NAMED_VALUE_FLOAT')} (alpha.source).",
             )
         )
     return found
@@ -184,6 +181,32 @@ def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
     return {name: ChannelStatus(source, "", nan, nan, nan) for name, source in sources.items()}
 
 
+def _not_logged(
+    elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
+) -> list[Problem]:
+    """All that a log of the autopilot's own lacks, in one problem."""
+    lacks: dict[str, tuple[str, str]] = {}
+    if "q" not in channels:
+        lacks["no_pitch_rate"] = ("pitch rate", "ATTITUDE")
+    if isinstance(elevator, Surface) and "elevator" not in channels:
+        lacks["no_elevator"] = (
+            f"pulse of servo output {joined_numbers(elevator.outputs)}",
+            "SERVO_OUTPUT_RAW",
+        )
+    if "alpha" not in channels and not motion_stands_in(channels):
+        lacks["no_alpha"] = ("angle of attack", "AOA_SSA")
+        if "airspeed" not in channels:
+            lacks["no_airspeed"] = ("air speed", "VFR_HUD")
+    if not lacks:
+        return []
+    if "a_z" not in channels:
+        lacks["no_accelerometer"] = ("specific force", "HIGHRES_IMU")
+    told = listed([f"no {what} ({vehicle.mends.called(message)})" for what, message in lacks.values()])
+    fix = vehicle.mends.present([message for _, message in lacks.values()])
+    given = "; or give airspeed_m_s in the aircraft file" if "no_airspeed" in lacks else ""
+    return [Problem(next(iter(lacks)), f"The log holds {told}.", f"{sentence(fix, given)}.")]
+
+
 def motion_stands_in(channels: Collection[str]) -> bool:
     """Whether an estimate needs no angle of attack: specific force, air speed and attitude arrive."""
     return all(name in channels for name in _MOTION)
@@ -195,12 +218,13 @@ def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[P
     names = ("elevator", "q") if motion_stands_in(channels) else ("elevator", "q", "alpha")
     needed = [channels[name] for name in names if name in channels]
     slow = {_message(status): status.rate_hz for status in needed if not status.rate_hz >= SLOWEST_HZ}
+    mends = vehicle.mends
     return [
         Problem(
             "rate",
-            f"{message} arrives {_at(rate_hz)}, too slow to identify a short period "
-            f"(at least {SLOWEST_HZ:g} Hz, better {_ASK_HZ} Hz).",
-            f"Ask for {_ASK_HZ} Hz: {_ask(message, vehicle)}.",
+            f"{mends.called(message)} arrives {_at(rate_hz)}, too slow to identify a short period "
+            f"(at least {SLOWEST_HZ:g} Hz, better {GOOD_HZ} Hz).",
+            sentence(mends.faster(message)),
         )
         for message, rate_hz in slow.items()
     ]
@@ -213,11 +237,3 @@ def _at(rate_hz: float) -> str:
 def _message(status: ChannelStatus) -> str:
     """Name of the message that sets the rate of a channel."""
     return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
-
-
-def _ask(message: str, vehicle: Vehicle) -> str:
-    group = _GROUPS.get(message)
-    if vehicle.autopilot == "ardupilot" and group:
-        parameters = f"SR0_{group} (MAV1_{group} in newer firmware)"
-        return f"set {parameters} to {_ASK_HZ}, or run live with --request-rates"
-    return f"set its rate on the vehicle to {_ASK_HZ} Hz, or run live with --request-rates"

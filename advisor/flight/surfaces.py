@@ -2,32 +2,26 @@
 
 The deflection is that of the *command*; what the servo makes of it is the estimator's business.
 
-Signs: an ArduPilot output that is not reversed rises with the demand, and a positive pitch
-demand lifts the nose; so more PWM is trailing edge up unless SERVOn_REVERSED is set. The
-elevator channel counts trailing edge down as positive, hence the minus in `Scale.deflection`.
+Signs: an output that is not reversed rises with the demand, and a positive pitch demand lifts
+the nose; so more PWM is trailing edge up unless the output is reversed. The elevator channel
+counts trailing edge down as positive, hence the minus in `Scale.deflection`.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
 from advisor.flight.messages import FloatArray
 
-# Values of SERVOn_FUNCTION, ArduPilot's SRV_Channel.h.
-AILERON, ELEVATOR, RUDDER = 4, 19, 21
 _FULL_STROKE_RAD = np.radians(25.0)
 _UNUSED_PX4 = 900.0
-
-Parameters = Mapping[str, float]
-"""PARAM_VALUEs of the vehicle by name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """SERVOn_MIN/TRIM/MAX/REVERSED of one output, taken as full strokes of 25 degrees."""
+    """Pulses of one output's full strokes, taken as 25 degrees, and of no deflection."""
 
     low_us: float = 1100.0
     trim_us: float = 1500.0
@@ -85,7 +79,7 @@ class Surface:
 
     parts: tuple[Part, ...]
     calibrated: bool
-    """False when the scale is SERVOn_MIN/TRIM/MAX and an assumed 25 deg."""
+    """False when the scale is the limits in the parameters and an assumed 25 deg."""
     said: str
     """What the user should know about this mapping."""
 
@@ -138,13 +132,6 @@ def driven(pwm_us: FloatArray, autopilot: str) -> NDArray[np.bool_]:
     return np.asarray(np.all(alive, axis=1))
 
 
-def find_surface(function: int, parameters: Parameters) -> Surface | None:
-    """The outputs of one function, e.g. ``AILERON``; None when no parameter says, or in two banks."""
-    outputs = [n for n, value in functions_of(parameters).items() if value == function]
-    surface = Surface(in_shares([Part(n, scale_of(n, parameters)) for n in outputs]), False, "")
-    return surface if len(surface.ports) == 1 else None
-
-
 def in_shares(parts: Iterable[Part]) -> tuple[Part, ...]:
     """The parts of one surface, in the order of their outputs, with shares that sum to 1."""
     ordered = sorted(parts, key=lambda part: part.output)
@@ -160,20 +147,3 @@ def joined_numbers(outputs: Sequence[int]) -> str:
 def listed(words: Sequence[str]) -> str:
     """Words as a sentence lists them."""
     return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
-
-
-def functions_of(parameters: Parameters) -> dict[int, int]:
-    """SERVOn_FUNCTION by output, as far as it is known."""
-    outputs = {n: parameters.get(f"SERVO{n}_FUNCTION") for n in range(1, 33)}
-    return {n: int(value) for n, value in outputs.items() if value is not None and isfinite(value)}
-
-
-def scale_of(n: int, parameters: Parameters) -> Scale:
-    """SERVOn_MIN/TRIM/MAX/REVERSED of output ``n``; ArduPilot's defaults where they are unknown."""
-    default = Scale()
-    return Scale(
-        low_us=parameters.get(f"SERVO{n}_MIN", default.low_us),
-        trim_us=parameters.get(f"SERVO{n}_TRIM", default.trim_us),
-        high_us=parameters.get(f"SERVO{n}_MAX", default.high_us),
-        reversed=bool(parameters.get(f"SERVO{n}_REVERSED", 0.0)),
-    )

@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.best_rate import BestRate
-from advisor.flight.channels import DERIVED_ALPHA, READINGS, Decoded
 from advisor.flight.messages import FloatArray, IntArray
-from advisor.flight.record import UNITS, Channel
+from advisor.flight.record import Channel
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +60,8 @@ class Track:
         self.newest_s = -np.inf
         self.largest_gap_s = 0.0
         self._best = BestRate()
-        self._lowest, self._highest = np.inf, -np.inf
+        self.lowest, self.highest = np.inf, -np.inf
+        """Smallest and largest value since boot."""
         self._t = np.empty(1024)
         self._y = np.empty(1024)
         self._order = np.empty(1024, dtype=np.int64)
@@ -77,8 +77,8 @@ class Track:
         self.largest_gap_s = max(self.largest_gap_s, float((newest[1:] - newest[:-1]).max()))
         self.newest_s = float(newest[-1])
         self._best.add(t)
-        self._lowest = min(self._lowest, float(y.min()))
-        self._highest = max(self._highest, float(y.max()))
+        self.lowest = min(self.lowest, float(y.min()))
+        self.highest = max(self.highest, float(y.max()))
         self._make_room(len(t))
         new = slice(self._size, self._size + len(t))
         self._t[new], self._y[new], self._order[new] = t, y, order
@@ -112,8 +112,8 @@ class Track:
             gap,
             self.newest_s,
             self._best.rate_hz,
-            self._lowest,
-            self._highest,
+            self.lowest,
+            self.highest,
         )
 
     def _make_room(self, n: int) -> None:
@@ -128,89 +128,3 @@ class Track:
             grown[:size] = old[: self._size][kept]
             setattr(self, name, grown)
         self._size = size
-
-
-class Tracks:
-    """All tracks of one vehicle, and which source speaks for a channel.
-
-    Parameters
-    ----------
-    alpha_source
-        ``auto``, ``aoa_ssa``, ``derived``, ``named_value:NAME`` or ``none``, as the aircraft file has it.
-        With ``none`` the channel is kept as with ``auto``, but no estimate uses it.
-    """
-
-    def __init__(self, alpha_source: str) -> None:
-        self._tracks: dict[tuple[str, str], Track] = {}
-        self._sources: dict[str, list[str]] = {}
-        for reading in READINGS:
-            self._sources.setdefault(reading.channel, []).append(reading.source)
-        named = alpha_source.removeprefix("named_value:")
-        self._sources["alpha"] = {
-            "auto": ["AOA_SSA.AOA", DERIVED_ALPHA],
-            "none": ["AOA_SSA.AOA", DERIVED_ALPHA],
-            "aoa_ssa": ["AOA_SSA.AOA"],
-            "derived": [DERIVED_ALPHA],
-        }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
-
-    def clear(self) -> None:
-        """Forget everything: another boot."""
-        self._tracks.clear()
-
-    def forget(self, before_s: float) -> None:
-        """Let go of what is older, when room is needed."""
-        for track in self._tracks.values():
-            track.forget(before_s)
-
-    def append(self, new: Decoded) -> None:
-        """Take samples of one channel from one source."""
-        key = (new.channel, new.source)
-        if len(new.t) == 0:
-            return
-        if key not in self._tracks:
-            self._tracks[key] = Track(new.channel, new.source, new.provenance)
-        self._tracks[key].append(new.t, new.y, new.order)
-
-    def serves(self, new: Decoded) -> bool:
-        """Whether the channel may come from this source."""
-        return new.source in self._sources.get(new.channel, (new.source,))
-
-    def cut(self, name: str, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel | None:
-        """A stretch of a channel from its best source that says anything there; None without one."""
-        spare = None
-        for track in self._candidates(name):
-            channel = track.cut(start_s, end_s, up_to_order)
-            if len(channel) < 2:
-                continue
-            if np.ptp(channel.y) > 0.0:
-                return _in_radians(channel)
-            spare = spare or channel
-        return spare
-
-    def recent(self, name: str, seconds: float) -> Channel | None:
-        """The newest stretch of a channel; None when nothing of it has arrived."""
-        newest = max((track.newest_s for track in self._candidates(name)), default=None)
-        return None if newest is None else self.cut(name, newest - seconds, newest)
-
-    def statuses(self) -> dict[str, ChannelStatus]:
-        """How every channel arrives, from its best source."""
-        found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
-        return {name: track.status for name, track in found.items() if track is not None}
-
-    def _candidates(self, name: str) -> list[Track]:
-        """Tracks of a channel, the preferred source first."""
-        preferred = self._sources.get(name)
-        if preferred is None:
-            return [track for (channel, _), track in self._tracks.items() if channel == name]
-        return [self._tracks[name, source] for source in preferred if (name, source) in self._tracks]
-
-
-_LARGEST_ALPHA_RAD = 0.7
-"""Nobody flies a short period at 40 degrees: a named value beyond this is in degrees."""
-
-
-def _in_radians(channel: Channel) -> Channel:
-    """A vane's named value carries no unit: degrees and radians are told apart by their size."""
-    if not channel.source.startswith("NAMED_VALUE_FLOAT") or np.max(np.abs(channel.y)) <= _LARGEST_ALPHA_RAD:
-        return channel
-    return replace(channel, y=np.radians(channel.y))

@@ -9,7 +9,7 @@ from math import degrees, radians
 
 import numpy as np
 
-from advisor.flight.channels import SLOWEST_FLIGHT_M_S
+from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.messages import FloatArray
 from advisor.flight.motion import bank_at, integrated
 from advisor.flight.record import Channel

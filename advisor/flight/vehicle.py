@@ -1,8 +1,9 @@
-"""Who the vehicle is: the heartbeat that belongs to an aircraft, and the flight mode it names."""
+"""Who the vehicle is: the heartbeat that belongs to an aircraft."""
 
 from dataclasses import dataclass, replace
 
 from advisor.flight.messages import Columns
+from advisor.mends import Carrier, Mends, mends_of
 
 # Numbers of MAV_AUTOPILOT and MAV_TYPE, MAVLink common.xml.
 _AUTOPILOT_INVALID = 8
@@ -11,18 +12,6 @@ _PERIPHERALS = frozenset({5, 6, 18, 26, 27, 30, 31, 32, 33, 34, 36, 37, 38, 39, 
 """Antenna tracker, ground station, onboard controller, gimbal, ADS-B, camera, and other parts."""
 _MULTICOPTERS = frozenset({2, 13, 14, 15, 29, 35})
 """Aircraft on four, six, eight, three, twelve and ten rotors."""
-
-_PLANE_MODES = {
-    0: "MANUAL", 1: "CIRCLE", 2: "STABILIZE", 3: "TRAINING", 4: "ACRO", 5: "FBWA", 6: "FBWB", 7: "CRUISE",
-    8: "AUTOTUNE", 10: "AUTO", 11: "RTL", 12: "LOITER", 13: "TAKEOFF", 14: "AVOID_ADSB", 15: "GUIDED",
-    16: "INITIALISING", 17: "QSTABILIZE", 18: "QHOVER", 19: "QLOITER", 20: "QLAND", 21: "QRTL",
-    22: "QAUTOTUNE", 23: "QACRO", 24: "THERMAL", 25: "LOITER_ALT_QLAND", 26: "AUTOLAND",
-}  # fmt: skip
-_MISSIONS = frozenset({
-    "TAKEOFF", "RTL", "CIRCLE", "THERMAL", "AVOID_ADSB", "AUTOLAND", "QLAND", "QRTL", "LOITER_ALT_QLAND",
-})  # fmt: skip
-"""Modes in which the autopilot has an errand of its own: nobody flies or injects a test input there."""
-_PX4_MODES = {1: "MANUAL", 2: "ALTCTL", 3: "POSCTL", 4: "AUTO", 5: "ACRO", 6: "OFFBOARD", 7: "STABILIZED"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +26,8 @@ class Vehicle:
     """MAV_TYPE of its heartbeat."""
     firmware: str | None = None
     """Version as the vehicle states it; None until it does."""
+    carrier: Carrier = "telemetry"
+    """What brings its messages: a mend must fit this."""
 
     def __str__(self) -> str:
         return f"{self.autopilot} {self.system}/{self.component}"
@@ -45,6 +36,11 @@ class Vehicle:
     def is_multicopter(self) -> bool:
         """Whether rotors alone steer the vehicle."""
         return self.type in _MULTICOPTERS
+
+    @property
+    def mends(self) -> Mends:
+        """What can be done about messages that are missing or slow, in the words of this autopilot."""
+        return mends_of(self.autopilot, self.carrier)
 
     def with_firmware(self, firmware: str) -> "Vehicle":
         """The same vehicle, its version known."""
@@ -99,29 +95,3 @@ class VehicleFinder:
         self.others |= {other for other in self.heard if self.vehicle is not None}
         self.others.discard(vehicle.system)
         self.vehicle = vehicle
-
-
-def closes_pitch_loop(mode: str) -> bool:
-    """Whether the autopilot moves the elevator by itself in this mode, as far as the mode is known.
-
-    Elevator, angle of attack and pitch rate are then correlated by the loop.
-    """
-    return mode in {*_PLANE_MODES.values(), *_PX4_MODES.values()} - {"MANUAL", "INITIALISING"}
-
-
-def has_an_errand(mode: str) -> bool:
-    """Whether the autopilot takes off, lands, returns or circles by itself in this mode."""
-    return mode in _MISSIONS
-
-
-def mode_name(vehicle: Vehicle, custom: int) -> str:
-    """Flight mode as the autopilot's users know it.
-
-    ArduPlane numbers its modes in ``custom_mode``; PX4 keeps the main mode in bits 16-23.
-    An unknown number is shown as it is.
-    """
-    if vehicle.autopilot == "ardupilot":
-        return _PLANE_MODES.get(custom, f"mode {custom}")
-    if vehicle.autopilot == "px4":
-        return _PX4_MODES.get((custom >> 16) & 0xFF, f"mode {custom}")
-    return f"mode {custom}"

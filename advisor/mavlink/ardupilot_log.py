@@ -8,54 +8,70 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from advisor.flight.identity import READER
-from advisor.flight.messages import Columns
+from advisor.flight.messages import Columns, IntArray
+from advisor.mavlink.ardupilot_air import air
+from advisor.mavlink.ardupilot_vehicle import (
+    VEHICLE_RECORDS,
+    heartbeats,
+    in_todays_parameters,
+    parameter_fields,
+    system_of,
+    version_fields,
+)
+from advisor.mavlink.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
-from advisor.mavlink.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, latest, message, system_id
-from advisor.mavlink.sensors import flown, said
+from advisor.mavlink.equivalent import air_data, message, nearest
+from advisor.mavlink.eras import SENSORS_APART, Clocked, in_todays_names
+from advisor.mavlink.sdlog2 import SDLOG2_RECORDS, Sdlog2, is_sdlog2
+from advisor.mavlink.sensors import Said, flown, said, silent
 from advisor.problems import UnusableInputError
 
 _RECORDS: dict[str, set[str]] = {
+    **VEHICLE_RECORDS,
+    **RATE_RECORDS,
+    "ACC": {"AccX", "AccY", "AccZ"},
     "AOA": {"AOA", "SSA"},
     "ARSP": {"Airspeed"},
     "ATT": {"Roll", "Pitch", "Yaw"},
     "BARO": {"CRt"},
-    "CTUN": {"As"},
+    "CTUN": set(),
+    "EKF1": {"VD"},
     "GPS": {"GWk", "GMS"},
     "IMU": {"GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ"},
-    "MODE": {"ModeNum"},
-    "MSG": {"Message"},
-    "PARM": {"Name", "Value"},
+    "NKF1": {"VD"},
+    "NTUN": {"Arspd"},
     "POS": {"Lat", "Lng", "Alt", "RelHomeAlt"},
     "RCIN": {"C1"},
     "RCOU": {"C1"},
     "RCO2": set(),
     "RCO3": set(),
-    "VER": {"Maj", "Min", "Pat", "FWT"},
     "XKF1": {"VD"},
 }
 """Records, and the fields needed of each: without them (another kind of vehicle, an older version)
 a record counts as missing."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 """Records of which a vehicle may carry several, and the quantities that they hold."""
-_ARDUPILOTMEGA = 3  # MAV_AUTOPILOT
-_BUILD_TO_MAV_TYPE = {1: 10, 2: 2, 3: MAV_TYPE_FIXED_WING, 4: 5, 7: 12, 12: 7, 13: 4}
-"""VER.BU: rover, copter, plane, antenna tracker, submarine, airship, helicopter."""
-_TITLES = {"ArduPlane": MAV_TYPE_FIXED_WING, "ArduCopter": 2, "ArduRover": 10, "ArduSub": 12}
-"""Firmware names in MSG, for logs older than VER."""
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
-    """The messages of a ``.bin``, in one batch.
+    """The messages of a ``.bin``, or of PX4's ``.px4log`` in its container, in one batch.
 
     Raises
     ------
     UnusableInputError
         When it holds neither attitude, inertial sensors, nor servo outputs.
     """
+    apart = (name for names in SENSORS_APART.values() for name in names)
+    stored = read_tables(path, (*_RECORDS, *SDLOG2_RECORDS, *apart))
+    names = None if wanted is None else set(wanted)
+    if is_sdlog2(stored):
+        yield from _batch(Sdlog2(stored).columns(), names)
+        return
+    read = in_todays_names(stored)
     tables = {
         name: table
-        for name, table in read_tables(path, _RECORDS).items()
-        if _RECORDS[name] <= table.fields.keys()
+        for name, table in read.tables.items()
+        if name in _RECORDS and _RECORDS[name] <= table.fields.keys()
     }
     if not tables.keys() & {"ATT", "IMU", "RCOU"}:
         raise UnusableInputError(
@@ -63,79 +79,103 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
             f"{path.name} holds no ATT, IMU or RCOU records.",
             "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
         )
-    names = None if wanted is None else set(wanted)
+    yield from _batch(_Translation(Clocked(tables, read.epoch_s)).columns(), names)
+
+
+def _batch(columns: Iterator[Columns], names: set[str] | None) -> Iterator[list[Columns]]:
+    """All wanted messages in one batch; none where there are none."""
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
-        columns = list(_Translation(tables).columns())
-    columns = [c for c in columns if len(c) and (names is None or c.name in names)]
-    if columns:
-        yield columns
+        wanted = [c for c in columns if len(c) and (names is None or c.name in names)]
+    if wanted:
+        yield wanted
 
 
 class _Translation:
-    def __init__(self, tables: dict[str, Table]) -> None:
-        self._tables = {name: flown(table) if name in _SENSORS else table for name, table in tables.items()}
-        self._base_s = gps_time_base_s(tables.get("GPS"))
-        self._system = self._system_id()
+    def __init__(self, read: Clocked) -> None:
+        self._tables = dict(read.tables)
+        self._said: list[Said] = []
+        self._interrupted: set[str] = set()
+        """Records of sensors that were not healthy all the time."""
+        if read.epoch_s:
+            self._said.append(Said(0, 0, "Stamps count from 1970: times are given from the first record on"))
+        for name, quantity in _SENSORS.items():
+            if name in self._tables:
+                every = self._tables[name]
+                self._tables[name] = flown(every)
+                self._said += said(every, self._tables[name], quantity)
+                if silent(every, self._tables[name]):
+                    self._interrupted.add(name)
+        self._tables = {name: table for name, table in self._tables.items() if len(table)}
+        if "PARM" in self._tables:
+            self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
+        self._base_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
+        self._system = system_of(self._tables)
 
     def columns(self) -> Iterator[Columns]:
-        yield self._heartbeat()
+        order, time_us, fields = heartbeats(self._tables)
+        yield self._made("HEARTBEAT", order, time_us, fields)
+        yield from self._attitude()
+        yield from self._highres_imu()
         translations = {
-            "ATT": self._attitude,
-            "IMU": self._highres_imu,
             "AOA": self._aoa_ssa,
             "POS": self._global_position_int,
             "RCIN": self._rc_channels,
-            "PARM": self._param_value,
-            "VER": self._autopilot_version,
         }
-        if "ATT" not in self._tables and "IMU" in self._tables:
-            yield self._attitude(None)
         for name, translate in translations.items():
             if name in self._tables:
                 yield translate(self._tables[name])
+        if "PARM" in self._tables:
+            yield self._message("PARAM_VALUE", self._tables["PARM"], parameter_fields(self._tables["PARM"]))
+        if "VER" in self._tables:
+            yield self._message("AUTOPILOT_VERSION", self._tables["VER"], version_fields(self._tables["VER"]))
         yield from self._servo_outputs()
-        air = self._tables.get("ARSP", self._tables.get("CTUN"))
-        if air is not None:
-            yield self._vfr_hud(air)
+        yield from self._vfr_hud()
         yield self._statustext()
-
-    def _system_id(self) -> int:
-        """As the parameters give it, under its old or its new name."""
-        parm = self._tables.get("PARM")
-        if parm is not None:
-            for name, value in zip(parm.fields["Name"].tolist(), parm.fields["Value"].tolist(), strict=True):
-                if name in (b"SYSID_THISMAV", b"MAV_SYSID"):
-                    return system_id(value)
-        return system_id(None)
 
     def _message(self, name: str, table: Table, fields: dict[str, ArrayLike], place: int = 0) -> Columns:
         """A message made of each record; ``place`` keeps several made of one record in order."""
-        return message(name, self._system, table.order + place, self._base_s + seconds(table.time_us), fields)
+        return self._made(name, table.order + place, table.time_us, fields)
 
-    def _attitude(self, att: Table | None) -> Columns:
-        """Angles at the stamps of ATT, rates at those of IMU."""
-        rows: list[tuple[Table, NDArray[np.float64]]] = []
-        if att is not None:
+    def _made(self, name: str, order: IntArray, time_us: IntArray, fields: dict[str, ArrayLike]) -> Columns:
+        arrival_s = self._base_s + seconds(time_us)
+        return message(name, self._system, order, arrival_s, fields, "dataflash")
+
+    def _attitude(self) -> Iterator[Columns]:
+        """Angles at the stamps of ATT, rates at those of their own records."""
+        blocks: list[tuple[IntArray, IntArray, NDArray[np.float64]]] = []
+        if "ATT" in self._tables:
+            att = self._tables["ATT"]
             angles = np.radians([att.fields[axis] for axis in ("Roll", "Pitch", "Yaw")])
-            rows.append((att, np.vstack([angles, np.full_like(angles, np.nan)])))
-        if "IMU" in self._tables:
-            imu = self._tables["IMU"]
-            rates = np.array([imu.fields[axis] for axis in ("GyrX", "GyrY", "GyrZ")], dtype=np.float64)
-            rows.append((imu, np.vstack([np.full_like(rates, np.nan), rates])))
-        order = np.concatenate([table.order for table, _ in rows])
-        time_us = np.concatenate([table.time_us for table, _ in rows])
-        values = np.hstack([values for _, values in rows])
+            blocks.append((att.order, att.time_us, np.vstack([angles, np.full_like(angles, np.nan)])))
+        rates = body_rates(self._tables)
+        if rates is not None:
+            nothing = np.full_like(rates.values, np.nan)
+            blocks.append((rates.order, rates.time_us, np.vstack([nothing, rates.values])))
+            if rates.said:
+                text = f"The log holds no IMU records: the angular rates are {rates.said}"
+                self._said.append(Said(int(rates.order[0]), int(rates.time_us[0]), text))
+        if not blocks:
+            return
+        order, time_us = (np.concatenate([block[k] for block in blocks]) for k in (0, 1))
+        values = np.hstack([block[2] for block in blocks])
         names = ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed")
         fields: dict[str, Any] = dict(zip(names, values, strict=True))
         fields["time_boot_ms"] = _milliseconds(time_us)
-        return message("ATTITUDE", self._system, order, self._base_s + seconds(time_us), fields)
+        yield self._made("ATTITUDE", order, time_us, fields)
 
-    def _highres_imu(self, imu: Table) -> Columns:
+    def _highres_imu(self) -> Iterator[Columns]:
+        if "IMU" in self._tables:
+            imu = self._tables["IMU"]
+        elif "ACC" in self._tables:
+            imu = calmed(self._tables["ACC"])
+        else:
+            return
         fields: dict[str, ArrayLike] = {"time_usec": imu.time_us}
         for axis in "XYZ":
             fields[f"{axis.lower()}acc"] = imu.fields[f"Acc{axis}"]
-            fields[f"{axis.lower()}gyro"] = imu.fields[f"Gyr{axis}"]
-        return self._message("HIGHRES_IMU", imu, fields, place=1)
+            if f"Gyr{axis}" in imu.fields:
+                fields[f"{axis.lower()}gyro"] = imu.fields[f"Gyr{axis}"]
+        yield self._message("HIGHRES_IMU", imu, fields, place=1)
 
     def _aoa_ssa(self, aoa: Table) -> Columns:
         angles = {"AOA": aoa.fields["AOA"], "SSA": aoa.fields["SSA"]}
@@ -153,7 +193,7 @@ class _Translation:
                 for field, values in table.fields.items():
                     if field[0] == "C" and field[1:].isdigit():
                         # The autopilot writes the records of one loop's outputs one after the other.
-                        at = _nearest(rcou.time_us, table.time_us)
+                        at = nearest(rcou.time_us, table.time_us)
                         pulses[int(field[1:])] = values if table is rcou else values[at]
         banks = []
         for port in range(2):
@@ -175,25 +215,14 @@ class _Translation:
         }
         return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
-    def _vfr_hud(self, air: Table) -> Columns:
-        fields: dict[str, ArrayLike] = {
-            "airspeed": air.fields["Airspeed" if "Airspeed" in air.fields else "As"],
-            "throttle": self._known(air, "CTUN", ("ThO", "ThrOut")),
-            "alt": self._known(air, "POS", ("RelHomeAlt",)),
-        }
-        climb = -self._known(air, "XKF1", ("VD",))
-        fields["climb"] = np.where(np.isnan(climb), self._known(air, "BARO", ("CRt",)), climb)
-        return self._message("VFR_HUD", air, fields, place=1)
-
-    def _known(self, at: Table, record: str, names: tuple[str, ...]) -> NDArray[np.float64]:
-        """The newest value of a field in another record, NaN where there is none."""
-        table = self._tables.get(record)
-        if table is not None:
-            table = table.first_instance()
-            for name in names:
-                if name in table.fields:
-                    return latest(at.order, table.order, table.fields[name])
-        return np.full(len(at), np.nan)
+    def _vfr_hud(self) -> Iterator[Columns]:
+        """Air speed, climb rate and throttle, each at the stamps of its own record."""
+        found = air(self._tables, "ARSP" in self._interrupted)
+        self._said += found.said
+        if found.records:
+            fields: dict[str, ArrayLike] = dict(air_data(*found.records))
+            order = np.asarray(fields.pop("order"))
+            yield self._made("VFR_HUD", order, np.asarray(fields["time_usec"]), fields)
 
     def _global_position_int(self, pos: Table) -> Columns:
         fields: dict[str, ArrayLike] = {
@@ -205,82 +234,18 @@ class _Translation:
         }
         return self._message("GLOBAL_POSITION_INT", pos, fields)
 
-    def _param_value(self, parm: Table) -> Columns:
-        fields: dict[str, ArrayLike] = {
-            "param_id": parm.fields["Name"],
-            "param_value": parm.fields["Value"],
-            "param_type": MAV_PARAM_TYPE_REAL32,
-            "param_count": len(parm),
-            "param_index": np.arange(len(parm)),
-        }
-        return self._message("PARAM_VALUE", parm, fields)
-
     def _statustext(self) -> Columns:
-        """The vehicle's own texts, and which of several like sensors flew."""
+        """The vehicle's own texts, and what was chosen in reading the log."""
         msg = self._tables.get("MSG")
         own = [] if msg is None else zip(msg.order, msg.time_us, msg.fields["Message"].tolist(), strict=True)
         # A record's own messages take its place and the one after it.
         read = [
-            (one.order + 2, one.time_us, READER + one.text.encode())
-            for name, quantity in _SENSORS.items()
-            if name in self._tables
-            for one in said(self._tables[name], quantity)
+            (one.order + 2 + k, one.time_us, READER + one.text.encode()) for k, one in enumerate(self._said)
         ]
-        texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S128")])
+        texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")])
         fields: dict[str, ArrayLike] = {"severity": 6, "text": texts["text"]}
-        arrival_s = self._base_s + seconds(texts["time_us"])
-        return message("STATUSTEXT", self._system, texts["order"], arrival_s, fields)
-
-    def _autopilot_version(self, ver: Table) -> Columns:
-        parts = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))
-        major, minor, patch, kind = parts
-        return self._message(
-            "AUTOPILOT_VERSION",
-            ver,
-            {"flight_sw_version": major << 24 | minor << 16 | patch << 8 | kind},
-        )
-
-    def _heartbeat(self) -> Columns:
-        """One before everything else, so that the vehicle is known, and two at each change of mode.
-
-        A log tells of a change when it happens. The mode of before lasted until then, which the first of the
-        two says: heard once a second, as over a link, it may have ended any time since the heartbeat before.
-        """
-        order, modes, time_us = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(1, np.int64)
-        if "MODE" in self._tables:
-            mode = self._tables["MODE"]
-            numbers = mode.fields["ModeNum"].astype(np.int64)
-            changes = np.column_stack([np.append(numbers[:1], numbers[:-1]), numbers])
-            order = np.append(order, np.column_stack([mode.order - 1, mode.order]))
-            modes = np.append(numbers[:1], changes)
-            time_us = np.append(mode.time_us[:1], np.repeat(mode.time_us, 2))
-        fields: dict[str, ArrayLike] = {
-            "type": self._mav_type(),
-            "autopilot": _ARDUPILOTMEGA,
-            "base_mode": 1,  # custom_mode is in use
-            "custom_mode": modes,
-            "mavlink_version": 3,
-        }
-        return message("HEARTBEAT", self._system, order, self._base_s + seconds(time_us), fields)
-
-    def _mav_type(self) -> int:
-        ver, msg = self._tables.get("VER"), self._tables.get("MSG")
-        if ver is not None and "BU" in ver.fields:
-            return _BUILD_TO_MAV_TYPE.get(int(ver.fields["BU"][0]), MAV_TYPE_FIXED_WING)
-        for text in msg.fields["Message"].tolist() if msg is not None else ():
-            for title, kind in _TITLES.items():
-                if text.startswith(title.encode()):
-                    return kind
-        return MAV_TYPE_FIXED_WING
+        return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
 
 
 def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:
     return (time_us + 500) // 1000
-
-
-def _nearest(at_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Index of the record nearest to each time asked for, the earlier of two."""
-    after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
-    before = after - 1
-    after = np.minimum(after, len(time_us) - 1)
-    return np.where(at_us - time_us[before] <= time_us[after] - at_us, before, after)

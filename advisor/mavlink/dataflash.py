@@ -20,6 +20,7 @@ HEADER = b"\xa3\x95"
 _HEADER_0, _HEADER_1 = HEADER
 _FMT = 0x80
 _FMT_LENGTH = 89
+_DEFINITION = HEADER + bytes([_FMT])
 _FMT_LAYOUT = np.dtype(
     [("type", "u1"), ("length", "u1"), ("name", "S4"), ("format", "S16"), ("columns", "S64")]
 )
@@ -65,7 +66,7 @@ class Table:
     @property
     def time_us(self) -> IntArray:
         """Shape (n,). Microseconds since boot."""
-        return self.fields["TimeUS"].astype(np.int64)
+        return np.asarray(self.fields["TimeUS"], dtype=np.int64)
 
     def first_instance(self) -> "Table":
         """The records of the first of several like sensors or estimators."""
@@ -79,7 +80,7 @@ class Table:
 
 
 def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
-    """The records of the named types; those that do not occur, or have no TimeUS, are left out."""
+    """The records of the named types, as the log has them; those that do not occur are left out."""
     stream = np.fromfile(path, dtype=np.uint8)
     starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
     starts = starts[: scan_records(stream, starts)]
@@ -91,7 +92,7 @@ def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
         name = definition["name"].decode("ascii", "replace")
         layout, divisors = _layout(definition)
         mine = starts[types == definition["type"]]
-        if name not in wanted or layout is None or "TimeUS" not in (layout.names or ()) or not len(mine):
+        if name not in wanted or layout is None or not len(mine):
             continue
         records = _records(stream, mine + 3, layout)
         tables[name] = Table(
@@ -102,6 +103,14 @@ def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
             },
         )
     return tables
+
+
+def first_definition(beginning: bytes) -> int:
+    """Where the first FMT record begins that another record follows; -1 for none."""
+    at = beginning.find(_DEFINITION)
+    while at >= 0 and beginning[at + _FMT_LENGTH : at + _FMT_LENGTH + len(HEADER)] != HEADER:
+        at = beginning.find(_DEFINITION, at + 1)
+    return at
 
 
 def gps_time_base_s(gps: Table | None) -> float:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from advisor.flight.messages import Columns, FloatArray, IntArray
 from advisor.mavlink.definitions import DEFINITIONS
+from advisor.mends import Carrier
 
 AUTOPILOT_COMPONENT = 1  # MAV_COMP_ID_AUTOPILOT1
 MAV_TYPE_FIXED_WING = 1
@@ -21,7 +22,12 @@ MAV_PARAM_TYPE_REAL32 = 9
 
 
 def message(
-    name: str, system: int, order: IntArray, arrival_s: FloatArray, fields: Mapping[str, ArrayLike]
+    name: str,
+    system: int,
+    order: IntArray,
+    arrival_s: FloatArray,
+    fields: Mapping[str, ArrayLike],
+    carrier: Carrier,
 ) -> Columns:
     """Messages of one type from the values at hand, put into their order.
 
@@ -36,7 +42,9 @@ def message(
     fields : mapping
         Field name to shape (n,), or a scalar for all, in the units of the definition. Integers
         are cut to the size of the field, as a vehicle's counters wrap; texts and floating-point
-        values are kept as they are.
+        values are kept as they are, and so are fields that the definition lacks (a stamp).
+    carrier : Carrier
+        The kind of log.
     """
     n = len(order)
     layout = DEFINITIONS[name].layout
@@ -52,7 +60,32 @@ def message(
         if wire.base.kind in "iu" and values.dtype.kind != "f":
             values = values.astype(wire.base)
         columns[field] = np.broadcast_to(values, (n, *wire.shape))[rows]
-    return Columns(name, system, AUTOPILOT_COMPONENT, order[rows], arrival_s[rows], columns)
+    for field in fields.keys() - columns.keys():
+        columns[field] = np.asarray(fields[field])[rows]
+    return Columns(name, system, AUTOPILOT_COMPONENT, order[rows], arrival_s[rows], columns, carrier)
+
+
+def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Fields of several records, each in rows of its own: what a record does not hold is NaN in its rows.
+
+    Parameters
+    ----------
+    records
+        Field name to shape (n_k,) of record k. Every record holds the stamps.
+    """
+    rows = [len(next(iter(record.values()))) for record in records]
+    return {
+        name: np.concatenate(
+            [record.get(name, np.full(n, np.nan)) for record, n in zip(records, rows, strict=True)]
+        )
+        for name in dict.fromkeys(name for record in records for name in record)
+    }
+
+
+def air_data(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Fields of VFR_HUD from records of air speed, climb rate and throttle; NaN without a throttle."""
+    fields = side_by_side(*records)
+    return {"throttle": np.full(len(next(iter(fields.values()))), np.nan), **fields}
 
 
 def system_id(parameter: object) -> int:
@@ -77,3 +110,11 @@ def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
     """
     known = np.concatenate([[np.nan], np.asarray(values, dtype=np.float64)])
     return known[np.searchsorted(order, at, side="right")]
+
+
+def nearest(at_us: IntArray, time_us: IntArray) -> IntArray:
+    """Index of the record nearest to each time asked for, the earlier of two."""
+    after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
+    before = after - 1
+    after = np.minimum(after, len(time_us) - 1)
+    return np.where(at_us - time_us[before] <= time_us[after] - at_us, before, after)

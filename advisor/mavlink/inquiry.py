@@ -1,40 +1,27 @@
 """Asking the vehicle what its outputs are and which firmware it runs."""
 
-import struct
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.framing import Frame
 from advisor.mavlink.outgoing import Talker
-
-OUTPUTS = range(1, 17)
-PITCH_FUNCTIONS = (19, 77, 78, 79, 80, 16, 17, 86, 87)
-"""SERVOn_FUNCTION of elevator, left and right elevon, left and right V-tail, differential spoilers."""
-
-STREAM_GROUPS = ("EXTRA1", "RAW_SENS", "RC_CHAN", "EXTRA2")
-RENAMED = {
-    "SYSID_MYGCS": "MAV_GCS_SYSID",
-    **{f"SR0_{group}": f"MAV1_{group}" for group in STREAM_GROUPS},
-}
-"""Names up to ArduPilot 4.6 to names after it; a vehicle has one or the other, so both are asked for."""
+from advisor.mavlink.questions import ArduPilotQuestions, Px4Questions, Questions
 
 ANSWER_WITHIN_S = 1.0
 MOST_TRIES = 3
 AT_ONCE = 10
 
-_PARAM_VALUE = dialect.MAVLINK_MSG_ID_PARAM_VALUE
+_HEARTBEAT, _PARAM_VALUE = dialect.MAVLINK_MSG_ID_HEARTBEAT, dialect.MAVLINK_MSG_ID_PARAM_VALUE
 
 
 class Inquiry(Talker):
     """Reads the parameters that say which output is the elevator and how it moves.
 
-    First SERVOn_FUNCTION of every output, the stream rates and the ground station's id in
-    both spellings, then MIN, TRIM, MAX and REVERSED of the outputs that pitch. A few
-    questions stand at a time; an unanswered one is repeated, then given up: a vehicle does
-    not answer for a parameter it does not have. The answers reach the advisor as every
-    other message of the link does; here they only decide what to ask next. Another vehicle
-    is asked anew.
+    ArduPilot's questions are asked until a heartbeat tells of PX4. A few questions stand at a
+    time; an unanswered one is repeated, then given up: a vehicle does not answer for a
+    parameter it does not have. The answers reach the advisor as every other message of the
+    link does; here they only decide what to ask next. Another vehicle is asked anew.
 
     Parameters
     ----------
@@ -48,14 +35,16 @@ class Inquiry(Talker):
         self._begin()
 
     def _begin(self) -> None:
-        self._to_ask = [f"SERVO{n}_FUNCTION" for n in OUTPUTS]
-        if not self._outputs_only:
-            self._to_ask += [name for pair in RENAMED.items() for name in pair]
+        self._questions: Questions = ArduPilotQuestions()
+        self._to_ask = self._first_questions()
         self._standing: dict[str, tuple[float, int]] = {}
         self._firmware_asked = self._outputs_only
         self._told = False
         self.parameters: dict[str, float] = {}
         """What was answered."""
+
+    def _first_questions(self) -> list[str]:
+        return list(self._questions.outputs if self._outputs_only else self._questions.first)
 
     @property
     def done(self) -> bool:
@@ -63,20 +52,24 @@ class Inquiry(Talker):
         return not self._to_ask and not self._standing
 
     def hear(self, frame: Frame, now_s: float) -> None:
-        """Take an answer."""
+        """Take an answer, or learn which autopilot is asked."""
+        payload = frame.payload.ljust(25, b"\0")
+        if frame.message_id == _HEARTBEAT:
+            is_px4 = payload[5] == dialect.MAV_AUTOPILOT_PX4
+            if is_px4 and not isinstance(self._questions, Px4Questions):
+                self._questions = Px4Questions()
+                self._to_ask = [name for name in self._first_questions() if name not in self.parameters]
+                self._standing.clear()
         if frame.message_id != _PARAM_VALUE:
             return
-        payload = frame.payload.ljust(25, b"\0")
         name = payload[8:24].partition(b"\0")[0].decode("ascii", "replace")
-        (value,) = struct.unpack_from("<f", payload)
         known = name in self.parameters
-        self.parameters[name] = value
+        value = self.parameters[name] = self._questions.value(payload)
         self._standing.pop(name, None)
         if name in self._to_ask:
             self._to_ask.remove(name)
-        stem, _, kind = name.rpartition("_")
-        if not known and kind == "FUNCTION" and stem.startswith("SERVO") and value in PITCH_FUNCTIONS:
-            details = (f"{stem}_{detail}" for detail in ("MIN", "TRIM", "MAX", "REVERSED"))
+        if not known:
+            details = self._questions.follow(name, value)
             self._to_ask += [detail for detail in details if detail not in self.parameters]
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
@@ -110,7 +103,7 @@ class Inquiry(Talker):
             return []
         self._told = True
         if not self.parameters:
-            return ["the vehicle was asked for SERVOn_FUNCTION and did not answer"]
+            return ["the vehicle was asked which output is the elevator and did not answer"]
         return [f"{len(self.parameters)} parameters of the vehicle heard"]
 
 

@@ -1,19 +1,25 @@
-"""Opening a log of any kind: what it is, is read from its first bytes, not from its name."""
+"""Opening a log of any kind, packed or not."""
 
-import stat
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+import numpy as np
+
+from advisor.flight.identity import READER
 from advisor.flight.messages import Columns
-from advisor.mavlink import ardupilot_log, dataflash, ulog
+from advisor.mavlink.ardupilot_log import read_dataflash
+from advisor.mavlink.equivalent import message
+from advisor.mavlink.kinds import Found, recognised, refusal
 from advisor.mavlink.tlog import read_tlog
+from advisor.mavlink.ulog import read_ulog
+from advisor.mavlink.unpack import beginning_of, unpacked
 from advisor.problems import UnusableInputError
 
 
 def open_log(
     path: Path, wanted: Iterable[str] | None = None, key: bytes | None = None
 ) -> Iterator[list[Columns]]:
-    """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``.
+    """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
 
     The latter two hold the autopilot's own records; they come as the messages its telemetry
     would have carried, in one batch.
@@ -29,40 +35,42 @@ def open_log(
     Raises
     ------
     UnusableInputError
-        When the file is missing, no file, empty or unreadable; while reading, when it holds
-        no messages.
+        When the file is missing or no file; while reading, when it holds no messages.
     """
-    beginning = _beginning(path)
-    if beginning.startswith(ulog.MAGIC):
-        return ulog.read_ulog(path, wanted)
-    if beginning.startswith(dataflash.HEADER):
-        return ardupilot_log.read_dataflash(path, wanted)
-    return read_tlog(path, wanted, key)
+    return _read(path, beginning_of(path), wanted, key)
 
 
-def _beginning(path: Path) -> bytes:
-    """The first bytes of a file that can be read."""
-    try:
-        kind = path.stat().st_mode
-        if stat.S_ISDIR(kind):
-            raise UnusableInputError("not_a_file", f"{path} is a folder.", "Give the log file inside it.")
-        if not stat.S_ISREG(kind):
-            # A pipe may never speak, a device may never end.
-            raise UnusableInputError(
-                "not_a_file", f"{path} is a pipe or a device, no regular file.", "Give a log that is a file."
-            )
-        with path.open("rb") as file:
-            beginning = file.read(16)
-    except FileNotFoundError:
-        raise UnusableInputError(
-            "no_such_file", f"There is no file {path}.", "Check the name and the folder."
-        ) from None
-    except OSError as error:
-        raise UnusableInputError(
-            "unreadable", f"{path} cannot be read: {error.strerror}.", "Check its permissions."
-        ) from None
-    if not beginning:
-        raise UnusableInputError(
-            "empty", f"{path.name} is empty.", "Give a log that was recorded to its end."
-        )
-    return beginning
+def _read(
+    path: Path, beginning: bytes, wanted: Iterable[str] | None, key: bytes | None
+) -> Iterator[list[Columns]]:
+    with unpacked(path, beginning) as log:
+        if log is not path:
+            beginning = beginning_of(log)
+        found = recognised(beginning)
+        if found is None:
+            raise UnusableInputError.of([refusal(log.name, beginning)])
+        for number, batch in enumerate(_batches(log, found, wanted, key)):
+            yield [_skipped(found, batch), *batch] if found.starts_at and number == 0 else batch
+
+
+def _batches(
+    log: Path, found: Found, wanted: Iterable[str] | None, key: bytes | None
+) -> Iterator[list[Columns]]:
+    if found.kind == "ulog":
+        return read_ulog(log, wanted, found.starts_at)
+    if found.kind == "dataflash":
+        return read_dataflash(log, wanted)
+    return read_tlog(log, wanted, key)
+
+
+def _skipped(found: Found, first: list[Columns]) -> Columns:
+    """The note that something stood in front of the first record, before the first messages."""
+    text = f"{READER.decode()}{found.starts_at} bytes in front of the first record were skipped"
+    return message(
+        "STATUSTEXT",
+        first[0].system,
+        np.array([-1]),
+        np.array([min(float(c.arrival_s[0]) for c in first)]),
+        {"severity": 6, "text": np.array([text.encode()])},
+        first[0].carrier,
+    )

@@ -1,6 +1,8 @@
-"""PX4's own log (``.ulg``), read by pyulog, an extra."""
+"""PX4's own log (``.ulg``), read by pyulog."""
 
 import contextlib
+import io
+import struct
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -10,31 +12,52 @@ import numpy as np
 
 from advisor.flight.messages import Columns
 from advisor.mavlink.equivalent import message, system_id
-from advisor.mavlink.px4_log import TOPICS, translate, unix_time_base_s
+from advisor.mavlink.px4_log import translate
+from advisor.mavlink.px4_topics import TOPICS, topics_of
+from advisor.mavlink.px4_vehicle import unix_time_base_s
+from advisor.mends import mends_of, sentence
 from advisor.problems import UnusableInputError
 
 MAGIC = b"ULog\x01\x12\x35"
 
 
-def read_ulog(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
+class WholeFile(io.BufferedReader):
+    """A file in which a read beyond the end fails, unless nothing is left.
+
+    Where damage in the definitions leads pyulog 1.3 beyond the end it steps back by what it wanted to read,
+    not by what it got, and never arrives.
+    """
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """That many bytes, or none at the end."""
+        data = super().read(size)
+        if size is not None and 0 < len(data) < size:
+            raise struct.error
+        return data
+
+
+def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 0) -> Iterator[list[Columns]]:
     """The messages of a ``.ulg``, in one batch, ordered by time.
+
+    Parameters
+    ----------
+    path
+    wanted
+        Names of the messages to give; all by default.
+    starts_at
+        Bytes in front of the log.
 
     Raises
     ------
     UnusableInputError
-        When pyulog is not installed, or the file holds neither attitude, sensors, nor outputs.
+        When the file holds neither attitude, sensors, nor outputs.
     """
-    try:
-        from pyulog import ULog
-    except ImportError:
-        raise UnusableInputError(
-            "no_pyulog",
-            f"{path.name} is a PX4 log, and pyulog, which reads them, is not installed.",
-            "Install it with: pip install 'inflight-advisor[logs]'.",
-        ) from None
+    from pyulog import ULog  # here, for no other command needs to wait for its import
+
     try:
         # pyulog prints its warnings; standard output belongs to the result.
-        with path.open("rb") as file, contextlib.redirect_stdout(sys.stderr):
+        raw = io.FileIO(path) if starts_at == 0 else io.BytesIO(path.read_bytes()[starts_at:])
+        with WholeFile(raw) as file, contextlib.redirect_stdout(sys.stderr):
             log = ULog(file, list(TOPICS))
     except Exception as error:  # whatever pyulog meets in damaged bytes
         raise _nothing_in(path) from error
@@ -50,21 +73,23 @@ def _nothing_in(path: Path) -> UnusableInputError:
     return UnusableInputError(
         "no_messages",
         f"{path.name} holds no attitude, sensor or actuator topics of PX4.",
-        "Set SDLOG_PROFILE so that they are logged, or give a .tlog.",
+        f"{sentence(mends_of('px4', 'ulog').present(['ATTITUDE', 'RAW_IMU', 'SERVO_OUTPUT_RAW']), '')}, "
+        "or give a .tlog.",
     )
 
 
 def _columns(log: Any) -> list[Columns]:
     """Every message the topics give, numbered by time."""
-    messages = translate(log)
+    topics = topics_of(log)
+    messages = translate(log, topics)
     time_us = np.concatenate([m.time_us for m in messages])
     order = np.empty(len(time_us), dtype=np.int64)
     order[np.argsort(time_us, kind="stable")] = np.arange(len(time_us))
     orders = np.split(order, np.cumsum([len(m.time_us) for m in messages])[:-1])
-    base_s = unix_time_base_s(log)
+    base_s = unix_time_base_s(topics)
     system = system_id(log.initial_parameters.get("MAV_SYS_ID"))
     return [
-        message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields)
+        message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields, "ulog")
         for m, numbers in zip(messages, orders, strict=True)
         if len(numbers)
     ]

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.channels import SLOWEST_FLIGHT_M_S
+from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.messages import FloatArray
 from advisor.flight.motion import bank_at, integrated, speed_rate
 from advisor.flight.record import Channel

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from advisor.aircraft import Aircraft
-from advisor.flight.channels import DERIVED_ALPHA
+from advisor.flight.derived_alpha import DERIVED_ALPHA
 from advisor.flight.inferred_alpha import NEEDED, inferred_alpha
 from advisor.flight.kinematics import check_alpha, combine
 from advisor.flight.maneuver import Maneuver

@@ -97,7 +97,7 @@ class AnalysisText:
         yield self._channels()
         yield from (
             Text(f"note: {note}", style="yellow")
-            for note in (*self.state.elevator_notes, *self.state.sensor_notes, *self.state.mark_notes)
+            for note in (*self.state.elevator_notes, *self.state.reader_notes, *self.state.mark_notes)
         )
         yield Text()
         yield from self._movements()

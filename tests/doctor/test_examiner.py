@@ -189,9 +189,9 @@ def test_losses_of_a_live_link_count() -> None:
 
 
 def test_on_px4_the_words_are_px4s() -> None:
-    found = examined(flight(4.0, 60.0, autopilot=12))
+    found = examined(flight(4.0, 60.0, autopilot=12), Aircraft(elevator=Elevator(output=2)))
     assert all("SR0_" not in limit.fix for limit in found.limits)
-    assert any("mavlink stream -s ATTITUDE" in limit.fix for limit in found.limits)
+    assert any("-s ATTITUDE -r 50" in limit.fix for limit in found.limits)
 
 
 @cache

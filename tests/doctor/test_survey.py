@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 
 from advisor.doctor.survey import Arrival, Survey
-from advisor.flight.messages import Columns
+from advisor.flight.messages import Carrier, Columns
+from advisor.flight.vehicle import Vehicle
 from tests.doctor.builders import among, aoa, attitude, columns, hud
 
 
-def surveyed(*batches: list[Columns]) -> tuple[Survey, dict[str, Arrival]]:
-    survey = Survey(1, 1)
+def surveyed(*batches: list[Columns], carrier: Carrier = "telemetry") -> tuple[Survey, dict[str, Arrival]]:
+    survey = Survey(Vehicle(1, 1, "ardupilot", 1, carrier=carrier))
     for batch in batches:
         survey.feed(batch)
     return survey, {arrival.name: arrival for arrival in survey.arrivals}
@@ -131,3 +132,26 @@ def test_another_system_is_not_counted() -> None:
     other = Columns("ATTITUDE", 9, 1, other.order, other.arrival_s, other.fields)
     _, arrivals = surveyed([attitude(t), other])
     assert arrivals["ATTITUDE"].count == len(t)
+
+
+@pytest.mark.parametrize(("carrier", "told"), [("telemetry", 0), ("dataflash", 1), ("ulog", 1)])
+def test_a_stretch_without_any_record_is_a_pause_of_a_log_and_a_fault_of_a_link(
+    carrier: Carrier, told: int
+) -> None:
+    t = np.concatenate([np.arange(0.0, 20.0, 0.02), np.arange(43.0, 60.0, 0.02)])
+    master = attitude(t)
+    survey, arrivals = surveyed([master, aoa(t, among(master, t, t), renewed_hz=20.0)], carrier=carrier)
+    assert len(survey.pauses) == told
+    assert all("from 20.0 to 43.0 s" in sentence for sentence in survey.pauses)
+    assert (arrivals["ATTITUDE"].largest_gap_s > 1.0) is (told == 0)
+    assert (arrivals["AOA_SSA"].lowest_hz < 40.0) is (told == 0)
+    assert survey.clocks.boots == 1
+
+
+def test_a_record_that_stays_away_while_others_come_is_no_pause() -> None:
+    t = np.arange(0.0, 60.0, 0.02)
+    some = t[(t < 20.0) | (t > 43.0)]
+    master = attitude(t)
+    survey, arrivals = surveyed([master, aoa(some, among(master, some, t), 20.0)], carrier="dataflash")
+    assert survey.pauses == []
+    assert arrivals["AOA_SSA"].largest_gap_s == pytest.approx(23.0, abs=0.1)

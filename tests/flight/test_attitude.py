@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from advisor.doctor.survey import Survey
 from advisor.flight.attitude import Attitudes
 from advisor.flight.events import ManeuverFlown
+from advisor.flight.vehicle import Vehicle
 from tests.flight.columns import Wire, attitude, fly
 from tests.flight.test_stream import as_plain, flown
 
@@ -88,7 +89,7 @@ def test_a_vehicle_that_sends_both_is_read_by_its_attitude_messages():
 
 
 def test_the_doctor_counts_quaternions_under_their_own_name_and_on_their_own_clock():
-    survey = Survey(1, 1)
+    survey = Survey(Vehicle(1, 1, "ardupilot", 1))
     survey.feed(flight(Turned()).columns())
     arrivals = {arrival.name: arrival for arrival in survey.arrivals}
     assert "ATTITUDE" not in arrivals

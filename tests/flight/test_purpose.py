@@ -101,7 +101,7 @@ def test_while_an_autopilot_takes_off_by_itself_no_movement_is_an_input():
     assert reason(flown(INPUT, gain=(0.2, 0.3), mode="TAKEOFF")) == "autopilot"
 
 
-@pytest.mark.parametrize("mode", ["CRUISE", "FBWA", "STABILIZED"])
+@pytest.mark.parametrize("mode", ["CRUISE", "FBWA", "Stabilized"])
 def test_in_a_closed_loop_sharp_steps_are_an_input_and_all_else_is_the_autopilots(mode):
     assert reason(flown(INPUT, gain=(0.2, 0.3), mode=mode)) is None
     because = not_an_input(flown(slewed(T, INPUT, 0.5), gain=(0.2, 0.3), mode=mode))

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from advisor.aircraft import Aircraft, Alpha, Elevator
-from advisor.flight.channels import DERIVED_ALPHA
+from advisor.flight.derived_alpha import DERIVED_ALPHA
 from advisor.flight.events import (
     Activity,
     ManeuverFlown,
@@ -257,7 +257,7 @@ def test_a_px4_aircraft_gives_its_own_messages():
     (maneuver,) = maneuvers(events)
     assert str(stream.vehicle) == "px4 1/1"
     assert maneuver.span.kind == "pulse"
-    assert maneuver.mode == "MANUAL"
+    assert maneuver.mode == "Manual"
     assert maneuver.channels["a_z"].y[0] == -9.8
     assert np.max(maneuver.channels["elevator"].y) == pytest.approx(np.radians(4.0))
 

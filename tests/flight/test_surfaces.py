@@ -4,11 +4,17 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Elevator, ElevatorOutput
-from advisor.flight.elevator_outputs import find_elevator
-from advisor.flight.surfaces import AILERON, RUDDER, Surface, driven, find_surface
+from advisor.flight import elevator_outputs
+from advisor.flight.ardupilot_wiring import ardupilot_wiring
+from advisor.flight.surfaces import Surface, driven
+from advisor.flight.wiring import AILERON, RUDDER
 from advisor.problems import Problem
 
 PLANE = {"SERVO1_FUNCTION": 4.0, "SERVO2_FUNCTION": 19.0, "SERVO4_FUNCTION": 21.0}
+
+
+def find_elevator(elevator, parameters):
+    return elevator_outputs.find_elevator(elevator, ardupilot_wiring(parameters))
 
 
 def degrees(surface, *pulses):
@@ -159,9 +165,9 @@ def test_outputs_beyond_16_are_in_the_second_bank():
 
 
 def test_aileron_and_rudder_are_found_where_the_parameters_say():
-    assert find_surface(AILERON, PLANE).outputs == (1,)
-    assert find_surface(RUDDER, PLANE).outputs == (4,)
-    assert find_surface(RUDDER, {}) is None
+    assert ardupilot_wiring(PLANE).surface(AILERON).outputs == (1,)
+    assert ardupilot_wiring(PLANE).surface(RUDDER).outputs == (4,)
+    assert ardupilot_wiring({}).surface(RUDDER) is None
 
 
 def test_idle_outputs_carry_no_pulse():

@@ -2,7 +2,8 @@
 
 import pytest
 
-from advisor.flight.vehicle import Vehicle, VehicleFinder, closes_pitch_loop, is_aircraft, mode_name
+from advisor.flight.modes import closes_pitch_loop, hovers, mode_name
+from advisor.flight.vehicle import Vehicle, VehicleFinder, is_aircraft
 from tests.flight.columns import Wire, heartbeat
 
 GCS, GIMBAL, ONBOARD, PLANE = 6, 26, 18, 1
@@ -51,10 +52,11 @@ def test_an_unknown_autopilot_is_named_by_its_number():
 @pytest.mark.parametrize(
     ("autopilot", "custom", "name"),
     [("ardupilot", 0, "MANUAL"), ("ardupilot", 7, "CRUISE"), ("ardupilot", 99, "mode 99"),
-     ("px4", 1 << 16, "MANUAL"), ("px4", 4 << 16 | 3 << 24, "AUTO"), ("generic", 4, "mode 4")],
+     ("px4", 1 << 16, "Manual"), ("px4", 4 << 16 | 3 << 24, "Hold"), ("px4", 4 << 16 | 5 << 24, "Return"),
+     ("px4", 7 << 16, "Stabilized"), ("px4", 4 << 16 | 99 << 24, "Auto"), ("generic", 4, "mode 4")],
 )  # fmt: skip
 def test_modes_bear_the_names_their_users_know(autopilot, custom, name):
-    assert mode_name(Vehicle(1, 1, autopilot, PLANE), custom) == name
+    assert mode_name(autopilot, PLANE, custom) == name
 
 
 def test_the_link_and_the_core_agree_on_what_an_aircraft_is():
@@ -66,7 +68,18 @@ def test_the_link_and_the_core_agree_on_what_an_aircraft_is():
 
 def test_only_known_modes_other_than_manual_are_said_to_close_the_pitch_loop():
     assert closes_pitch_loop("CRUISE")
-    assert closes_pitch_loop("STABILIZED")
+    assert closes_pitch_loop("Stabilized")
     assert not closes_pitch_loop("MANUAL")
+    assert not closes_pitch_loop("Manual")
     assert not closes_pitch_loop("mode 77")
     assert not closes_pitch_loop("")
+
+
+def test_a_copters_mode_zero_is_not_a_planes_manual():
+    assert mode_name("ardupilot", 2, 0) == "STABILIZE"
+    assert mode_name("ardupilot", PLANE, 0) == "MANUAL"
+
+
+def test_a_quadplane_hovers_in_its_modes_of_the_rotors():
+    assert all(hovers(mode) for mode in ("QHOVER", "QLOITER", "QSTABILIZE", "LOITER_ALT_QLAND"))
+    assert not any(hovers(mode) for mode in ("MANUAL", "FBWA", "Manual", "AUTOLAND", ""))

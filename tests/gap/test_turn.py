@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.flight.channels import derived_alpha
-from advisor.flight.messages import Columns
+from advisor.flight.derived_alpha import derived_alpha
 from advisor.flight.motion import gravity_in_plane
 from advisor.gap.diagnose import diagnose
 from advisor.gravity import GRAVITY_M_S2
@@ -46,9 +45,5 @@ def test_gravity_in_the_plane_of_symmetry_is_the_down_axis_without_its_sideways_
 def test_in_a_bank_alpha_is_what_brings_that_path_about():
     alpha, theta, bank, speed = 0.08, 0.11, 0.5, 25.0
     sine = np.cos(alpha) * np.sin(theta) - np.sin(alpha) * np.cos(bank) * np.cos(theta)
-    hud = Columns(
-        "VFR_HUD", 1, 1, np.arange(1), np.zeros(1),
-        {"airspeed": np.array([speed]), "climb": np.array([speed * sine])},
-    )  # fmt: skip
-    found = derived_alpha(hud, np.zeros(1), np.array([[theta, bank]]), None)
-    assert found.y[0] == pytest.approx(alpha, abs=1e-9)
+    found = derived_alpha(*(np.array([value]) for value in (speed * sine, speed, theta, bank)))
+    assert found[0] == pytest.approx(alpha, abs=1e-9)

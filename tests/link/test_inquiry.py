@@ -1,3 +1,4 @@
+import struct
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
@@ -18,6 +19,13 @@ PLANE = {
 }
 
 
+def encoded(value: float) -> tuple[float, int]:
+    """A value as PARAM_VALUE carries it, and its type: the bytes of an integer, as PX4 sends them."""
+    if isinstance(value, int):
+        return struct.unpack("<f", struct.pack("<i", value))[0], dialect.MAV_PARAM_TYPE_INT32
+    return value, dialect.MAV_PARAM_TYPE_REAL32
+
+
 def converse(inquiry: Inquiry, has: dict[str, float], deaf_to: int = 0) -> list[Any]:
     """Answer every question the parameters of ``has`` can answer; the first ``deaf_to`` are lost."""
     sender, asked = Sender(), []
@@ -28,7 +36,7 @@ def converse(inquiry: Inquiry, has: dict[str, float], deaf_to: int = 0) -> list[
             name = getattr(question, "param_id", b"")
             name = name.decode() if isinstance(name, bytes) else name
             if len(asked) > deaf_to and name in has:
-                value = dialect.MAVLink_param_value_message(name.encode(), has[name], 9, 900, 65535)
+                value = dialect.MAVLink_param_value_message(name.encode(), *encoded(has[name]), 900, 65535)
                 (frame,) = FrameCutter(CRC_EXTRA).feed(sender.pack(value))
                 inquiry.hear(frame, now_s)
         now_s += ANSWER_WITHIN_S / 4
@@ -36,6 +44,21 @@ def converse(inquiry: Inquiry, has: dict[str, float], deaf_to: int = 0) -> list[
             break
     assert inquiry.done
     return asked
+
+
+def test_a_px4_is_asked_for_its_surfaces_and_for_the_limits_of_the_outputs_that_carry_them() -> None:
+    has = {
+        "CA_SV_CS0_TYPE": 1, "CA_SV_CS1_TYPE": 3, "CA_SV_CS1_TRQ_P": 1.0,
+        "PWM_MAIN_FUNC3": 101, "PWM_MAIN_FUNC5": 202, "PWM_MAIN_MIN5": 1100, "PWM_MAIN_MAX5": 1900,
+    }  # fmt: skip
+    inquiry = Inquiry()
+    heartbeat = dialect.MAVLink_heartbeat_message(1, dialect.MAV_AUTOPILOT_PX4, 81, 1 << 16, 4, 3)
+    (frame,) = FrameCutter(CRC_EXTRA).feed(Sender().pack(heartbeat))
+    inquiry.hear(frame, 0.0)
+    asked = {getattr(message, "param_id", b"") for message in converse(inquiry, has)}
+    assert {name: inquiry.parameters[name] for name in has} == has
+    assert not [name for name in asked if str(name).startswith("SERVO")]
+    assert b"PWM_MAIN_MIN3" not in asked
 
 
 def names(asked: list[Any]) -> list[str]:

@@ -44,24 +44,52 @@ def test_an_inertial_sensor_that_is_dead_gives_way_to_the_next(dead):
 
 
 def test_a_sensor_that_dies_in_flight_gives_way_from_then_on():
-    chosen = flown(inertial((0, 1, 1), (1, 1, 1), (0, 0, 1), (1, 1, 1), (0, 0, 1), (1, 1, 1)))
+    records = inertial((0, 1, 1), (1, 1, 1), (0, 0, 1), (1, 1, 1), (0, 0, 1), (1, 1, 1))
+    chosen = flown(records)
     assert chosen.fields["row"].tolist() == [0, 3, 5]
-    assert [one.text for one in said(chosen, "Rates")] == [
+    assert [one.text for one in said(records, chosen, "Rates")] == [
         "Rates: sensor 0 flew",
         "Rates: sensor 1 flew from 0.3 s on",
     ]
 
 
 def test_nothing_is_said_where_the_first_sensor_flew_throughout():
-    assert said(flown(inertial((0, 1, 1), (1, 1, 1), (0, 1, 1), (1, 1, 1))), "Rates") == []
+    records = inertial((0, 1, 1), (1, 1, 1), (0, 1, 1), (1, 1, 1))
+    assert said(records, flown(records), "Rates") == []
 
 
-def test_the_first_sensor_flew_where_none_is_good():
-    chosen = flown(inertial((0, 0, 0), (1, 0, 0)))
-    assert chosen.fields["I"].tolist() == [0]
+def test_no_sensor_flew_while_none_is_healthy_and_that_is_said():
+    records = inertial(*[(0, 1, 1)] * 10, *[(0, 0, 1)] * 10, *[(0, 1, 1)] * 10)
+    chosen = flown(records)
+    assert chosen.fields["row"].tolist() == [*range(10), *range(20, 30)]
+    assert [one.text for one in said(records, chosen, "Rates")] == [
+        "Rates: no sensor was healthy from 1.0 to 1.9 s and none is used there"
+    ]
+
+
+def test_a_model_without_noise_at_rest_is_no_dead_sensor():
+    fields = {name: np.zeros(40) for name in ("GyrX", "GyrY", "GyrZ", "AccX", "AccY")}
+    fields |= {"AccZ": np.full(40, -9.81), "TimeUS": 50_000 * np.arange(40)}
+    assert len(flown(Table(10 * np.arange(40), fields))) == 40
+    assert len(flown(Table(10 * np.arange(40), {**fields, "AccZ": np.zeros(40)}))) == 0
+
+
+def test_an_unused_sensor_flew_where_it_is_the_only_one():
+    assert len(flown(airspeeds((0, 0, 1, 0), (0, 0, 1, 0)))) == 2
+
+
+def test_an_inertial_sensor_that_repeats_itself_gives_way_whatever_its_health_says():
+    values = np.random.default_rng(0).normal(size=(40, 6))
+    values[21::2] = values[19]  # sensor 1 is stuck from its eleventh record on
+    names = ("GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ")
+    fields = {name: values[:, k] for k, name in enumerate(names)}
+    fields |= {"I": np.arange(40) % 2, "GH": np.arange(40) % 2, "AH": np.ones(40)}
+    fields["TimeUS"] = 50_000 * np.arange(40)
+    chosen = flown(Table(10 * np.arange(40), fields))
+    assert chosen.time_us.tolist() == [50_000 * row for row in range(1, 19, 2)]
 
 
 def test_records_that_do_not_tell_their_sensor_are_all_of_one():
     records = Table(np.arange(3), {"Airspeed": np.array([20.0, 21.0, 22.0])})
     assert flown(records) is records
-    assert said(records, "Air speed") == []
+    assert said(records, records, "Air speed") == []

@@ -30,7 +30,9 @@ _SLOW_S = 1.0
 def measures_speed(maneuver: Maneuver) -> bool:
     """Whether it has an air speed that is one of flight: a tube may be missing, or still plugged."""
     speed = maneuver.channels.get("airspeed")
-    return speed is not None and len(speed) > 1 and float(np.min(speed.y)) > _SLOWEST_M_S
+    if speed is None or speed.provenance == "given":
+        return False
+    return len(speed) > 1 and float(np.min(speed.y)) > _SLOWEST_M_S
 
 
 def airspeed_on(

@@ -1,0 +1,132 @@
+"""The angle of attack in still air, made of attitude, climb rate and air speed at one and the same time.
+
+Each of the three arrives at its own stamps. The values at the stamps of the climb rate are interpolated
+from the two others, so that neither the order of messages nor their delay enters the angle.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.messages import Columns, FloatArray, IntArray
+from advisor.flight.motion import gravity_in_plane
+from advisor.flight.record import Channel
+from advisor.flight.track import ChannelStatus, Track
+from advisor.gravity import GRAVITY_M_S2
+
+DERIVED_ALPHA = "theta - asin(VFR_HUD.climb / airspeed)"
+SLOWEST_FLIGHT_M_S = 4.0
+"""Below this air speed nothing flies, and no angle of attack can be derived."""
+_AROUND_S = 2.0
+"""So far beyond a stretch lie its neighbours: air speed may come once a second (PX4's airspeed_validated)."""
+
+
+class DerivedAlpha:
+    """The angle of attack as if it were a track of its own.
+
+    Parameters
+    ----------
+    track
+        Gives the track of a channel's best source, None where nothing of it has arrived.
+    airspeed_m_s
+        Air speed where none is measured, m/s; None: not known.
+    """
+
+    def __init__(self, track: Callable[[str], Track | None], airspeed_m_s: float | None) -> None:
+        self._track = track
+        self._airspeed_m_s = airspeed_m_s
+
+    @property
+    def exists(self) -> bool:
+        """Whether any angle of attack can be derived by now."""
+        if self._track("climb_rate") is None or self._track("theta") is None:
+            return False
+        airspeed = self._track("airspeed")
+        fastest = -np.inf if airspeed is None else airspeed.highest
+        return max(fastest, self._airspeed_m_s or 0.0) > SLOWEST_FLIGHT_M_S
+
+    @property
+    def newest_s(self) -> float:
+        """Newest stamp, s since boot."""
+        return min(track.newest_s for track in (self._track("climb_rate"), self._track("theta")) if track)
+
+    @property
+    def status(self) -> ChannelStatus:
+        """How the angle arrives: as the climb rate does."""
+        climb = self._track("climb_rate")
+        assert climb is not None
+        return replace(
+            climb.status, source=DERIVED_ALPHA, provenance="derived", lowest=-np.inf, highest=np.inf
+        )
+
+    def cut(self, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel:
+        """The angle with ``start_s <= t <= end_s`` from what had arrived by ``up_to_order``."""
+        climb = self._track("climb_rate")
+        assert climb is not None
+        at = climb.cut(start_s, end_s, up_to_order)
+        around = {
+            name: track.cut(start_s - _AROUND_S, end_s + _AROUND_S, up_to_order)
+            for name in ("theta", "bank", "airspeed")
+            if (track := self._track(name)) is not None
+        }
+        t, alpha = _angles(at, around, self._airspeed_m_s)
+        return Channel("alpha", t, alpha, DERIVED_ALPHA, "derived")
+
+
+def derived_alpha(
+    climb_m_s: FloatArray, airspeed_m_s: FloatArray, theta: FloatArray, bank: FloatArray
+) -> FloatArray:
+    """θ − γ with sin γ = climb rate / air speed, in rad; in a bank, what makes that γ. NaN below flight.
+
+    Parameters
+    ----------
+    climb_m_s, airspeed_m_s, theta, bank
+        Shape (n,), each at the same n times; angles in rad.
+    """
+    flying = airspeed_m_s > SLOWEST_FLIGHT_M_S
+    sine = np.divide(climb_m_s, airspeed_m_s, out=np.zeros_like(airspeed_m_s), where=flying)
+    up, size = gravity_in_plane(theta, bank)
+    path = np.arcsin(np.clip(sine * GRAVITY_M_S2 / size, -1.0, 1.0))
+    return np.where(flying, up - path, np.nan)
+
+
+def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
+    """Orders of those VFR_HUD that bring an angle, or will once the aircraft flies.
+
+    No angle of attack can be derived while the aircraft stands, which is no fault of the stream.
+
+    Parameters
+    ----------
+    hud
+        Messages VFR_HUD; those of an autopilot's own log may hold the climb rate alone.
+    airspeed_m_s
+        Air speed where none is measured, m/s; None: not known.
+    """
+    if "climb" not in hud.fields:
+        return hud.order[:0]
+    if "airspeed" not in hud.fields or airspeed_m_s is not None:
+        return hud.order
+    flies = np.asarray(hud.fields["airspeed"]) > SLOWEST_FLIGHT_M_S
+    stands = np.asarray(hud.fields.get("groundspeed", np.inf)) <= SLOWEST_FLIGHT_M_S
+    return hud.order[flies | stands]
+
+
+def _angles(
+    climb: Channel, around: dict[str, Channel], airspeed_m_s: float | None
+) -> tuple[FloatArray, FloatArray]:
+    """Stamps and angles where the attitude is known before and after."""
+    theta, bank, speed = around.get("theta"), around.get("bank"), around.get("airspeed")
+    if theta is None or len(theta) == 0:
+        return np.empty(0), np.empty(0)
+    known = (climb.t >= theta.t[0]) & (climb.t <= theta.t[-1])
+    t = climb.t[known]
+    v = np.full(len(t), np.nan)
+    if speed is not None and len(speed):
+        v = np.interp(t, speed.t, speed.y)
+    if airspeed_m_s is not None:
+        v = np.where(v > SLOWEST_FLIGHT_M_S, v, airspeed_m_s)
+    rolled = np.interp(t, bank.t, bank.y) if bank is not None and len(bank) else np.zeros(len(t))
+    alpha = derived_alpha(climb.y[known], v, np.interp(t, theta.t, theta.y), rolled)
+    good = np.isfinite(alpha)
+    return t[good], alpha[good]

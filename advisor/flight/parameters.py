@@ -1,0 +1,79 @@
+"""The parameters that vehicles and ground stations have stated, each decoded as its autopilot encodes it."""
+
+from collections.abc import Iterator, Sequence
+from math import isfinite
+
+import numpy as np
+
+from advisor.flight import ardupilot_wiring, px4_wiring
+from advisor.flight.messages import Columns
+from advisor.flight.wiring import Wiring
+
+_INTEGERS = frozenset(range(1, 7))
+"""Values of MAV_PARAM_TYPE that are integers of up to 32 bits."""
+_PREFIXES = (*ardupilot_wiring.PREFIXES, *px4_wiring.PREFIXES)
+
+Sender = tuple[int, int]
+"""System and component."""
+Stated = tuple[float, float]
+"""A value as it reads where integers are converted to floating point, and where their bytes are put there."""
+
+
+def tells_of_outputs(name: str) -> bool:
+    """Whether a parameter is one of those that say what the servo outputs are."""
+    return name.startswith(_PREFIXES)
+
+
+def names_in(columns: Columns) -> list[str]:
+    """Names of the parameters in PARAM_VALUE messages."""
+    return [raw.rstrip(b"\0").decode("ascii", "replace") for raw in columns.fields["param_id"].tolist()]
+
+
+def read_by(autopilot: str, stated: Stated) -> float:
+    """The value as this autopilot means it."""
+    return stated[autopilot == "px4"]
+
+
+class Parameters:
+    """Keeps those parameters that say what the servo outputs are.
+
+    PARAM_VALUE carries every value in a field of floating point. ArduPilot converts integers to it; PX4 puts
+    their bytes there (MAVLink's parameter protocol, "C cast" and "bytewise").
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[Sender, dict[str, Stated]] = {}
+
+    def news(self, columns: Columns) -> Iterator[tuple[str, Stated | None, Stated]]:
+        """Name, value before and new value of the parameters that change what is known."""
+        cast = np.asarray(columns.fields["param_value"])
+        kinds = np.broadcast_to(columns.fields.get("param_type", np.zeros(len(cast))), cast.shape)
+        bytewise = cast.astype(np.float32).view(np.int32)
+        for name, kind, value, whole in zip(names_in(columns), kinds, cast, bytewise, strict=True):
+            stated = float(value), float(whole) if int(kind) in _INTEGERS else float(value)
+            before = self._known.get((columns.system, columns.component), {}).get(name)
+            if tells_of_outputs(name) and before != stated:
+                yield name, before, stated
+
+    def keep(self, sender: Sender, name: str, stated: Stated) -> None:
+        """From now on the sender's parameter has this value."""
+        self._known.setdefault(sender, {})[name] = stated
+
+    def wiring(self, senders: Sequence[Sender], autopilot: str) -> Wiring:
+        """What the parameters of these senders say of the outputs; the last sender wins.
+
+        Parameters
+        ----------
+        senders
+            Systems and components that speak for the vehicle.
+        autopilot
+            As the vehicle's identity names it.
+        """
+        stated = {
+            name: value
+            for sender in senders
+            for name, values in self._known.get(sender, {}).items()
+            if isfinite(value := read_by(autopilot, values))
+        }
+        find = px4_wiring.px4_wiring if autopilot == "px4" else ardupilot_wiring.ardupilot_wiring
+        return find(stated)

@@ -1,0 +1,94 @@
+"""How an ArduPilot log tells of the air: air speed, climb rate, throttle, each at its own stamps."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.flight.messages import FloatArray, IntArray
+from advisor.mavlink.dataflash import Table
+from advisor.mavlink.equivalent import nearest
+from advisor.mavlink.sensors import Said
+
+_AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
+"""Records that hold the air speed, the best first, and the field that does."""
+_CLIMB = ("XKF1", "NKF1", "EKF1")
+"""Records of the estimators, whose VD is the rate of descent, the newest estimator first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Air:
+    """What was found, and what is to be said of it."""
+
+    records: list[dict[str, NDArray[Any]]]
+    """Places in the order of arrival, stamps in us and values of one field, each of shape (n,)."""
+    said: list[Said]
+
+
+def air(tables: Mapping[str, Table], interrupted: bool) -> Air:
+    """The air data in these records.
+
+    Parameters
+    ----------
+    tables
+        Records by name, of ARSP those of the sensor that flew.
+    interrupted
+        Whether there were times at which no air speed sensor was healthy.
+    """
+    speed, said = _airspeed(tables, interrupted)
+    descent = _first(tables, [(record, "VD") for record in _CLIMB])
+    climb = _first(tables, [("BARO", "CRt")]) if descent is None else (descent[0], -descent[1])
+    found = {"climb": climb, "throttle": _first(tables, [("CTUN", "ThO")])}
+    others = [
+        # The places of one record follow each other: CTUN may hold an air speed and the throttle.
+        {"order": one[0].order + place, "time_usec": one[0].time_us, field: one[1]}
+        for place, (field, one) in enumerate(found.items(), start=2)
+        if one is not None
+    ]
+    return Air([*speed, *others], said)
+
+
+def _airspeed(
+    tables: Mapping[str, Table], interrupted: bool
+) -> tuple[list[dict[str, NDArray[Any]]], list[Said]]:
+    """The air speed of the best record, and of the next one where no sensor was healthy."""
+    sources = [
+        (tables[name], field)
+        for name, field in _AIR_SPEED.items()
+        if name in tables and field in tables[name].fields
+    ]
+    if not sources:
+        return [], []
+    (best, field), *spare = sources
+    order, time_us, speed = best.order, best.time_us, best.fields[field].astype(np.float64)
+    said = []
+    if interrupted and spare:
+        # The autopilot's own air speed goes on without a sensor.
+        stand_in, spare_field = spare[0]
+        rows = _away_from(time_us, stand_in.time_us)
+        text = f"Air speed: the autopilot's own ({spare_field}) stands in where no sensor was healthy"
+        said.append(Said(int(stand_in.order[0]), int(stand_in.time_us[0]), text))
+        order = np.concatenate([order, stand_in.order[rows]])
+        time_us = np.concatenate([time_us, stand_in.time_us[rows]])
+        speed = np.concatenate([speed, stand_in.fields[spare_field][rows]])
+    return [{"order": order + 1, "time_usec": time_us, "airspeed": speed}], said
+
+
+def _first(tables: Mapping[str, Table], places: Iterable[tuple[str, str]]) -> tuple[Table, FloatArray] | None:
+    """The first record that has its field, and the values of the field; None where none has."""
+    for name, field in places:
+        if name in tables and field in tables[name].fields:
+            table = tables[name].first_instance()
+            return table, table.fields[field].astype(np.float64)
+    return None
+
+
+def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
+    """Which of the other times lie further from all times than three of these are apart."""
+    if len(time_us) < 2:
+        return np.ones(len(other_us), dtype=np.bool_)
+    apart_us = np.abs(other_us - time_us[nearest(other_us, time_us)])
+    far: NDArray[np.bool_] = apart_us > 3.0 * float(np.median(np.diff(time_us)))
+    return far

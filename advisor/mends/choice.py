@@ -1,0 +1,33 @@
+"""Which mends belong to an autopilot and a kind of record."""
+
+from typing import Literal
+
+from advisor.mends.dataflash import Dataflash
+from advisor.mends.mends import Mends
+from advisor.mends.sdlog2 import Sdlog2
+from advisor.mends.telemetry import ArduPilotTelemetry, OtherTelemetry, Px4Telemetry
+from advisor.mends.ulog import Ulog
+
+Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2"]
+"""What brings messages: a link or its ``.tlog``, ArduPilot's own log (``.bin``), PX4's own log (``.ulg``),
+and PX4's own log before 2017 (``.px4log``)."""
+
+
+def mends_of(autopilot: str, carrier: Carrier) -> Mends:
+    """The mends for a vehicle.
+
+    Parameters
+    ----------
+    autopilot
+        ``ardupilot``, ``px4``, or another name.
+    carrier
+        What brings the vehicle's messages.
+    """
+    if carrier == "dataflash":
+        return Dataflash()
+    if carrier == "ulog":
+        return Ulog()
+    if carrier == "sdlog2":
+        return Sdlog2()
+    telemetry: dict[str, Mends] = {"ardupilot": ArduPilotTelemetry(), "px4": Px4Telemetry()}
+    return telemetry.get(autopilot, OtherTelemetry())

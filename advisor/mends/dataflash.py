@@ -1,0 +1,54 @@
+"""ArduPilot's own log (``.bin``): records and the bits of LOG_BITMASK."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from advisor.mends.mends import GOOD_HZ
+
+
+@dataclass(frozen=True, slots=True)
+class _Record:
+    """What the log has in place of a message."""
+
+    name: str
+    bit: int
+    bit_name: str
+    paced: str
+    """What sets its rate."""
+
+
+_IMU = _Record("IMU", 7, "IMU", "the main loop's rate")
+_RECORDS = {
+    "ATTITUDE": _IMU,
+    "RAW_IMU": _IMU,
+    "HIGHRES_IMU": _IMU,
+    "SERVO_OUTPUT_RAW": _Record("RCOU", 13, "RC", "25 Hz, older firmware at 10 Hz"),
+    "AOA_SSA": _Record("AOA", 0, "ATTITUDE_FAST", "10 Hz"),
+    "VFR_HUD": _Record("ARSP", 7, "IMU", "10 Hz"),
+}
+"""ArduPlane's records, the bits of LOG_BITMASK that log them (ArduPlane/defines.h), and their rates
+(ArduPlane.cpp: update_logging10, update_logging25)."""
+
+
+class Dataflash:
+    """Records of ArduPlane's log."""
+
+    def called(self, message: str) -> str:
+        """The record."""
+        return _RECORDS[message].name if message in _RECORDS else message
+
+    def faster(self, message: str) -> str:
+        """The rate that the log has anyway, and what has a higher one."""
+        record = _RECORDS.get(message)
+        logged = (
+            f"LOG_BITMASK logs {record.name} at {record.paced} (bit {record.bit}, {record.bit_name}); "
+            if record
+            else ""
+        )
+        return f"{logged}for more record a telemetry log with {message} at {GOOD_HZ} Hz"
+
+    def present(self, messages: Sequence[str]) -> str:
+        """The bits that log the records at all."""
+        records = [_RECORDS[message] for message in messages if message in _RECORDS]
+        bits = dict.fromkeys(f"{one.name} by bit {one.bit} ({one.bit_name})" for one in records)
+        return f"set LOG_BITMASK so that these are logged: {', '.join(bits)}; its default, 65535, has all"
