@@ -1,6 +1,7 @@
 """The command as a program of its own, as a terminal starts it."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -21,7 +22,14 @@ def start(*arguments: object, **environment: str) -> "subprocess.Popen[bytes]":
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         env={**os.environ, "HEADLESS": "1", **environment},
+        preexec_fn=_as_in_a_terminal,
     )
+
+
+def _as_in_a_terminal() -> None:
+    """Hear the signals that a shell lets its background jobs ignore, and these tests with them."""
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
 
 
 def finished(*arguments: object, **environment: str) -> tuple[int, bytes, bytes]:
