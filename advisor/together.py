@@ -15,8 +15,8 @@ from advisor.oem.estimator import estimate_jointly
 
 NEWEST = 7
 """Accepted manoeuvres that are estimated together during the flight: a whole campaign of the paper. The seven
-of ``logs/arduplane-calm.tlog`` tell the servo's lag to 5 %. Each further one takes some 0.1 s more of processor
-time at every verdict."""
+of ``logs/arduplane-calm.tlog`` tell the servo's lag to 5 %. Each further one takes some 0.1 s more of
+processor time at every verdict."""
 
 
 class Together:
