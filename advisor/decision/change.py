@@ -15,6 +15,7 @@ from scipy.special import chdtri
 from advisor.aircraft import PARAMETERS
 from advisor.decision.consistency import odd_ones
 from advisor.decision.history import Flown
+from advisor.decision.inverses import information_of
 from advisor.decision.pooling import (
     DERIVATIVES,
     Belief,
@@ -22,7 +23,6 @@ from advisor.decision.pooling import (
     Shared,
     beliefs_at_one_speed,
     disagreement,
-    information_of,
     pooled,
     pooled_on_both_sides,
 )

@@ -8,7 +8,8 @@ from scipy.special import nbdtr
 from advisor.aircraft import CampaignPlan
 from advisor.decision.history import Flown
 from advisor.decision.information import Knowledge
-from advisor.decision.pooling import DERIVATIVES, Belief, covariance_of, information_of
+from advisor.decision.inverses import covariance_of, information_of
+from advisor.decision.pooling import DERIVATIVES, Belief
 from advisor.decision.prediction import Z95
 from advisor.decision.scatter import SCATTER_FACTOR
 from advisor.decision.verdict import Remaining

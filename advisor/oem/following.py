@@ -17,7 +17,8 @@ from advisor.oem.prepare import prepare
 from advisor.oem.solution import Solution, solve
 
 CARRY_S = 0.5
-"""Flight over which a solution is carried on: its air speed, taken as constant, changes by 1 % or less."""
+"""Flight over which a solution is carried on. The air speed, taken as constant, changes by up to 4 % in it
+(``logs/arduplane-calm.tlog``)."""
 COLOUR_EVERY_S = 2.0
 """Flight between two fits of the noise's colour, and between two checks of the angle of attack."""
 

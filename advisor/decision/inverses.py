@@ -1,0 +1,43 @@
+"""Inverses of covariances and information matrices in which some parameters are unknown.
+
+Both functions take one matrix or a stack of them.
+"""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+
+def information_of(covariance: FloatArray) -> FloatArray:
+    """Inverse of covariances (..., n, n); zero rows and columns for what is unknown.
+
+    Unknown is what has no finite, positive variance.
+    """
+    variance = np.diagonal(covariance, axis1=-2, axis2=-1)
+    return _inverse(covariance, np.isfinite(variance) & (variance > 0.0), 0.0)
+
+
+def covariance_of(information: FloatArray) -> FloatArray:
+    """Inverse of information matrices (..., n, n); infinite variance for what they say nothing about."""
+    return _inverse(information, np.diagonal(information, axis1=-2, axis2=-1) > 0.0, np.inf)
+
+
+def _inverse(matrix: FloatArray, known: np.ndarray, unknown: float) -> FloatArray:
+    """Inverse of symmetric positive semi-definite matrices (..., n, n), scaled so that units do not matter.
+
+    Rows and columns that are not ``known`` (..., n) become zero, with ``unknown`` on the diagonal.
+    """
+    inside = known[..., :, None] & known[..., None, :]
+    one = np.eye(matrix.shape[-1])
+    scale = 1.0 / np.sqrt(np.where(known, np.diagonal(matrix, axis1=-2, axis2=-1), 1.0))
+    outer = scale[..., :, None] * scale[..., None, :]
+    scaled = np.where(inside, matrix * outer, one)
+    try:
+        half = np.linalg.inv(np.linalg.cholesky(scaled))
+        inverse = np.swapaxes(half, -2, -1) @ half
+    except np.linalg.LinAlgError:
+        if matrix.ndim > 2:
+            return np.array([_inverse(m, k, unknown) for m, k in zip(matrix, known, strict=True)])
+        inverse = np.linalg.pinv(scaled, hermitian=True)
+    without = np.where((one > 0.0) & ~known[..., None], unknown, 0.0)
+    return np.where(inside, inverse * outer, without)
