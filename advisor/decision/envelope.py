@@ -46,7 +46,7 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
     """
     missing = [name for name in NEEDED if name not in maneuver.channels]
     if missing:
-        text = f"no {' and no '.join(missing)} during the manoeuvre; check the link and fly it again"
+        text = f"no {' and no '.join(missing)} during the manoeuvre; check the recording and fly it again"
         return [Reason("missing", text, float(len(missing)), 0.0)]
     rate = maneuver.channels["q"].y
     if np.ptp(rate) == 0.0:
@@ -101,7 +101,8 @@ def _rate(channels: list[Channel], period_s: float) -> list[Reason]:
         if not c.rate_hz >= needed_hz:
             rate, needed = beside(c.rate_hz, needed_hz, 1)
             message = c.source.partition(".")[0]
-            text = f"{c.name} arrived at {rate} Hz (this aircraft needs {needed}); ask for more of {message}"
+            arrived = f"{c.name} arrived at {rate} Hz (this aircraft needs {needed})"
+            text = f"{arrived}; have more of {message} sent or logged"
             reasons.append(Reason("rate", text, c.rate_hz, needed_hz))
     return reasons
 
@@ -115,7 +116,8 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
         gap = float(np.max(np.diff(edges)))
         if gap > limit:
             missing, most_missing = beside(gap, limit, 1)
-            text = f"{missing} s of {c.name} are missing (limit {most_missing}); check the link, fly it again"
+            lost = f"{missing} s of {c.name} are missing (limit {most_missing})"
+            text = f"{lost}; check the recording, fly it again"
             reasons.append(Reason("gap", text, gap, limit))
     return sorted(reasons, key=lambda reason: (-reason.value, reason.text))[:1]
 

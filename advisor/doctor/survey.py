@@ -113,7 +113,7 @@ class Survey:
 
     def __init__(self, vehicle: Vehicle) -> None:
         self._who = (vehicle.system, vehicle.component)
-        self._may_pause = vehicle.carrier != "telemetry"
+        self._carrier = vehicle.carrier
         self._attitudes = Attitudes()
         self._clock = BootClock()
         self._master_s = np.nan
@@ -184,15 +184,16 @@ class Survey:
     @property
     def pauses(self) -> list[str]:
         """When the autopilot wrote nothing into a log of its own, one sentence each."""
+        because = " (LOG_DISARMED 0)" if self._carrier == "dataflash" else ""
         return [
-            f"The autopilot logged nothing from {p.start_s:.1f} to {p.end_s:.1f} s, as ArduPilot does while "
-            "disarmed (LOG_DISARMED 0): no link was lost."
+            f"The autopilot logged nothing from {p.start_s:.1f} to {p.end_s:.1f} s, as it may while "
+            f"disarmed{because}: no link was lost."
             for p in self._pauses()
         ]
 
     def _pauses(self) -> list[_Pause]:
         """Stretches in which no message of any kind came; none for a link, whose faults they are."""
-        if not self._may_pause or not self._clock_pairs:
+        if self._carrier == "telemetry" or not self._clock_pairs:
             return []
         _, t, boot = np.concatenate(self._clock_pairs).T
         others = [
