@@ -81,6 +81,7 @@ def _log(state: CampaignState | None, file: str) -> dict[str, Any]:
             }
             for name, channel in (state.channels.items() if state else ())
         },
+        "notes": [*state.elevator_notes, *state.reader_notes, *state.mark_notes] if state else [],
     }
 
 

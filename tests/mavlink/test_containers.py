@@ -2,6 +2,7 @@
 
 import gzip
 import io
+import json
 import os
 import resource
 import time
@@ -13,6 +14,7 @@ import pytest
 
 from advisor.mavlink.logs import open_log
 from advisor.problems import UnusableInputError
+from tests.conftest import Advisor
 from tests.mavlink.builders import Sender, random_message, record
 from tests.mavlink.test_autopilot_logs import dataflash_flight, px4_flight
 
@@ -153,3 +155,10 @@ def test_a_sparse_file_of_zeros_is_refused_after_its_beginning(tmp_path: Path) -
     with path.open("wb") as file:
         file.truncate(100 << 30)
     assert refused(path).code == "not_a_tlog"
+
+
+def test_the_document_carries_the_notes_of_the_reader(tmp_path: Path, advisor: Advisor) -> None:
+    path = tmp_path / "flight.bin"
+    path.write_bytes(TEXT + dataflash_flight(2.0))
+    document = json.loads(advisor("analyze", path, "--json").stdout)
+    assert any("25 bytes in front" in note for note in document["log"]["notes"])
