@@ -169,5 +169,7 @@ def _frozen(table: Table) -> BoolArray:
     first = np.flatnonzero(moved)
     last = np.concatenate((first[1:], [len(table)])) - 1
     lasts_us = table.time_us[last] - table.time_us[first]
-    frozen: BoolArray = (lasts_us >= 1e6 * _FROZEN_S)[stretch]
+    # A model without noise at rest has no rates either, but it has its weight.
+    at_rest = np.all(values[:, :3] == 0.0, axis=1) & np.any(values[:, 3:] != 0.0, axis=1)
+    frozen: BoolArray = (lasts_us >= 1e6 * _FROZEN_S)[stretch] & ~at_rest
     return frozen

@@ -67,6 +67,13 @@ def test_no_sensor_flew_while_none_is_healthy_and_that_is_said():
     ]
 
 
+def test_a_model_without_noise_at_rest_is_no_dead_sensor():
+    fields = {name: np.zeros(40) for name in ("GyrX", "GyrY", "GyrZ", "AccX", "AccY")}
+    fields |= {"AccZ": np.full(40, -9.81), "TimeUS": 50_000 * np.arange(40)}
+    assert len(flown(Table(10 * np.arange(40), fields))) == 40
+    assert len(flown(Table(10 * np.arange(40), {**fields, "AccZ": np.zeros(40)}))) == 0
+
+
 def test_an_unused_sensor_flew_where_it_is_the_only_one():
     assert len(flown(airspeeds((0, 0, 1, 0), (0, 0, 1, 0)))) == 2
 
