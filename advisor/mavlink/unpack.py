@@ -84,21 +84,26 @@ def unpacked(path: Path, beginning: bytes) -> Iterator[Path]:
                 with zipfile.ZipFile(path) as archive:
                     member = _only_log(archive, path.name)
                     with archive.open(member) as packed:
-                        log = _copy(packed, path.name, Path(folder) / Path(member.filename).name)
-        except (
-            zipfile.BadZipFile,
-            gzip.BadGzipFile,
-            zlib.error,
-            EOFError,
-            NotImplementedError,
-            RuntimeError,
-        ):
+                        log = _copy(packed, path.name, Path(folder) / Path(_shown(member)).name)
+        except OSError as error:
+            if error.strerror is None:
+                raise _damaged(path) from None
             raise UnusableInputError(
                 "packed",
-                f"{path.name} cannot be unpacked: it is damaged, cut short or encrypted.",
-                "Unpack it by hand and give the log inside it.",
+                f"{path.name} cannot be unpacked: {error.strerror}.",
+                "Unpack it by hand where there is room and give the log inside it.",
             ) from None
+        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
+            raise _damaged(path) from None
         yield log
+
+
+def _damaged(path: Path) -> UnusableInputError:
+    return UnusableInputError(
+        "packed",
+        f"{path.name} cannot be unpacked: it is damaged, cut short or encrypted.",
+        "Unpack it by hand and give the log inside it.",
+    )
 
 
 def _copy(packed: IO[bytes] | gzip.GzipFile, name: str, to: Path) -> Path:
@@ -133,7 +138,7 @@ def _only_log(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
             "packed", f"{name} holds no log.", "Put one .tlog, .bin or .ulg into it, or give the log itself."
         )
     if len(logs) > 1:
-        names = [member.filename for member in logs]
+        names = [_shown(member) for member in logs]
         more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
         raise UnusableInputError(
             "several_logs",
@@ -141,3 +146,8 @@ def _only_log(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
             "Unpack it and give one of them; gap takes several.",
         )
     return logs[0]
+
+
+def _shown(member: zipfile.ZipInfo) -> str:
+    """The name of a member without what would steer a terminal."""
+    return "".join(letter for letter in member.filename if letter.isprintable())

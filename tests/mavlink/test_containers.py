@@ -4,8 +4,6 @@ import gzip
 import io
 import json
 import os
-import resource
-import time
 import zipfile
 from pathlib import Path
 
@@ -81,10 +79,10 @@ def test_a_log_is_known_by_its_content_whatever_its_name(tmp_path: Path) -> None
 
 def test_of_several_logs_in_a_zip_none_is_chosen_and_all_are_named(tmp_path: Path) -> None:
     path = tmp_path / "flights.zip"
-    path.write_bytes(zipped(a_bin=dataflash_flight(1.0), b_tlog=telemetry()))
+    path.write_bytes(zipped(**{"a_bin": dataflash_flight(1.0), "b\x1b[31m_tlog": telemetry()}))
     problem = refused(path)
     assert problem.code == "several_logs"
-    assert "a.bin, b.tlog" in problem.text
+    assert "a.bin, b[31m.tlog" in problem.text
 
 
 def refused(path: Path):
@@ -140,14 +138,10 @@ def test_neither_a_folder_nor_a_pipe_nor_a_device_is_waited_for(tmp_path: Path) 
         assert refused(path).code == "not_a_file"
 
 
-def test_a_packed_file_without_a_log_costs_little_however_large_it_is(tmp_path: Path) -> None:
+def test_of_a_packed_file_without_a_log_only_the_beginning_is_unpacked(tmp_path: Path) -> None:
     path = tmp_path / "zeros.gz"
-    path.write_bytes(gzip.compress(bytes(200 << 20), 1))
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    started = time.perf_counter()
-    refused(path)
-    assert time.perf_counter() - started < 2.0
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 50_000
+    path.write_bytes(gzip.compress(bytes(20 << 20))[:-1000])
+    assert refused(path).code == "not_a_tlog"  # the damage at its end was not reached
 
 
 def test_a_sparse_file_of_zeros_is_refused_after_its_beginning(tmp_path: Path) -> None:
