@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from advisor.flight.identity import READER
 from advisor.flight.messages import Columns, IntArray
+from advisor.mavlink.air_data import AIR_RECORDS, air_data, nearest
 from advisor.mavlink.ardupilot_vehicle import (
     VEHICLE_RECORDS,
     heartbeats,
@@ -19,7 +20,7 @@ from advisor.mavlink.ardupilot_vehicle import (
 )
 from advisor.mavlink.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
-from advisor.mavlink.equivalent import latest, message
+from advisor.mavlink.equivalent import message
 from advisor.mavlink.eras import SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.sdlog2 import SDLOG2_RECORDS, Sdlog2, is_sdlog2
 from advisor.mavlink.sensors import Said, flown, said, silent
@@ -28,30 +29,19 @@ from advisor.problems import UnusableInputError
 _RECORDS: dict[str, set[str]] = {
     **VEHICLE_RECORDS,
     **RATE_RECORDS,
+    **AIR_RECORDS,
     "ACC": {"AccX", "AccY", "AccZ"},
     "AOA": {"AOA", "SSA"},
-    "ARSP": {"Airspeed"},
     "ATT": {"Roll", "Pitch", "Yaw"},
-    "BARO": {"CRt"},
-    "CTUN": set(),
-    "EKF1": {"VD"},
     "GPS": {"GWk", "GMS"},
     "IMU": {"GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ"},
-    "NKF1": {"VD"},
-    "NTUN": {"Arspd"},
-    "POS": {"Lat", "Lng", "Alt", "RelHomeAlt"},
     "RCIN": {"C1"},
     "RCOU": {"C1"},
     "RCO2": set(),
     "RCO3": set(),
-    "XKF1": {"VD"},
 }
 """Records, and the fields needed of each: without them (another kind of vehicle, an older version)
 a record counts as missing."""
-_AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
-"""Records that hold the air speed, the best first, and the field that does."""
-_CLIMB = ("XKF1", "NKF1", "EKF1")
-"""Records of the estimators, whose VD is the rate of descent, the newest estimator first."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 """Records of which a vehicle may carry several, and the quantities that they hold."""
 
@@ -97,8 +87,6 @@ class _Translation:
     def __init__(self, read: Clocked) -> None:
         self._tables = dict(read.tables)
         self._said: list[Said] = []
-        self._interrupted: set[str] = set()
-        """Records of sensors that were not healthy all the time."""
         if read.epoch_s:
             self._said.append(Said(0, 0, "Stamps count from 1970: times are given from the first record on"))
         for name, quantity in _SENSORS.items():
@@ -106,8 +94,9 @@ class _Translation:
                 every = self._tables[name]
                 self._tables[name] = flown(every)
                 self._said += said(every, self._tables[name], quantity)
-                if silent(every, self._tables[name]):
-                    self._interrupted.add(name)
+        self._air_interrupted = "ARSP" in read.tables and bool(
+            silent(read.tables["ARSP"], self._tables["ARSP"])
+        )
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
@@ -196,7 +185,7 @@ class _Translation:
                 for field, values in table.fields.items():
                     if field[0] == "C" and field[1:].isdigit():
                         # The autopilot writes the records of one loop's outputs one after the other.
-                        at = _nearest(rcou.time_us, table.time_us)
+                        at = nearest(rcou.time_us, table.time_us)
                         pulses[int(field[1:])] = values if table is rcou else values[at]
         banks = []
         for port in range(2):
@@ -219,42 +208,13 @@ class _Translation:
         return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
     def _vfr_hud(self) -> Iterator[Columns]:
-        sources = [
-            (self._tables[name], field)
-            for name, field in _AIR_SPEED.items()
-            if name in self._tables and field in self._tables[name].fields
-        ]
-        if not sources:
+        found = air_data(self._tables, self._air_interrupted)
+        if found is None:
             return
-        (air, field), *spare = sources
-        order, time_us, speed = air.order, air.time_us, air.fields[field].astype(np.float64)
-        if "ARSP" in self._interrupted and spare:
-            # The autopilot's own air speed goes on without a sensor.
-            stand_in, spare_field = spare[0]
-            rows = _away_from(air.time_us, stand_in.time_us)
-            text = f"Air speed: the autopilot's own ({spare_field}) stands in where no sensor was healthy"
-            self._said.append(Said(int(stand_in.order[0]), int(stand_in.time_us[0]), text))
-            order = np.concatenate([order, stand_in.order[rows]])
-            time_us = np.concatenate([time_us, stand_in.time_us[rows]])
-            speed = np.concatenate([speed, stand_in.fields[spare_field][rows]])
-        climb = np.full(len(order), np.nan)
-        for record in _CLIMB:
-            climb = np.where(np.isnan(climb), -self._known(order, record, "VD"), climb)
-        fields: dict[str, ArrayLike] = {
-            "airspeed": speed,
-            "throttle": self._known(order, "CTUN", "ThO"),
-            "alt": self._known(order, "POS", "RelHomeAlt"),
-            "climb": np.where(np.isnan(climb), self._known(order, "BARO", "CRt"), climb),
-        }
-        yield self._made("VFR_HUD", order + 1, time_us, fields)
-
-    def _known(self, at: IntArray, record: str, name: str) -> NDArray[np.float64]:
-        """The newest value of a field in another record at each place, NaN where there is none."""
-        table = self._tables.get(record)
-        if table is None or name not in table.fields:
-            return np.full(len(at), np.nan)
-        table = table.first_instance()
-        return latest(at, table.order, table.fields[name])
+        if found.stands_in:
+            text = f"Air speed: the autopilot's own ({found.stands_in}) stands in where no sensor was healthy"
+            self._said.append(Said(int(found.order[0]), int(found.time_us[0]), text))
+        yield self._made("VFR_HUD", found.order + 1, found.time_us, dict(found.fields))
 
     def _global_position_int(self, pos: Table) -> Columns:
         fields: dict[str, ArrayLike] = {
@@ -279,22 +239,5 @@ class _Translation:
         return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
 
 
-def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
-    """Which of the other times lie further from all times than three of these are apart."""
-    if len(time_us) < 2:
-        return np.ones(len(other_us), dtype=np.bool_)
-    apart_us = np.abs(other_us - time_us[_nearest(other_us, time_us)])
-    far: NDArray[np.bool_] = apart_us > 3.0 * float(np.median(np.diff(time_us)))
-    return far
-
-
 def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:
     return (time_us + 500) // 1000
-
-
-def _nearest(at_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Index of the record nearest to each time asked for, the earlier of two."""
-    after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
-    before = after - 1
-    after = np.minimum(after, len(time_us) - 1)
-    return np.where(at_us - time_us[before] <= time_us[after] - at_us, before, after)
