@@ -21,7 +21,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.messages import Columns
 from advisor.mavlink.connection import parse_connection
-from advisor.mavlink.frames import FrameScanner
+from advisor.mavlink.frames import FrameScanner, Received
 from advisor.mavlink.framing import Frame
 from advisor.mavlink.health import LinkStatistics, Notice
 from advisor.mavlink.intake import Intake
@@ -167,15 +167,17 @@ class Link:
         """How the link is doing now."""
         now_s = time.monotonic()
         counters = self._intake.counters
-        vehicle = counters.of(self._intake.vehicle)
+        senders = self._scanner.statistics.senders
+        vehicle = senders.get(self._intake.vehicle, Received()) if self._intake.vehicle else Received()
         return LinkStatistics(
             connected=self._transport is not None,
             vehicle=self._intake.vehicle,
             messages=counters.messages,
             messages_per_s=counters.rate(now_s),
-            vehicle_messages=vehicle.received,
+            vehicle_messages=vehicle.frames,
             lost=vehicle.lost,
-            duplicated=vehicle.duplicated,
+            repeated=vehicle.repeated,
+            repeated_after_s=vehicle.repeated_after_s,
             late=vehicle.late,
             bad_crc=self._intake.bad_crc,
             garbage_bytes=self._intake.garbage_bytes,

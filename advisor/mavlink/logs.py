@@ -5,12 +5,16 @@ from pathlib import Path
 
 from advisor.flight.messages import Columns
 from advisor.mavlink import ardupilot_log, dataflash, ulog
-from advisor.mavlink.tlog import read_tlog
+from advisor.mavlink.frames import FrameScanner
+from advisor.mavlink.tlog import scan_tlog
 from advisor.problems import UnusableInputError
 
 
 def open_log(
-    path: Path, wanted: Iterable[str] | None = None, key: bytes | None = None
+    path: Path,
+    wanted: Iterable[str] | None = None,
+    key: bytes | None = None,
+    scanner: FrameScanner | None = None,
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``.
 
@@ -24,6 +28,8 @@ def open_log(
         Names of the messages to give; all that are defined by default.
     key : bytes, optional
         Signing key of a tlog.
+    scanner : FrameScanner, optional
+        Reads a tlog in place of one made with ``wanted`` and ``key``; its statistics then tell of the log.
 
     Raises
     ------
@@ -36,7 +42,7 @@ def open_log(
         return ulog.read_ulog(path, wanted)
     if beginning.startswith(dataflash.HEADER):
         return ardupilot_log.read_dataflash(path, wanted)
-    return read_tlog(path, wanted, key)
+    return scan_tlog(path, scanner or FrameScanner(wanted, key))
 
 
 def _beginning(path: Path) -> bytes:
