@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.events import Activity
+from advisor.flight.flights import FlightHeard
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
@@ -58,5 +59,11 @@ class CampaignState:
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()
     """Sentences for the event log, oldest first."""
+    flight: int = 0
+    """Which log or link is being heard, 0 for the first."""
+    boot: int = 0
+    """Which power-on of the vehicle in this log or link, 0 for the first."""
+    flights: tuple[FlightHeard, ...] = ()
+    """Every log and link so far, the one being heard last."""
     activity: tuple[Activity, ...] = ()
     """Movements of the elevator that were no test inputs, oldest first; alike neighbours are one."""

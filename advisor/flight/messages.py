@@ -32,6 +32,8 @@ class Columns:
     fields: Mapping[str, NDArray[Any]]
     """Field name to raw values, shape (n,) or (n, k), in the units of the message definition.
     Text fields are arrays of ``bytes`` (NumPy kind ``S``)."""
+    flight: int = 0
+    """Which log or link of a campaign the messages are of, 0 for the first; ``order`` rises within it."""
 
     def __len__(self) -> int:
         return len(self.order)
