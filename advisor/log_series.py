@@ -11,8 +11,7 @@ import numpy as np
 
 from advisor.by_hand import ByHand, on_all
 from advisor.flight.messages import Columns
-from advisor.marks_file import keep_by_hand, read_by_hand
-from advisor.mavlink.logs import open_log
+from advisor.marks_file import read_by_hand
 from advisor.problems import Problem, UnusableInputError
 
 _SINCE_1970_S = 1e9
@@ -50,12 +49,33 @@ class LogSeries:
 
     def batches(self) -> Iterator[list[Columns]]:
         """The messages of all logs; a log that cannot be read is left out, see ``unreadable``."""
+        # The log reader takes longer to load than the first screen to paint.
+        from advisor.mavlink.logs import open_log
+
         for flight, log in enumerate(self.logs):
             try:
                 for columns in open_log(log):
                     yield of_flight(columns, flight)
             except UnusableInputError as error:
                 self.unreadable[flight] = error.problem
+
+    def load(self) -> list[Columns]:
+        """The messages of all logs that can be read, at once.
+
+        Raises
+        ------
+        UnusableInputError
+            No log can be read.
+        """
+        columns = [column for batch in self.batches() for column in batch]
+        if len(self.unreadable) == len(self.logs):
+            raise UnusableInputError.of(list(self.unreadable.values()))
+        return columns
+
+    def said(self) -> list[str]:
+        """Sentences on the order of the logs, and on those that could not be read."""
+        wrong = [problem.about(self.names[flight]) for flight, problem in self.unreadable.items()]
+        return [*([self.order_said] if self.reordered else []), *wrong]
 
     def read_by_hand(self) -> ByHand:
         """What was decided by hand on every log.
@@ -66,11 +86,6 @@ class LogSeries:
             As :func:`advisor.marks_file.read_by_hand`.
         """
         return on_all([read_by_hand(log) for log in self.logs])
-
-    def keep_by_hand(self, before: ByHand, by_hand: ByHand) -> str:
-        """Keep the decisions beside the logs that they concern; a sentence says where."""
-        changed = [n for n in range(len(self.logs)) if by_hand.on_flight(n) != before.on_flight(n)]
-        return "; ".join(keep_by_hand(self.logs[n], by_hand.on_flight(n)) for n in changed)
 
 
 def of_flight(columns: Sequence[Columns], flight: int) -> list[Columns]:
@@ -87,6 +102,8 @@ def _oldest_first(logs: Sequence[Path]) -> list[Path]:
 
 def _began_s(log: Path) -> float:
     """When a log began, s since 1970: smaller for one without dates, infinite for one that cannot be read."""
+    from advisor.mavlink.logs import open_log
+
     try:
         first = next(open_log(log), [])
     except UnusableInputError:

@@ -38,6 +38,7 @@ def advise(
     tempo: Tempo | None = None,
     by_hand: "ByHand | None" = None,
     marks: "Sequence[Mark]" = (),
+    names: Sequence[str] = (),
 ) -> None:
     """Run a campaign on a source: in the terminal application, or as lines of text.
 
@@ -55,6 +56,8 @@ def advise(
         What was decided by hand on this flight before.
     marks
         Marks of the command line.
+    names
+        What the logs of the campaign are called, in their order.
 
     Raises
     ------
@@ -64,7 +67,7 @@ def advise(
     from advisor.by_hand import NOTHING
 
     before = by_hand or NOTHING
-    make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks))
+    make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
     if headless():
         _narrate(open_source(), make_campaign(settle=False, by_hand=before))
     else:
@@ -76,12 +79,13 @@ def _campaign(
     target_system: int | None,
     tell: Listener | None,
     marks: "Sequence[Mark]",
+    names: Sequence[str],
     settle: bool,
     by_hand: "ByHand",
 ) -> "Campaign":
     from advisor.campaign import Campaign
 
-    return Campaign(aircraft, target_system, settle=settle, tell=tell, by_hand=by_hand, marks=marks)
+    return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
 
 
 def _show(

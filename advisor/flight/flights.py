@@ -142,13 +142,14 @@ class Flights:
         """No more messages will come: whatever is open is closed."""
         if self._foreign is not None:
             return []
-        return [*self._through(self.stream.finish()), *self._compare_elevators()]
+        events = [*self._through(self.stream.finish()), *self._compare_elevators()]
+        if len(self._names) > 1:
+            events += [Notice(p.code, p.about(self.name)) for p in self.stream.problems()]
+        return events
 
     def _end(self) -> list[FlightEvent]:
         """Close a flight that another one follows."""
         events = self.finish()
-        wrong = self.stream.marks.problems()
-        events += [Notice(problem.code, str(problem)) for problem in wrong]
         if self.flight == self._told_of:
             self._past.append(self._so_far(self.stream.channels, over=True))
             self._notes += self.stream.elevator_notes
