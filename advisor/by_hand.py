@@ -27,7 +27,7 @@ class Remark:
     def concerns(self, maneuver: Maneuver) -> bool:
         """Whether the moment lies in a manoeuvre, its lead-in included."""
         span = maneuver.span
-        here = (self.flight, self.boot) == (maneuver.flight, maneuver.boot)
+        here = (self.flight, self.boot) == maneuver.power_on
         return here and span.start_s - LEAD_IN_S <= self.at_s < span.end_s
 
 

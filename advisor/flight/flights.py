@@ -196,9 +196,8 @@ class Flights:
 
     def _once(self, maneuver: Maneuver) -> FlightEvent:
         """A manoeuvre with its number in the campaign, be it new or known."""
-        power_on = (maneuver.flight, maneuver.boot)
         for i, known in enumerate(self._found):
-            if (known.flight, known.boot) != power_on and are_one(maneuver, known):
+            if known.power_on != maneuver.power_on and are_one(maneuver, known):
                 self._again += 1
                 again = replace(maneuver, number=known.number)
                 takes_place = is_fuller(again, known)

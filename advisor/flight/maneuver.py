@@ -43,6 +43,11 @@ class Maneuver:
     flight: int = 0
     """Which log or link of the campaign the record is of, 0 for the first."""
 
+    @property
+    def power_on(self) -> tuple[int, int]:
+        """Flight and power-on in which the manoeuvre was recorded."""
+        return self.flight, self.boot
+
     def later(self, by_s: float) -> "Maneuver":
         """The same on a clock that shows ``by_s`` more."""
         span = replace(
