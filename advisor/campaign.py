@@ -228,7 +228,7 @@ class Campaign:
                 case FlightBegan(flight, name):
                     self._log(f"{name}: flight {flight + 1} begins")
                 case Rebooted(boot):
-                    self._log(f"the vehicle rebooted: power-on {boot + 1} begins")
+                    self._log(f"the vehicle's clock went back, as after a reboot: power-on {boot + 1}")
         if self._tell is not None:
             for happened in told:
                 self._tell(happened)

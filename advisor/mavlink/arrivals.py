@@ -58,7 +58,7 @@ def _heard_ago(packets: Ints, newest: Ints, sequence: int, mark: int, now_us: in
     while number > newest[COUNT] - PACKETS and number > 0:
         row = number % PACKETS
         ago_us = now_us - packets[row, _AT_US]
-        if ago_us > REPEAT_US:
+        if abs(ago_us) > REPEAT_US:  # long ago, or before the station's clock was set back
             return -1
         if packets[row, _MARK] == mark and ago_us >= 0:
             return int(ago_us)

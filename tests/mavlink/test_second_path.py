@@ -59,7 +59,7 @@ def test_a_late_path_that_loses_differently_neither_reboots_the_vehicle_nor_smea
     assert [j.verdict.accepted for j in state.maneuvers] == [
         j.verdict.accepted for j in analyzed(log).maneuvers
     ]
-    assert not any("rebooted" in notice for notice in state.notices)
+    assert not any("reboot" in notice for notice in state.notices)
 
 
 def test_of_two_paths_side_by_side_the_union_is_kept(log: Path) -> None:
@@ -123,3 +123,25 @@ def test_how_a_log_of_two_paths_is_cut_into_pieces_does_not_matter(log: Path) ->
     found = [c for i in range(0, len(heard), 999) for c in pieces.feed(heard[i : i + 999])] + pieces.close()
     assert one_by_one(found) == at_once
     assert pieces.statistics == whole.statistics
+
+
+def test_two_batteries_in_one_log_are_two_power_ons_though_the_stations_clock_was_set_back(
+    log: Path, tmp_path: Path
+) -> None:
+    both = tmp_path / "both.tlog"
+    both.write_bytes(log.read_bytes() + recorded("uav", 1.0, seed=12, maneuvers=TWO).read_bytes())
+    maneuvers = [judged.maneuver for judged in analyzed(both).maneuvers]
+    assert [m.boot for m in maneuvers] == [0, 0, 1, 1]
+    assert [m.number for m in maneuvers] == [1, 2, 3, 4]
+
+
+def test_a_log_that_two_overlapping_logs_were_joined_to_counts_each_manoeuvre_once(
+    log: Path, tmp_path: Path
+) -> None:
+    joined = tmp_path / "joined.tlog"
+    joined.write_bytes(log.read_bytes() + log.read_bytes())
+    once, twice = analyzed(log), analyzed(joined)
+    assert once.model is not None
+    assert twice.model is not None
+    assert len(twice.maneuvers) == len(once.maneuvers)
+    assert np.array_equal(twice.model.covariance, once.model.covariance)
