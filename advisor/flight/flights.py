@@ -73,7 +73,7 @@ class Flights:
         names: Sequence[str] = (),
     ) -> None:
         self._aircraft, self._target_system = aircraft, target_system
-        self._marks, self._names = tuple(marks), tuple(names)
+        self._marks, self._names = tuple(marks), tuple(names) if len(names) > 1 else ()
         self._found: list[Maneuver] = []
         self._past: list[FlightHeard] = []
         self._notes: list[str] = []
@@ -133,7 +133,7 @@ class Flights:
                 self._begin(flight)
             if flight != self._told_of:
                 self._told_of = flight
-                events += [FlightBegan(flight, self._name(flight))] if len(self._names) > 1 else []
+                events += [FlightBegan(flight, self._name(flight))] if self._names else []
             if self._foreign is None:
                 events += self._through(self.stream.feed(list(part)))
         return events
@@ -143,7 +143,7 @@ class Flights:
         if self._foreign is not None:
             return []
         events = [*self._through(self.stream.finish()), *self._compare_elevators()]
-        if len(self._names) > 1:
+        if self._names:
             events += [Notice(p.code, p.about(self.name)) for p in self.stream.problems()]
         return events
 
