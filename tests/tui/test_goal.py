@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import pytest
 
+from advisor.aircraft import Aircraft
 from advisor.tui.goal import Goal
-from advisor.tui.view import View
+from advisor.tui.view import view_before_first
 
-STATE = View().state
+STATE = view_before_first(Aircraft(), "x", None).state
 
 
 @pytest.mark.parametrize(("flight", "boot"), [(0, 0), (1, 0)])
