@@ -1,9 +1,11 @@
-"""What an engineer decides by hand on one flight: marks, exclusions, notes, remarks.
+"""What an engineer decides by hand on the flights of a campaign: marks, exclusions, notes, remarks.
 
 Each decision is bound to vehicle time and not to a manoeuvre's number: numbers move when a mark is added.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import Mark
@@ -19,16 +21,19 @@ class Remark:
     text: str
     boot: int = 0
     """Which power-on, 0 for the first in the log."""
+    flight: int = 0
+    """Which log or link of the campaign, 0 for the first."""
 
     def concerns(self, maneuver: Maneuver) -> bool:
         """Whether the moment lies in a manoeuvre, its lead-in included."""
         span = maneuver.span
-        return self.boot == maneuver.boot and span.start_s - LEAD_IN_S <= self.at_s < span.end_s
+        here = (self.flight, self.boot) == maneuver.power_on
+        return here and span.start_s - LEAD_IN_S <= self.at_s < span.end_s
 
 
 @dataclass(frozen=True, slots=True)
 class ByHand:
-    """All decisions by hand on one flight, in the order in which they were made."""
+    """All decisions by hand, in the order in which they were made."""
 
     marks: tuple[Mark, ...] = ()
     """Stretches that the engineer calls manoeuvres."""
@@ -65,10 +70,34 @@ class ByHand:
         """The decisions with a further mark."""
         return replace(self, marks=(*self.marks, mark))
 
+    def on_flight(self, flight: int) -> "ByHand":
+        """The decisions on one log or link, as if it were the only one."""
+        return self._each(lambda one: [replace(one, flight=0)] if one.flight == flight else [])
+
+    def as_flight(self, flight: int) -> "ByHand":
+        """The decisions on a log or link that is read alone, as those on a flight of a campaign."""
+        return self._each(lambda one: [replace(one, flight=flight)])
+
+    def _each(self, changed: Callable[[Any], list[Any]]) -> "ByHand":
+        """The decisions, each of them as ``changed`` gives it."""
+        sections = (self.marks, self.excluded, self.notes, self.remarks)
+        return ByHand(*(tuple(new for one in section for new in changed(one)) for section in sections))
+
 
 NOTHING = ByHand()
 """No decision by hand."""
 
 
+def on_all(decided: Sequence[ByHand]) -> ByHand:
+    """What was decided on each log of a campaign, together."""
+    flights = [one.as_flight(flight) for flight, one in enumerate(decided)]
+    return ByHand(
+        tuple(mark for one in flights for mark in one.marks),
+        tuple(remark for one in flights for remark in one.excluded),
+        tuple(remark for one in flights for remark in one.notes),
+        tuple(remark for one in flights for remark in one.remarks),
+    )
+
+
 def _on(maneuver: Maneuver, text: str) -> Remark:
-    return Remark(round(maneuver.span.start_s, 3), text, maneuver.boot)
+    return Remark(round(maneuver.span.start_s, 3), text, maneuver.boot, maneuver.flight)

@@ -17,7 +17,9 @@ from advisor.event_log import EventLog
 from advisor.flight.events import (
     Activity,
     DataAgain,
+    FlightBegan,
     FlightEvent,
+    ManeuverAgain,
     ManeuverFlown,
     ModeChanged,
     NoData,
@@ -25,6 +27,7 @@ from advisor.flight.events import (
     Rebooted,
     VehicleFound,
 )
+from advisor.flight.flights import Flights
 from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import MARK_NOTICES, Mark
@@ -73,6 +76,8 @@ class Campaign:
         What was decided by hand on this flight before.
     marks
         Further marks, which win over those of ``by_hand`` and are not kept with them.
+    names
+        What the logs of the campaign are called, in their order; empty for a single one.
     """
 
     def __init__(
@@ -84,12 +89,13 @@ class Campaign:
         method: Method = "gauss-newton",
         by_hand: ByHand = NOTHING,
         marks: Sequence[Mark] = (),
+        names: Sequence[str] = (),
     ) -> None:
         self._aircraft = aircraft
         self._learnt = aircraft
         self._method: Method = method
         self._tell = tell
-        self._stream = FlightStream(aircraft, target_system, (*marks, *by_hand.marks))
+        self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names)
         self.by_hand = by_hand
         """Everything that has been decided by hand."""
         self._to_remark = list(by_hand.remarks)
@@ -108,7 +114,7 @@ class Campaign:
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
         """Take the next messages, in order of arrival; how they are cut into batches does not matter."""
-        told = self._take(self._stream.feed(list(columns)))
+        told = self._take(self._flights.feed(columns))
         self._repeat_remarks()
         return told
 
@@ -116,7 +122,7 @@ class Campaign:
         """The stream has ended: a manoeuvre that is complete but for its quiet end still counts."""
         if self._stream.marks.by_hand_since_s is not None:
             self.end_maneuver()
-        told = self._take(self._stream.finish())
+        told = self._take(self._flights.finish())
         self._ended = True
         self._decide()
         self._learn()
@@ -127,16 +133,16 @@ class Campaign:
     @property
     def state(self) -> CampaignState:
         """Everything a face may show, as of the newest message."""
-        stream = self._stream
-        flying = stream.so_far()
+        stream, flights = self._stream, self._flights
+        flying, channels = flights.so_far(), stream.channels
         settled = self._settling.follow(flying) if self._settling else None
         joined = self._joined
         return CampaignState(
             vehicle=stream.vehicle,
             now_s=stream.now_s,
-            duration_s=stream.duration_s,
+            duration_s=flights.duration_s,
             mode=stream.mode,
-            channels=stream.channels,
+            channels=channels,
             maneuvers=self._judged,
             flight_test=self._flight_test,
             model=self._together.estimate([judged.maneuver for judged in joined]),
@@ -145,7 +151,7 @@ class Campaign:
             settling=settled.estimate if settled else None,
             enough=settled.enough if settled else None,
             estimate_from=tuple(judged.maneuver.number for judged in joined),
-            elevator_notes=stream.elevator_notes,
+            elevator_notes=flights.elevator_notes,
             reader_notes=(
                 *self._reader_notes,
                 *(f"{d.sentence}; {d.fix}." for d in stream.frozen if not d.stops),
@@ -156,13 +162,16 @@ class Campaign:
             mark_notes=self._mark_notes,
             notices=self._notices.lines,
             notices_before=self._notices.before,
+            flight=flights.flight,
+            boot=stream.boot,
+            flights=flights.heard(channels, self._ended),
             activity=self._activity,
         )
 
     @property
     def problems(self) -> list[Problem]:
         """Why this stream cannot be used, as far as it has been heard; empty when it can."""
-        return self._stream.problems()
+        return self._flights.problems()
 
     def exclude(self, number: int, because: str) -> None:
         """Take a manoeuvre out of every decision; all that followed is decided again."""
@@ -175,7 +184,8 @@ class Campaign:
     def mark(self, text: str) -> None:
         """Set a mark in the event log at the newest vehicle time."""
         if math.isfinite(self._now_s):
-            self.by_hand = self.by_hand.remarking(Remark(self._now_s, text, self._stream.boot))
+            here = Remark(self._now_s, text, self._stream.boot, self._flights.flight)
+            self.by_hand = self.by_hand.remarking(here)
         self._log(f"mark: {text}", self._stream.now_s)
 
     def begin_maneuver(self) -> None:
@@ -192,7 +202,7 @@ class Campaign:
         if isinstance(ended, Notice):
             self._log(ended.text, self._stream.now_s)
             return
-        self.by_hand = self.by_hand.marking(ended)
+        self.by_hand = self.by_hand.marking(replace(ended, flight=self._flights.flight))
         self._log(f"a manoeuvre is marked from {ended.start_s:.1f} s to here", self._stream.now_s)
 
     def note(self, number: int, text: str) -> None:
@@ -235,12 +245,42 @@ class Campaign:
                     self._log("the data serve again", self._stream.now_s)
                 case VehicleFound(vehicle):
                     self._log(f"following {vehicle}")
+                case ManeuverAgain():
+                    told += self._heard_again(event)
+                case FlightBegan(flight, name):
+                    self._log(f"{name}: flight {flight + 1} begins")
                 case Rebooted(boot):
-                    self._log(f"the vehicle rebooted: flight {boot + 1} begins")
+                    self._log(f"the vehicle's clock went back, as after a reboot: power-on {boot + 1}")
         if self._tell is not None:
             for happened in told:
                 self._tell(happened)
         return told
+
+    def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
+        """A manoeuvre came a second time: the better record counts, and stays out if one of them does."""
+        maneuver = event.maneuver
+        i = self._index(maneuver.number)
+        known = self._history[i].excluded_because
+        because = known if known is not None else self.by_hand.excluded_because(maneuver)
+        where = f" in {self._flights.name}" if self._flights.name else ""
+        better = "; this record holds more and takes the place" if event.takes_place else ""
+        self._log(
+            f"manoeuvre {maneuver.number} comes again{where}: it counts once{better}", maneuver.span.end_s
+        )
+        if not event.takes_place and because == known:
+            return []
+        if event.takes_place:
+            self._maneuvers[i] = maneuver
+            self._history[i] = assess(maneuver, self._learnt, self._method)
+        self._history[i] = replace(self._history[i], excluded_because=because)
+        self._decide()
+        self._learn()
+        return [ManeuverJudged(self._judged[i], self._flight_test)] if event.takes_place else []
+
+    @property
+    def _stream(self) -> FlightStream:
+        """The flight being heard."""
+        return self._flights.stream
 
     @property
     def _now_s(self) -> float:
@@ -249,8 +289,8 @@ class Campaign:
 
     def _repeat_remarks(self) -> None:
         """Write the moments marked before into the event log, each at its time."""
-        now_s, boot = self._stream.now_s, self._stream.boot
-        for remark in [r for r in self._to_remark if (r.boot, r.at_s) <= (boot, now_s)]:
+        now = (self._flights.flight, self._stream.boot, self._stream.now_s)
+        for remark in [r for r in self._to_remark if (r.flight, r.boot, r.at_s) <= now]:
             self._to_remark.remove(remark)
             self._log(f"mark: {remark.text}", remark.at_s)
 

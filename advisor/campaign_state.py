@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator_guess import Guess
 from advisor.flight.events import Activity
+from advisor.flight.flights import FlightHeard
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
@@ -68,5 +69,11 @@ class CampaignState:
     """Sentences for the event log, the newest of them, oldest first."""
     notices_before: int = 0
     """How many sentences came before ``notices`` and are kept no longer."""
+    flight: int = 0
+    """Which log or link is being heard, 0 for the first."""
+    boot: int = 0
+    """Which power-on of the vehicle in this log or link, 0 for the first."""
+    flights: tuple[FlightHeard, ...] = ()
+    """Every log and link so far, the one being heard last."""
     activity: tuple[Activity, ...] = ()
     """Movements of the elevator that were no test inputs, oldest first; alike neighbours are one."""

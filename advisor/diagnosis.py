@@ -4,13 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from advisor.aircraft import Aircraft
 from advisor.by_hand import ByHand
 from advisor.flight.events import ManeuverFlown, Notice
 from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
+from advisor.flight.same import are_one, is_fuller
 from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
@@ -61,7 +60,7 @@ def _recorded(
     found: list[Maneuver] = []
     notes: list[str] = []
     wrong: list[Problem] = []
-    for log, decided in zip(logs, by_hand, strict=True):
+    for flight, (log, decided) in enumerate(zip(logs, by_hand, strict=True)):
         stream = FlightStream(aircraft, target_system, decided.marks)
         events = [event for columns in open_log(log) for event in stream.feed(columns)]
         events += stream.finish()
@@ -72,7 +71,7 @@ def _recorded(
         for maneuver in (e.maneuver for e in events if isinstance(e, ManeuverFlown)):
             because = decided.excluded_because(maneuver)
             if because is None:
-                found.append(maneuver)
+                found.append(replace(maneuver, flight=flight))
             else:
                 notes.append(f"{name}: manoeuvre {maneuver.number} is left out by hand: {because}.")
     if wrong:
@@ -81,20 +80,15 @@ def _recorded(
 
 
 def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
-    """Without what comes again, as from a copy of a log: it would confirm itself."""
+    """Without what comes again, as from a copy of a log: it would confirm itself. The fuller record stays."""
     found: list[Maneuver] = []
     for maneuver in recorded:
-        if not any(_is_the_same(maneuver, other) for other in found):
+        known = next((m for m in found if m.power_on != maneuver.power_on and are_one(maneuver, m)), None)
+        if known is None:
             found.append(replace(maneuver, number=len(found) + 1))
+        elif is_fuller(maneuver, known):
+            found[known.number - 1] = replace(maneuver, number=known.number)
     return found
-
-
-def _is_the_same(a: Maneuver, b: Maneuver) -> bool:
-    """Whether two records are of one manoeuvre: every channel at the same stamps, to the last digit."""
-    return a.channels.keys() == b.channels.keys() and all(
-        np.array_equal(channel.t, b.channels[name].t) and np.array_equal(channel.y, b.channels[name].y)
-        for name, channel in a.channels.items()
-    )
 
 
 def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:

@@ -97,6 +97,12 @@ def keep_by_hand(log: Path, by_hand: ByHand) -> str:
     return f"decisions by hand are kept in {path}"
 
 
+def keep_on_all(logs: Sequence[Path], before: ByHand, by_hand: ByHand) -> str:
+    """Keep the decisions on a campaign, each beside its log, where they are not what they were before."""
+    flights = [n for n in range(len(logs)) if by_hand.on_flight(n) != before.on_flight(n)]
+    return "; ".join(keep_by_hand(logs[n], by_hand.on_flight(n)) for n in flights)
+
+
 def _boot(boot: int | None) -> dict[str, int]:
     return {"boot": boot} if boot else {}
 

@@ -1,4 +1,4 @@
-"""``advisor analyze``: a log judged without a screen."""
+"""``advisor analyze``: logs judged without a screen."""
 
 import json
 from pathlib import Path
@@ -7,28 +7,30 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from advisor.aircraft import Rule
+from advisor.by_hand import NOTHING
 from advisor.campaign_state import CampaignState
 from advisor.commands.options import (
     UNUSABLE,
     aircraft_option,
-    decided_on,
     json_option,
     maneuver_option,
     no_marks_option,
     read_aircraft,
+    refuse_marks_on_several,
     rule_option,
     target_system_option,
 )
 from advisor.printable import printable
-from advisor.problems import Problem, UnusableInputError
+from advisor.problems import Problem
 
 if TYPE_CHECKING:
     from advisor.campaign import Campaign
     from advisor.flight.marks import Mark
+    from advisor.log_series import LogSeries
 
 
 @click.command
-@click.argument("log", type=click.Path(path_type=Path))
+@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
 @aircraft_option
 @rule_option
 @target_system_option
@@ -46,7 +48,7 @@ if TYPE_CHECKING:
 )
 @json_option
 def command(
-    log: Path,
+    logs: tuple[Path, ...],
     aircraft_file: Path | None,
     rule: Rule | None,
     target_system: int | None,
@@ -58,47 +60,65 @@ def command(
 ) -> int:
     """Every manoeuvre's verdict, the estimates, stop or continue: as text, or as one JSON document.
 
+    Several logs are one campaign of several flights: manoeuvres are numbered through, and one that two logs
+    hold counts once.
+
     \b
     Example:
       advisor analyze flight.tlog --aircraft my-aircraft.yaml
+      advisor analyze battery-1.tlog battery-2.bin --aircraft my-aircraft.yaml
       advisor analyze flight.tlog --maneuver +12:+24 --maneuver 312.5:320
       advisor analyze flight.tlog --json | python -m json.tool
     """
     aircraft = read_aircraft(aircraft_file, rule)
-    by_hand = decided_on(log, no_marks)
+    refuse_marks_on_several(marks, logs)
+    from advisor.log_series import LogSeries
+
+    series = LogSeries(logs)
+    by_hand = NOTHING if no_marks else series.read_by_hand()
     from advisor.campaign import Campaign
 
-    campaign = Campaign(aircraft, target_system, method=method, by_hand=by_hand, marks=marks)
-    state, problems = _analyze(log, campaign)
+    campaign = Campaign(
+        aircraft, target_system, method=method, by_hand=by_hand, marks=marks, names=series.names
+    )
+    state, left_out = _analyze(series, campaign)
+    usable = len(left_out) < len(logs)
+    said = [series.order_said] if series.order_said else []
+    for flight, problems in sorted(left_out.items()):
+        said += [problem.about(series.names[flight]) for problem in problems]
     if as_json:
         from advisor.report.document import analysis_document
 
-        click.echo(
-            json.dumps(analysis_document(state, str(log), aircraft, problems), allow_nan=False, indent=1)
-        )
-    elif state is not None and not problems:
+        files = [str(log) for log in series.logs]
+        document = analysis_document(state, files, aircraft, left_out, said)
+        click.echo(json.dumps(document, allow_nan=False, indent=1))
+    elif state is not None and usable:
         from advisor.report.console import PlainConsole
         from advisor.report.text import AnalysisText
 
-        shown = AnalysisText(state, printable(log.name), aircraft, every_movement)
+        shown = AnalysisText(state, list(map(printable, series.names)), aircraft, every_movement)
         PlainConsole(soft_wrap=True).print(shown)
     elif state is not None and every_movement:
         from advisor.report.text import activity_line
 
         for activity in state.activity:
             click.echo(activity_line(activity))
-    for problem in problems:
-        click.echo(problem.about(log.name), err=True)
-    return UNUSABLE if problems else 0
+    for sentence in said:
+        click.echo(sentence, err=True)
+    return 0 if usable else UNUSABLE
 
 
-def _analyze(log: Path, campaign: "Campaign") -> tuple[CampaignState | None, list[Problem]]:
-    from advisor.mavlink.logs import open_log
-
-    try:
-        for columns in open_log(log):
-            campaign.feed(columns)
-    except UnusableInputError as error:
-        return None, [error.problem]
+def _analyze(
+    series: "LogSeries", campaign: "Campaign"
+) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
+    """The campaign at the end of its logs, None when none is readable; why logs do not count, by flight."""
+    for columns in series.batches():
+        campaign.feed(columns)
+    unreadable: dict[int, tuple[Problem, ...]] = {
+        flight: (problem,) for flight, problem in series.unreadable.items()
+    }
+    if len(unreadable) == len(series.logs):
+        return None, unreadable
     campaign.finish()
-    return campaign.state, campaign.problems
+    state = campaign.state
+    return state, {one.flight: one.problems for one in state.flights if one.problems} | unreadable

@@ -93,12 +93,16 @@ def _first_obstacle(findings: "Examination | None") -> Problem | None:
 
 def _examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Examination":
     from advisor.doctor.examiner import Examiner
+    from advisor.mavlink.frames import FrameScanner, Received
     from advisor.mavlink.logs import open_log
 
-    examiner = Examiner(aircraft, target_system)
-    for columns in open_log(log):
+    examiner, scanner = Examiner(aircraft, target_system), FrameScanner()
+    for columns in open_log(log, scanner=scanner):
         examiner.feed(columns)
-    return examiner.findings()
+    vehicle = examiner.vehicle
+    senders = scanner.statistics.senders
+    came = senders.get((vehicle.system, vehicle.component), Received()) if vehicle else Received()
+    return examiner.findings(repeated_percent=came.repeated_percent, repeated_after_s=came.repeated_after_s)
 
 
 def _examine_link(
@@ -121,4 +125,5 @@ def _examine_link(
             examiner.feed(link.read(0.1))
         for notice in link.take_notices():
             click.echo(notice.text, err=True)
-        return examiner.findings(lost_percent=link.statistics.lost_percent)
+        came = link.statistics
+        return examiner.findings(came.lost_percent, came.repeated_percent, came.repeated_after_s)

@@ -18,6 +18,7 @@ from advisor.commands.options import (
     maneuver_option,
     no_marks_option,
     read_aircraft,
+    refuse_marks_on_several,
     refuse_unwritable,
     target_system_option,
 )
@@ -95,11 +96,7 @@ def command(
         return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
     if not logs:
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
-    if marks and len(logs) > 1:
-        raise ConfigurationError(
-            "--maneuver does not say in which of several logs: write the marks into LOG.maneuvers.yaml "
-            "beside each."
-        )
+    refuse_marks_on_several(marks, logs)
     decided = [decided_on(log, no_marks) for log in logs]
     by_hand = [replace(before, marks=(*marks, *before.marks)) for before in decided]
     if out is not None:

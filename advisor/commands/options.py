@@ -126,6 +126,21 @@ def parse_mark(text: str) -> "Mark":
     return Mark(start_s, end_s, from_log_start=relative[0], name=f"--maneuver {text}")
 
 
+def refuse_marks_on_several(marks: "Sequence[Mark]", logs: Sequence[Path]) -> None:
+    """Refuse marks of the command line on several logs.
+
+    Raises
+    ------
+    ConfigurationError
+        There are marks, and more than one log.
+    """
+    if marks and len(logs) > 1:
+        raise ConfigurationError(
+            "--maneuver does not say in which of several logs: write the marks into LOG.maneuvers.yaml "
+            "beside each."
+        )
+
+
 def decided_on(log: Path, no_marks: bool) -> "ByHand":
     """What was decided by hand on a log before, as the file beside the log keeps it.
 

@@ -1,4 +1,4 @@
-"""``advisor replay``: a log played like a flight."""
+"""``advisor replay``: logs played like a flight."""
 
 from functools import partial
 from math import inf
@@ -10,15 +10,14 @@ import click
 from advisor.aircraft import Rule
 from advisor.commands.options import (
     aircraft_option,
-    decided_on,
     maneuver_option,
     no_marks_option,
     read_aircraft,
+    refuse_marks_on_several,
     rule_option,
     target_system_option,
 )
 from advisor.commands.screen import advise
-from advisor.flight.messages import Columns
 from advisor.printable import printable
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ def _speed(ctx: click.Context, parameter: click.Parameter, text: str) -> float:
 
 
 @click.command
-@click.argument("log", type=click.Path(path_type=Path))
+@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
     "--speed", default="1", show_default=True, callback=_speed, metavar="N|max", help="Multiple of real time."
 )
@@ -48,7 +47,7 @@ def _speed(ctx: click.Context, parameter: click.Parameter, text: str) -> float:
 @maneuver_option
 @no_marks_option
 def command(
-    log: Path,
+    logs: tuple[Path, ...],
     speed: float,
     aircraft_file: Path | None,
     rule: Rule | None,
@@ -56,29 +55,37 @@ def command(
     marks: "tuple[Mark, ...]",
     no_marks: bool,
 ) -> None:
-    """The same screens on a log: pause, step, speed, jump to a manoeuvre.
+    """The same screens on logs: pause, step, speed, jump to a manoeuvre.
 
-    Without a terminal, or with HEADLESS=1, the verdicts come as text.
+    Several logs are one campaign of several flights, played one after the other. Without a terminal, or with
+    HEADLESS=1, the verdicts come as text.
 
     \b
     Example:
       advisor replay logs/arduplane-calm.tlog --speed 10
+      advisor replay battery-1.tlog battery-2.tlog --speed max
       advisor replay flight.tlog --maneuver +12:+24
     """
     aircraft = read_aircraft(aircraft_file, rule)
-    by_hand = decided_on(log, no_marks)
+    refuse_marks_on_several(marks, logs)
+    from advisor.by_hand import NOTHING
+    from advisor.log_series import LogSeries
     from advisor.tui.replay import LogPlayer
     from advisor.tui.source import Tempo
 
-    keep_beside = None if no_marks else log
-    title = printable(log.name)
-    player = partial(LogPlayer, title, partial(_columns, log), speed, keep_beside=keep_beside)
+    series = LogSeries(logs)
+    by_hand = NOTHING if no_marks else series.read_by_hand()
+    title = printable(", ".join(series.names))
+    player = partial(
+        LogPlayer,
+        title,
+        series.load,
+        speed,
+        keep_beside=() if no_marks else series.logs,
+        before=by_hand,
+        said=series.said,
+    )
     tempo = Tempo(speed=speed)
-    advise(player, title, aircraft, target_system, tempo=tempo, by_hand=by_hand, marks=marks)
-
-
-def _columns(log: Path) -> list[Columns]:
-    # The log reader takes longer to load than the first screen to paint.
-    from advisor.mavlink.logs import open_log
-
-    return [columns for batch in open_log(log) for columns in batch]
+    advise(
+        player, title, aircraft, target_system, tempo=tempo, by_hand=by_hand, marks=marks, names=series.names
+    )

@@ -37,6 +37,7 @@ def advise(
     by_hand: "ByHand | None" = None,
     marks: "Sequence[Mark]" = (),
     kept: "Callable[[], ByHand] | None" = None,
+    names: Sequence[str] = (),
 ) -> None:
     """Run a campaign on a source: in the terminal application, or as lines of text.
 
@@ -57,6 +58,8 @@ def advise(
     kept
         Reads what was decided by hand since the start, for a source that can be read from its
         beginning again: the death of the estimating process then ends nothing.
+    names
+        What the logs of the campaign are called, in their order.
 
     Raises
     ------
@@ -68,7 +71,7 @@ def advise(
     from advisor.tui.remote import Task
 
     before = by_hand or NOTHING
-    make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks))
+    make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
     if not headless():
         task = Task(open_source, partial(make_campaign, True), before, kept)
         _show(task, aircraft, title, tempo)
@@ -84,12 +87,13 @@ def _campaign(
     target_system: int | None,
     tell: Listener | None,
     marks: "Sequence[Mark]",
+    names: Sequence[str],
     settle: bool,
     by_hand: "ByHand",
 ) -> "Campaign":
     from advisor.campaign import Campaign
 
-    return Campaign(aircraft, target_system, settle=settle, tell=tell, by_hand=by_hand, marks=marks)
+    return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
 
 
 def _show(task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:

@@ -14,6 +14,7 @@ from advisor.doctor.instruments import (
     distrust_limits,
     elevator_limits,
     loss_limits,
+    path_limits,
     sender_limits,
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
@@ -68,13 +69,25 @@ class Examiner:
         if self._survey is not None:
             self._survey.feed(columns)
 
-    def findings(self, lost_percent: float | None = None) -> Examination:
+    @property
+    def vehicle(self) -> Vehicle | None:
+        """Who is examined; None before its first heartbeat."""
+        return self._stream.vehicle
+
+    def findings(
+        self,
+        lost_percent: float | None = None,
+        repeated_percent: float = 0.0,
+        repeated_after_s: float = np.nan,
+    ) -> Examination:
         """What was found; to be called once, at the end.
 
         Parameters
         ----------
         lost_percent
             Share of packets lost, when a live link counted them.
+        repeated_percent, repeated_after_s
+            Share of the vehicle's packets that came twice, and how much later they came again.
         """
         self._keep(self._stream.finish())
         vehicle = self._stream.vehicle
@@ -120,6 +133,7 @@ class Examiner:
         limits += sender_limits(self._stream.two_senders)
         limits += company_limits(self._stream.other_systems) if not self._chosen else []
         limits += loss_limits(lost_percent)
+        limits += path_limits(repeated_percent, repeated_after_s)
         rates = {name: channel.renewed_hz for name, channel in paced.items()}
         return Examination(
             vehicle=vehicle,

@@ -15,6 +15,8 @@ from advisor.problems import Problem
 COARSE_DEG = 0.5
 """Resolution of the command beyond which small steps are no longer steps."""
 LOSSY_PERCENT = 5.0
+REPEATED_PERCENT = 1.0
+"""A network repeats single packets; a second path repeats more, as a share of the packets, in percent."""
 DRIFTING_PERCENT = 1.0
 STRAYED_SHARE = 0.01
 """Of a message's stamps; around a reboot a few always fit on neither clock."""
@@ -149,5 +151,18 @@ def loss_limits(lost_percent: float | None) -> list[Limit]:
             "loss",
             f"{shown} % of the packets are lost (limit {most} %)",
             "lower the rates of messages nobody needs, or check the radio link",
+        )
+    ]
+
+
+def path_limits(repeated_percent: float, after_s: float) -> list[Limit]:
+    """A second path that brings the packets again; a packet counts once all the same."""
+    if repeated_percent <= REPEATED_PERCENT:
+        return []
+    return [
+        Limit(
+            "second_path",
+            f"a second path repeats {repeated_percent:.0f} % of the packets, {after_s:.1f} s late",
+            "listen to one path only: one radio, one output of the router, one --master; the earlier one",
         )
     ]

@@ -4,6 +4,8 @@
 counter of microseconds (SERVO_OUTPUT_RAW, and AOA_SSA as ArduPilot fills it) is the true
 time less a whole number of its 71.6 minutes, and the master says how many. Nothing is
 remembered per message, so neither a silence, a duplicate nor a late packet can mislead it.
+A clock that goes back by less than `_OLD_MS` is no reboot: nobody tests in the first seconds
+after one.
 """
 
 from dataclasses import dataclass
@@ -15,7 +17,9 @@ from advisor.flight.messages import FloatArray, IntArray
 _MS = 1e-3
 _WRAP_MS = 2**32
 _LATE_MS = 2000
-"""A master stamp older than the newest by less than this is a late packet."""
+"""A master stamp older than the newest by less than this is a late packet, put where it belongs."""
+_OLD_MS = 20_000
+"""One older by less than this came by a second path and is left out: radios hold packets up to 15 s."""
 _SILENCE_MS = 10_000
 """A master stamp newer than the last by more than this waits for confirmation."""
 _CONFIRM = 3
@@ -89,6 +93,8 @@ class BootClock:
         if -_LATE_MS <= ahead <= _SILENCE_MS:
             self._doubt.clear()
             return self._unwrap(ahead)
+        if -_OLD_MS <= ahead < 0:
+            return None
         if self._doubt and not 0 <= _signed(raw - self._doubt[-1]) <= _SILENCE_MS:
             self._doubt.clear()
         self._doubt.append(raw)

@@ -51,6 +51,25 @@ class ManeuverFlown:
 
 
 @dataclass(frozen=True, slots=True)
+class ManeuverAgain:
+    """A manoeuvre that is known already came in another log or power-on: it counts once."""
+
+    maneuver: Maneuver
+    """The record that came now, numbered as the one known."""
+    takes_place: bool
+    """Whether it holds more samples than the record known, and counts in its place."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlightBegan:
+    """Another log or link of the campaign begins."""
+
+    flight: int
+    """0 for the first."""
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
 class Activity:
     """The elevator moved, and it was no test input."""
 
@@ -65,10 +84,13 @@ class Activity:
     """Since when the vehicle had been in its flight mode, s since boot; it tells one stay from the next."""
     boot: int = 0
     """Which power-on of the vehicle."""
+    flight: int = 0
+    """Which log or link of the campaign, 0 for the first."""
 
     def joined(self, earlier: "Activity") -> "Activity | None":
         """Return one activity for this and the one before; None where reason, boot or mode differ."""
-        if (self.reason, self.boot, self.stay_s) != (earlier.reason, earlier.boot, earlier.stay_s):
+        stay = (self.reason, self.flight, self.boot, self.stay_s)
+        if stay != (earlier.reason, earlier.flight, earlier.boot, earlier.stay_s):
             return None
         if self.reason != "autopilot" and (
             self.text != earlier.text or self.start_s > earlier.end_s + _SOON_S
@@ -104,10 +126,12 @@ class DataAgain:
 
 FlightEvent = (
     VehicleFound
+    | FlightBegan
     | Rebooted
     | ModeChanged
     | ManeuverStarted
     | ManeuverFlown
+    | ManeuverAgain
     | Activity
     | Notice
     | NoData

@@ -36,13 +36,20 @@ class Maneuver:
 
     number: int
     boot: int
-    """Which power-on of the vehicle, 0 for the first in the stream."""
+    """Which power-on of the vehicle, 0 for the first in the log or link."""
     span: Span
     channels: Mapping[str, Channel]
     mode: str = ""
     """Flight mode in which it was flown, as the autopilot names or numbers it."""
     distrusts: tuple[Distrust, ...] = ()
     """Channels that cannot be right. A specific force that stands still is not in ``channels``."""
+    flight: int = 0
+    """Which log or link of the campaign the record is of, 0 for the first."""
+
+    @property
+    def power_on(self) -> tuple[int, int]:
+        """Flight and power-on in which the manoeuvre was recorded."""
+        return self.flight, self.boot
 
     def later(self, by_s: float) -> "Maneuver":
         """The same on a clock that shows ``by_s`` more."""

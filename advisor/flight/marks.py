@@ -40,6 +40,8 @@ class Mark:
     """Who or what set the mark."""
     name: str = "A mark"
     """What a sentence about the mark begins with."""
+    flight: int = 0
+    """Which log or link of the campaign, 0 for the first."""
 
     def overlaps(self, start_s: float, end_s: float) -> bool:
         """Whether the mark shares time with a stretch of the same power-on."""

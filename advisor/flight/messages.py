@@ -36,6 +36,8 @@ class Columns:
     Text fields are arrays of ``bytes`` (NumPy kind ``S``)."""
     carrier: Carrier = "telemetry"
     """What brings the messages. Only the words about the vehicle depend on this, as its heartbeat has it."""
+    flight: int = 0
+    """Which log or link of a campaign the messages are of, 0 for the first; ``order`` rises within it."""
 
     def __len__(self) -> int:
         return len(self.order)

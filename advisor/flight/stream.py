@@ -303,7 +303,8 @@ class FlightStream:
         """Columns of one boot: channels first, then the elevator sample by sample."""
         self._tracks.forget(max(self._watch.newest_s, self._master_s) - KEEP_S)
         orders = np.concatenate(([-1], master.order))
-        clock = np.concatenate(([self._master_s], master.t))
+        # A late ATTITUDE says when it was, not what the time is.
+        clock = np.fmax.accumulate(np.concatenate(([self._master_s], master.t)))
         elevator: list[Commanded] = []
         for columns in merged(part):
             now = np.searchsorted(orders, columns.order, side="right") - 1

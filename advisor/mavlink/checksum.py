@@ -18,6 +18,14 @@ def _table() -> list[int]:
 TABLE = np.array(_table(), dtype=np.int64)
 """Remainder of each byte under the reversed polynomial 0x8408."""
 
+AFTER = np.array([TABLE, *np.empty((3, 256), dtype=np.int64)])
+"""Shape (4, 256): remainder of each byte with 0, 1, 2 and 3 zero bytes behind it.
+
+Four bytes then take one step ("slicing-by-4", Kounavis and Berry 2005).
+"""
+for _zeros in (1, 2, 3):
+    AFTER[_zeros] = AFTER[_zeros - 1] >> 8 ^ TABLE[AFTER[_zeros - 1] & 0xFF]
+
 FROM_HIGH_BYTE = np.argsort(TABLE >> 8)
 """Index into ``TABLE`` of the entry with a given high byte: every high byte occurs once."""
 

@@ -1,10 +1,13 @@
 """From records of a link to messages, and to the vehicle that the flight's own stream follows."""
 
+from dataclasses import replace
+
 from advisor.aircraft import Elevator
 from advisor.flight.identity import Identity
 from advisor.flight.messages import Columns
 from advisor.flight.pieces import pieces
 from advisor.mavlink.frames import FrameScanner
+from advisor.mavlink.health import LinkStatistics
 from advisor.mavlink.outgoing import Ids
 
 
@@ -30,6 +33,21 @@ class Decoding:
         for piece in pieces(columns, by_second=True):
             self._who.learn(piece)
         return columns
+
+    def counted(self, statistics: LinkStatistics) -> LinkStatistics:
+        """The statistics with what the decoder counts of the vehicle: frames lost, late, and come twice."""
+        vehicle = statistics.vehicle
+        received = self._scanner.statistics.senders.get(vehicle) if vehicle is not None else None
+        if received is None:
+            return statistics
+        return replace(
+            statistics,
+            vehicle_messages=received.frames,
+            lost=received.lost,
+            repeated=received.repeated,
+            repeated_after_s=received.repeated_after_s,
+            late=received.late,
+        )
 
     def forget_followed(self) -> None:
         """Whoever listens is new: tell the vehicle again."""

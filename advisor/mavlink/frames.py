@@ -1,5 +1,6 @@
 """From bytes to columns: the one reader behind logs and live links."""
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -9,11 +10,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.flight.messages import Columns
+from advisor.mavlink import arrivals
 from advisor.mavlink import scan as kernel
 from advisor.mavlink.definitions import DEFINITIONS, Definition
 from advisor.mavlink.signing import RADIO_STATUS, SignatureCheck, Verdict
 
 _SOURCES = 1 << 16
+
+
+@dataclass(frozen=True, slots=True)
+class Received:
+    """What came of one sender's frames, by their sequence numbers and bytes."""
+
+    frames: int = 0
+    """Good frames, each once."""
+    lost: int = 0
+    """Frames missing by their sequence numbers."""
+    late: int = 0
+    """Frames that came after a younger one."""
+    repeated: int = 0
+    """Frames that a second path brought again; none of them counts."""
+    repeated_after_s: float = math.nan
+    """How much later a repeat came, mean, s."""
+
+    @property
+    def repeated_percent(self) -> float:
+        """Share of the frames that came twice."""
+        return 100.0 * self.repeated / self.frames if self.frames else 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +51,8 @@ class ScanStatistics:
     """Places where no good frame was found where one was due."""
     skipped_bytes: int
     """Bytes that belong to no good frame or time stamp."""
-    lost: Mapping[tuple[int, int], int]
-    """Frames missing by their sequence numbers, by (system, component)."""
+    senders: Mapping[tuple[int, int], Received]
+    """What came of each sender's frames, by (system, component)."""
     refused: Mapping[Verdict, int]
     """Frames of wanted messages refused for their signature, by verdict; empty without a key."""
 
@@ -39,7 +62,8 @@ class FrameScanner:
 
     The stream is a row of records, 8 bytes of big-endian microseconds since 1970 and one
     frame, cut into pieces anywhere: the columns of all feeds together do not depend on the
-    cuts. A frame counts when its checksum is right; everything else is stepped over.
+    cuts. A frame counts when its checksum is right; everything else is stepped over, and so is
+    what a second path repeats (`advisor.mavlink.arrivals`).
 
     Parameters
     ----------
@@ -66,8 +90,9 @@ class FrameScanner:
             self._seeds[definition.id] = definition.crc_extra
         self._state = np.zeros(kernel.STATE_ENTRIES, dtype=np.int64)
         self._state[[kernel.AT, kernel.IN_STEP]] = kernel.STAMP_BYTES, True
-        self._last_sequence = np.full(_SOURCES, -1)
-        self._lost = np.zeros(_SOURCES, dtype=np.int64)
+        self._senders = np.zeros((_SOURCES, arrivals.SENDER_COLUMNS), dtype=np.int64)
+        self._packets = np.zeros((arrivals.PACKETS, arrivals.PACKET_COLUMNS), dtype=np.int64)
+        self._newest = np.zeros(arrivals.COUNT + 1, dtype=np.int64)
         self._signatures = SignatureCheck(key) if key is not None else None
         self._refused: dict[Verdict, int] = {}
         self._tail = b""
@@ -97,7 +122,10 @@ class FrameScanner:
             known_frames=int(state[kernel.KNOWN]),
             damaged=int(state[kernel.DAMAGED]),
             skipped_bytes=int(state[kernel.SKIPPED]),
-            lost={divmod(int(s), 256): int(self._lost[s]) for s in np.flatnonzero(self._lost)},
+            senders={
+                divmod(int(source), 256): _received(self._senders[source])
+                for source in np.flatnonzero(self._senders[:, arrivals.HEARD])
+            },
             refused=dict(self._refused),
         )
 
@@ -105,7 +133,15 @@ class FrameScanner:
         stream = np.frombuffer(data, dtype=np.uint8)
         found = np.empty((len(stream) // 8 + 1, kernel.FOUND_COLUMNS), dtype=np.int64)
         rows, keep = kernel.scan(
-            stream, final, self._kinds, self._seeds, self._state, self._last_sequence, self._lost, found
+            stream,
+            final,
+            self._kinds,
+            self._seeds,
+            self._state,
+            self._senders,
+            self._packets,
+            self._newest,
+            found,
         )
         found = found[:rows]
         if self._signatures is not None:
@@ -151,6 +187,17 @@ class FrameScanner:
                 )
             )
         return columns
+
+
+def _received(sender: NDArray[np.int64]) -> Received:
+    repeated = int(sender[arrivals.REPEATED])
+    return Received(
+        frames=int(sender[arrivals.HEARD]) - repeated,
+        lost=int(sender[arrivals.LOST]),
+        late=int(sender[arrivals.LATE]),
+        repeated=repeated,
+        repeated_after_s=1e-6 * int(sender[arrivals.REPEATED_LATE_US]) / repeated if repeated else math.nan,
+    )
 
 
 def _fields(definition: Definition, payloads: NDArray[np.uint8]) -> dict[str, NDArray[Any]]:

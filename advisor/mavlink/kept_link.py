@@ -49,8 +49,7 @@ class KeptLink:
         self._next_try_s = 0.0
         self._notices: list[Notice] = []
         self._broken = False
-        self.statistics = LinkStatistics()
-        """How the link is doing, as told last."""
+        self._told = LinkStatistics()
         self.catching_up = True
         """Whether what was heard before is still being read."""
 
@@ -77,6 +76,11 @@ class KeptLink:
         if (vehicle := self._decoding.newly_followed()) is not None:
             self._send(Order("listen_to", (vehicle,)))
         return columns
+
+    @property
+    def statistics(self) -> LinkStatistics:
+        """How the link is doing, as told last."""
+        return self._decoding.counted(self._told)
 
     def take_notices(self) -> list[Notice]:
         """What happened to the link since the last call, oldest first."""
@@ -155,7 +159,7 @@ class KeptLink:
                         self._position = at + len(records)
                         return records
                     case Told(statistics, notices):
-                        self.statistics = statistics
+                        self._told = statistics
                         self._notices += notices
                         return b""
         except (OSError, EOFError):

@@ -12,7 +12,6 @@ import threading
 import time
 from collections import deque
 from collections.abc import Iterable
-from functools import cached_property
 from pathlib import Path
 from queue import Empty, Full, Queue
 from types import TracebackType
@@ -110,6 +109,7 @@ class Link:
         signatures = SignatureCheck(key) if key is not None else None
         self._intake = Intake(CRC_EXTRA, target_system, signatures)
         self._elevator, self._target_system = elevator, target_system
+        self._decoding: Decoding | None = None
         self._orders: deque[bytes | Talker | Ids] = deque()
         self._watch = LinkWatch(connection)
         self._notices: deque[Notice] = deque(maxlen=1000)
@@ -179,17 +179,15 @@ class Link:
         records = self.read_records(timeout_s)
         if not records:
             return []
+        if self._decoding is None:
+            # A process that only records needs no decoder, whose kernels take long to load.
+            from advisor.mavlink.decoding import Decoding
+
+            self._decoding = Decoding(self._elevator, self._target_system)
         columns = self._decoding.feed(records)
         if (vehicle := self._decoding.newly_followed()) is not None:
             self.listen_to(vehicle)
         return columns
-
-    @cached_property
-    def _decoding(self) -> "Decoding":
-        # A process that only records needs no decoder, whose kernels take longer to load than all the rest.
-        from advisor.mavlink.decoding import Decoding
-
-        return Decoding(self._elevator, self._target_system)
 
     def read_records(self, timeout_s: float = 0.1) -> bytes:
         """The next micro-batch as records of a tlog, or nothing when none came in time."""
@@ -232,16 +230,11 @@ class Link:
         """How the link is doing now."""
         now_s = time.monotonic()
         counters = self._intake.counters
-        vehicle = counters.of(self._intake.vehicle)
-        return LinkStatistics(
+        found = LinkStatistics(
             connected=self._transport is not None,
             vehicle=self._intake.vehicle,
             messages=counters.messages,
             messages_per_s=counters.rate(now_s),
-            vehicle_messages=vehicle.received,
-            lost=vehicle.lost,
-            duplicated=vehicle.duplicated,
-            late=vehicle.late,
             bad_crc=self._intake.bad_crc,
             garbage_bytes=self._intake.garbage_bytes,
             refused=dict(counters.refused),
@@ -251,6 +244,7 @@ class Link:
             recorded_bytes=self._recorder.bytes_written if self._recorder else 0,
             recording_problem=self._recorder.problem if self._recorder else None,
         )
+        return self._decoding.counted(found) if self._decoding is not None else found
 
     def _open_first(self) -> Transport:
         give_up_s = time.monotonic() + self._patience_s

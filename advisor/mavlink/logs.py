@@ -9,15 +9,19 @@ from advisor.flight.identity import READER
 from advisor.flight.messages import Columns
 from advisor.mavlink.ardupilot_log import read_dataflash
 from advisor.mavlink.equivalent import message
+from advisor.mavlink.frames import FrameScanner
 from advisor.mavlink.kinds import Found, recognised, refusal
-from advisor.mavlink.tlog import read_tlog
+from advisor.mavlink.tlog import scan_tlog
 from advisor.mavlink.ulog import read_ulog
 from advisor.mavlink.unpack import beginning_of, unpacked
 from advisor.problems import UnusableInputError
 
 
 def open_log(
-    path: Path, wanted: Iterable[str] | None = None, key: bytes | None = None
+    path: Path,
+    wanted: Iterable[str] | None = None,
+    key: bytes | None = None,
+    scanner: FrameScanner | None = None,
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
 
@@ -31,17 +35,19 @@ def open_log(
         Names of the messages to give; all that are defined by default.
     key : bytes, optional
         Signing key of a tlog.
+    scanner : FrameScanner, optional
+        Reads a tlog in place of one made with ``wanted`` and ``key``; its statistics then tell of the log.
 
     Raises
     ------
     UnusableInputError
         When the file is missing or no file; while reading, when it holds no messages.
     """
-    return _read(path, beginning_of(path), wanted, key)
+    return _read(path, beginning_of(path), wanted, scanner or FrameScanner(wanted, key))
 
 
 def _read(
-    path: Path, beginning: bytes, wanted: Iterable[str] | None, key: bytes | None
+    path: Path, beginning: bytes, wanted: Iterable[str] | None, scanner: FrameScanner
 ) -> Iterator[list[Columns]]:
     with unpacked(path, beginning) as log:
         if log is not path:
@@ -49,18 +55,18 @@ def _read(
         found = recognised(beginning)
         if found is None:
             raise UnusableInputError.of([refusal(log.name, beginning)])
-        for number, batch in enumerate(_batches(log, found, wanted, key)):
+        for number, batch in enumerate(_batches(log, found, wanted, scanner)):
             yield [_skipped(found, batch), *batch] if found.starts_at and number == 0 else batch
 
 
 def _batches(
-    log: Path, found: Found, wanted: Iterable[str] | None, key: bytes | None
+    log: Path, found: Found, wanted: Iterable[str] | None, scanner: FrameScanner
 ) -> Iterator[list[Columns]]:
     if found.kind == "ulog":
         return read_ulog(log, wanted, found.starts_at)
     if found.kind == "dataflash":
         return read_dataflash(log, wanted)
-    return read_tlog(log, wanted, key)
+    return scan_tlog(log, scanner)
 
 
 def _skipped(found: Found, first: list[Columns]) -> Columns:

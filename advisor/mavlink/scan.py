@@ -3,14 +3,16 @@
 A stream is a row of records: 8 bytes of time stamp, then one frame. ``scan`` steps from
 record to record; where no good frame is due it looks at every byte for the next one. A
 decision never depends on how much of the stream is at hand: where bytes are missing it
-stops and says where to go on.
+stops and says where to go on. Each good frame is weighed by `arrivals`: a packet that a
+second path repeats is stepped over.
 """
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from advisor.mavlink.checksum import FROM_HIGH_BYTE, INITIAL, TABLE
+from advisor.mavlink.arrivals import weigh
+from advisor.mavlink.checksum import AFTER, FROM_HIGH_BYTE, INITIAL, TABLE
 
 Bytes = NDArray[np.uint8]
 Ints = NDArray[np.int64]
@@ -38,6 +40,20 @@ def _little_endian(stream: Bytes, at: int, size: int) -> int:
     for i in range(size):
         value |= int(np.int64(stream[at + i])) << (8 * i)
     return value
+
+
+@njit(cache=True)
+def _remainder(stream: Bytes, first: int, past: int) -> int:
+    """CRC-16 of the bytes from ``first`` to before ``past``, four at a time."""
+    crc = INITIAL
+    at = first
+    while at + 4 <= past:
+        low, high = (crc ^ stream[at]) & 0xFF, crc >> 8 ^ stream[at + 1]
+        crc = AFTER[3, low] ^ AFTER[2, high] ^ AFTER[1, stream[at + 2]] ^ AFTER[0, stream[at + 3]]
+        at += 4
+    for i in range(at, past):
+        crc = crc >> 8 ^ AFTER[0, (crc ^ stream[i]) & 0xFF]
+    return int(crc)
 
 
 @njit(cache=True)
@@ -70,9 +86,7 @@ def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
     if at + length > n:
         return short
 
-    crc = INITIAL
-    for i in range(at + 1, end):
-        crc = crc >> 8 ^ int(TABLE[(crc ^ stream[i]) & 0xFF])
+    crc = _remainder(stream, at + 1, end)
     wanted = _little_endian(stream, end, 2)
     seed = seeds[message] if message < len(seeds) else -1
     if seed >= 0:
@@ -97,25 +111,15 @@ def _stamp(stream: Bytes, at: int, last: int) -> int:
 
 
 @njit(cache=True)
-def _count_lost(last_sequence: Ints, lost: Ints, source: int, sequence: int) -> None:
-    """Count sequence numbers left out; a number that goes back is a late or repeated frame."""
-    if last_sequence[source] >= 0:
-        ahead = (sequence - last_sequence[source]) & 0xFF
-        if ahead == 0 or ahead > 128:
-            return
-        lost[source] += ahead - 1
-    last_sequence[source] = sequence
-
-
-@njit(cache=True)
 def scan(
     stream: Bytes,
     final: bool,
     kinds: Ints,
     seeds: Ints,
     state: Ints,
-    last_sequence: Ints,
-    lost: Ints,
+    senders: Ints,
+    packets: Ints,
+    newest: Ints,
     found: Ints,
 ) -> tuple[int, int]:
     """Find the good frames of a stretch of stream.
@@ -128,8 +132,10 @@ def scan(
         Nothing follows: an incomplete frame at the end is garbage.
     kinds, seeds : shape (largest known id + 1,)
         For each message id the caller's number of a wanted message or -1, and its CRC_EXTRA or -1.
-    state, last_sequence, lost : shape (STATE_ENTRIES,), (65536,), (65536,)
-        Carried from call to call; the latter two by ``system << 8 | component``.
+    state : shape (STATE_ENTRIES,)
+        Carried from call to call.
+    senders, packets, newest
+        Carried from call to call, see `advisor.mavlink.arrivals`; the first by ``system << 8 | component``.
     found : shape (at least n // 8 + 1, FOUND_COLUMNS)
         Receives one row a wanted frame.
 
@@ -165,10 +171,19 @@ def scan(
         if at - end >= STAMP_BYTES:
             state[LAST_STAMP] = _stamp(stream, at - STAMP_BYTES, int(state[LAST_STAMP]))
         state[FRAMES] += 1
-        _count_lost(last_sequence, lost, source, _little_endian(stream, address, 1))
+        checksum = _little_endian(stream, at + length - (2 if v1 or not stream[at + 2] & SIGNED else 15), 2)
+        kept = weigh(
+            senders,
+            packets,
+            newest,
+            source,
+            _little_endian(stream, address, 1),
+            source << 48 | message << 25 | length << 16 | checksum,
+            int(state[LAST_STAMP]),
+        )
         if message < len(kinds) and seeds[message] >= 0:
             state[KNOWN] += 1
-            if kinds[message] >= 0:
+            if kept and kinds[message] >= 0:
                 found[rows, KIND] = kinds[message]
                 found[rows, SOURCE] = source
                 found[rows, START] = at

@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, RuleResult
+from advisor.flight.flights import FlightHeard
 from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.problems import Problem
@@ -16,27 +18,52 @@ NORMAL_95 = 1.959963984540054
 
 
 def analysis_document(
-    state: CampaignState | None, file: str, aircraft: Aircraft, problems: Sequence[Problem] = ()
+    state: CampaignState | None,
+    files: Sequence[str],
+    aircraft: Aircraft,
+    left_out: Mapping[int, Sequence[Problem]] = MappingProxyType({}),
+    notes: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Build the document of ``advisor analyze --json``.
 
     Parameters
     ----------
     state
-        The campaign at the end of the log; None when the log could not be read at all.
-    file
-        Name of the log, as given.
+        The campaign at the end of the logs; None when none could be read at all.
+    files
+        Names of the logs, as given, flight by flight.
     aircraft
         Its reference data make non-dimensional coefficients of the model.
-    problems
-        Why the log cannot be used; with any, ``usable`` is false.
+    left_out
+        Why logs do not count, by flight; ``usable`` is false when none counts.
+    notes
+        What is to be said of the series of logs.
     """
+    several = len(files) > 1
+    read = [*state.elevator_notes, *state.reader_notes, *state.mark_notes] if state else []
+    heard = {one.flight: one for one in state.flights} if state else {}
+    logs = [_log(heard.get(flight), file) for flight, file in enumerate(files)]
+
+    def of_log(flight: int) -> dict[str, Any]:
+        return {"log": files[flight]} if several else {}
+
+    if several:
+        for flight, log in enumerate(logs):
+            log["again"] = heard[flight].again if flight in heard else 0
+            log["problems"] = [_problem(problem) for problem in left_out.get(flight, ())]
     return {
         "schema": SCHEMA,
-        "usable": not problems,
-        "problems": [{"code": p.code, "text": p.text, "fix": p.fix} for p in problems],
-        "log": _log(state, file),
-        "maneuvers": [_maneuver(m) for m in state.maneuvers] if state else [],
+        "usable": len(left_out) < len(files),
+        "problems": [
+            {**_problem(problem), **of_log(flight)}
+            for flight, found in sorted(left_out.items())
+            for problem in found
+        ],
+        "log": {**logs[0], "notes": read},
+        **({"logs": logs, "notes": list(notes)} if several else {}),
+        "maneuvers": [{**_maneuver(m), **of_log(m.maneuver.flight)} for m in state.maneuvers]
+        if state
+        else [],
         "flight_test": _flight_test(state.flight_test) if state else None,
         "model": _model(state.model) if state else None,
         "coefficients": {
@@ -53,6 +80,7 @@ def analysis_document(
                 "reason": activity.reason,
                 "text": activity.text,
                 "boot": activity.boot,
+                **of_log(activity.flight),
             }
             for activity in (state.activity if state else ())
         ],
@@ -60,11 +88,15 @@ def analysis_document(
     }
 
 
-def _log(state: CampaignState | None, file: str) -> dict[str, Any]:
-    vehicle = state.vehicle if state else None
+def _problem(problem: Problem) -> dict[str, Any]:
+    return {"code": problem.code, "text": problem.text, "fix": problem.fix}
+
+
+def _log(heard: FlightHeard | None, file: str) -> dict[str, Any]:
+    vehicle = heard.vehicle if heard else None
     return {
         "file": file,
-        "duration_s": number(state.duration_s) if state else None,
+        "duration_s": number(heard.duration_s) if heard else None,
         "vehicle": vehicle
         and {
             "system": vehicle.system,
@@ -79,9 +111,8 @@ def _log(state: CampaignState | None, file: str) -> dict[str, Any]:
                 "rate_hz": number(channel.rate_hz),
                 "largest_gap_s": number(channel.largest_gap_s),
             }
-            for name, channel in (state.channels.items() if state else ())
+            for name, channel in (heard.channels.items() if heard else ())
         },
-        "notes": [*state.elevator_notes, *state.reader_notes, *state.mark_notes] if state else [],
     }
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from advisor.campaign import Campaign, CampaignEvent, ManeuverJudged
 from advisor.campaign_state import CampaignState
-from advisor.flight.events import DataAgain, NoData, Notice, VehicleFound
+from advisor.flight.events import DataAgain, FlightBegan, ManeuverAgain, NoData, Notice, VehicleFound
 from advisor.flight.messages import Columns
 from advisor.report.text import maneuver_line, next_line, stop_line
 
@@ -31,6 +31,11 @@ def follow(
 
 def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
     match event:
+        case FlightBegan(_, name):
+            say(f"{name}:")
+        case ManeuverAgain(maneuver, takes_place):
+            better = ", and this record takes the place" if takes_place else ""
+            say(f"{maneuver.number:2d}  {maneuver.span.start_s:8.2f} s  comes again and counts once{better}")
         case VehicleFound(vehicle):
             say(f"following {vehicle}")
         case Notice(_, text):

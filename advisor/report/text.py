@@ -1,7 +1,8 @@
 """The analysis as text for people: degrees, a sentence a verdict, stop or continue last."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
@@ -11,6 +12,7 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.events import Activity
+from advisor.flight.track import ChannelStatus
 from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate
 
@@ -86,15 +88,22 @@ class AnalysisText:
     """The whole analysis; rich prints it at the width of the terminal, plain where colour is unwanted."""
 
     def __init__(
-        self, state: CampaignState, file: str, aircraft: Aircraft, every_movement: bool = False
+        self,
+        state: CampaignState,
+        files: Sequence[str],
+        aircraft: Aircraft,
+        every_movement: bool = False,
     ) -> None:
-        self.state, self.file, self.aircraft = state, file, aircraft
+        self.state, self.files, self.aircraft = state, files, aircraft
         self.every_movement = every_movement
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        vehicle = self.state.vehicle
-        yield Text(f"{self.file}: {vehicle if vehicle else 'no vehicle'}", style="bold")
-        yield self._channels()
+        for flight in self.state.flights:
+            vehicle = flight.vehicle if flight.vehicle else "no vehicle"
+            yield Text(f"{self.files[flight.flight]}: {vehicle}", style="bold")
+            yield self._channels(flight.channels)
+            if flight.again:
+                yield Text(f"note: {flight.again} of its manoeuvres came before: they count once.")
         yield from (
             Text(f"note: {note}", style="yellow")
             for note in (*self.state.elevator_notes, *self.state.reader_notes, *self.state.mark_notes)
@@ -118,21 +127,29 @@ class AnalysisText:
         """The manoeuvres, and where wanted whatever else moved the elevator, in the order of time."""
         lines = []
         for judged in self.state.maneuvers:
-            at = (judged.maneuver.boot, judged.maneuver.span.start_s)
+            maneuver = judged.maneuver
+            at = (maneuver.flight, maneuver.boot, maneuver.span.start_s)
             style = "green" if judged.verdict.accepted else "red"
             lines.append((at, Text(maneuver_line(judged), style=style)))
             lines += [(at, Text(f"    note: {note}")) for note in judged.notes]
         if self.every_movement:
-            lines += [((a.boot, a.start_s), Text(activity_line(a), style="dim")) for a in self.state.activity]
-        yield from (line for _, line in sorted(lines, key=lambda entry: entry[0]))
+            lines += [
+                ((a.flight, a.boot, a.start_s), Text(activity_line(a), style="dim"))
+                for a in self.state.activity
+            ]
+        in_order = sorted(lines, key=lambda entry: entry[0])
+        for flight, here in groupby(in_order, key=lambda entry: entry[0][0]):
+            if len(self.files) > 1:
+                yield Text(f"{self.files[flight]}:", style="bold")
+            yield from (line for _, line in here)
 
-    def _channels(self) -> Table:
+    def _channels(self, channels: Mapping[str, ChannelStatus]) -> Table:
         table = Table(box=None, pad_edge=False, header_style="dim")
         for column in ("channel", "source", "provenance"):
             table.add_column(column)
         for column in ("rate Hz", "largest gap s"):
             table.add_column(column, justify="right")
-        for name, channel in self.state.channels.items():
+        for name, channel in channels.items():
             table.add_row(
                 name,
                 channel.source,

@@ -164,7 +164,7 @@ class Conductor:
         if not isinstance(self._source, Playable):
             return
         known = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
-        self._goal = Goal(number, known.span.start_s if known else None)
+        self._goal = Goal(number, (*known.power_on, known.span.start_s) if known else None)
         if known:
             self._source.rewind()
             self._rewound = True

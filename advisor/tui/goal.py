@@ -12,14 +12,14 @@ class Goal:
     """Just before manoeuvre ``number`` is flown."""
 
     number: int
-    start_s: float | None
-    """Vehicle time of its first step when it was judged before; None when it still lies ahead."""
+    start: tuple[int, int, float] | None
+    """Flight, power-on and vehicle time of its first step when it was judged before; None: it lies ahead."""
 
     def reached(self, state: CampaignState) -> bool:
         """Whether the replay has come there, or past it."""
         done = len(state.maneuvers)
         if done >= self.number:
             return True
-        if self.start_s is not None:
-            return done == self.number - 1 and state.now_s >= self.start_s - LEAD_S
+        if self.start is not None:
+            return done == self.number - 1 and (state.flight, state.boot, state.now_s + LEAD_S) >= self.start
         return state.flying is not None and state.flying.number >= self.number

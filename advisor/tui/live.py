@@ -128,7 +128,7 @@ def _figures(link: LinkStatistics) -> tuple[tuple[str, str], ...]:
     figures = [
         ("messages", f"{link.messages} ({link.messages_per_s:.0f}/s)"),
         ("lost", f"{link.lost} ({link.lost_percent:.1f} %)"),
-        ("duplicated, late", f"{link.duplicated}, {link.late}"),
+        ("repeated, late", f"{link.repeated}, {link.late}"),
         ("bad checksum", f"{link.bad_crc}"),
         ("silent for", f"{link.silent_s:.1f} s"),
         ("reconnects", f"{link.reconnects}"),

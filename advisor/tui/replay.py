@@ -1,13 +1,13 @@
-"""A log played like a flight: paused, stepped, sped up, always in its order of arrival."""
+"""Logs played like a flight: paused, stepped, sped up, always in its order of arrival."""
 
 from collections.abc import Callable, Sequence
 from math import inf
 from pathlib import Path
 from threading import Event
 
-from advisor.by_hand import ByHand
+from advisor.by_hand import NOTHING, ByHand
 from advisor.flight.messages import Columns
-from advisor.marks_file import keep_by_hand
+from advisor.marks_file import keep_on_all
 from advisor.tui.source import LinkHealth, Order, Playback, Tempo
 from advisor.tui.timeline import Timeline
 
@@ -32,8 +32,12 @@ class LogPlayer:
         Multiple of real time; infinite: as fast as it can.
     wait : callable
         ``wait(event, seconds)`` waits until the event is set or the time is over; tests have their own clock.
-    keep_beside : Path, optional
-        The log beside which decisions by hand are kept; None: they are not.
+    keep_beside : sequence of Path
+        The logs beside which decisions by hand are kept, flight by flight; none: they are not kept.
+    before : ByHand
+        What was decided by hand before.
+    said : callable
+        Returns what is to be said of the logs once they are loaded.
     """
 
     def __init__(
@@ -42,12 +46,17 @@ class LogPlayer:
         load: Callable[[], Sequence[Columns]],
         speed: float = 1.0,
         wait: Callable[[Event, float], None] = _wait,
-        keep_beside: Path | None = None,
+        keep_beside: Sequence[Path] = (),
+        before: ByHand = NOTHING,
+        said: Callable[[], Sequence[str]] = tuple,
     ) -> None:
         self._title = title
         self._load = load
         self._wait = wait
         self._keep_beside = keep_beside
+        self._kept = before
+        self._said = said
+        self._notices: Sequence[str] = ()
         self._tempo = Tempo(speed=speed)
         self._hurrying = False
         self._steps = 0
@@ -60,6 +69,7 @@ class LogPlayer:
         """The next stretch of the log when its time has come, see `Source.read`."""
         if self._timeline is None:
             self._timeline = Timeline(self._load())
+            self._notices = self._said()
         self._ended = self._position_s >= self._timeline.duration_s
         if self._ended:
             return None
@@ -119,17 +129,19 @@ class LogPlayer:
             self._timeline.rewind()
 
     def take_notices(self) -> Sequence[str]:
-        """Nothing happens on the way from a file."""
-        return ()
+        """What was found when the logs were loaded; nothing happens on the way from a file."""
+        notices, self._notices = self._notices, ()
+        return notices
 
     def order(self, order: Order) -> None:
         """A log has been flown: nothing can be asked of its vehicle."""
 
     def keep(self, by_hand: ByHand) -> str:
-        """Keep the decisions beside the log."""
-        if self._keep_beside is None:
+        """Keep each decision beside the log that it concerns."""
+        if not self._keep_beside:
             return "decisions by hand are not kept: they hold until you quit"
-        return keep_by_hand(self._keep_beside, by_hand)
+        before, self._kept = self._kept, by_hand
+        return keep_on_all(self._keep_beside, before, by_hand)
 
     def close(self) -> None:
         """A log holds nothing open."""

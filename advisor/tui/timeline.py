@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.messages import Columns, cut
+from advisor.flight.messages import Columns, IntArray, cut
 
 LONGEST_SILENCE_S = 2.0
 """Silences of a log, and the leaps of its clock, are played in at most this time."""
@@ -16,12 +16,13 @@ class Timeline:
     Parameters
     ----------
     columns : sequence of Columns
-        A whole log; several pieces of one message type are allowed.
+        One whole log, or several, flight after flight; several pieces of one message type are allowed.
     """
 
     def __init__(self, columns: Sequence[Columns]) -> None:
         self._pieces = [piece for piece in columns if len(piece)]
-        order = np.concatenate([np.zeros(0, np.int64), *(p.order for p in self._pieces)])
+        self._orders = _through(self._pieces)
+        order = np.concatenate([np.zeros(0, np.int64), *self._orders])
         arrival = np.concatenate([np.zeros(0), *(p.arrival_s for p in self._pieces)])
         sequence = np.argsort(order)
         self._order = order[sequence]
@@ -45,8 +46,8 @@ class Timeline:
             return []
         last = self._order[count - 1]
         batch = []
-        for number, piece in enumerate(self._pieces):
-            start, end = self._next[number], int(np.searchsorted(piece.order, last, side="right"))
+        for number, (piece, order) in enumerate(zip(self._pieces, self._orders, strict=True)):
+            start, end = self._next[number], int(np.searchsorted(order, last, side="right"))
             if end > start:
                 batch.append(cut(piece, slice(start, end)))
                 self._next[number] = end
@@ -55,3 +56,14 @@ class Timeline:
     def rewind(self) -> None:
         """Deliver from the first message again."""
         self._next = [0] * len(self._pieces)
+
+
+def _through(pieces: Sequence[Columns]) -> list[IntArray]:
+    """The order of arrival of each piece among the messages of all flights."""
+    flights = sorted({piece.flight for piece in pieces})
+    first, behind = {}, 0
+    for flight in flights:
+        orders = [piece.order for piece in pieces if piece.flight == flight]
+        first[flight] = behind - min(int(order[0]) for order in orders)
+        behind = first[flight] + max(int(order[-1]) for order in orders) + 1
+    return [piece.order + first[piece.flight] for piece in pieces]

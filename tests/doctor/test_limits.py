@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft import Elevator
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Belief, frequency
-from advisor.doctor.instruments import COARSE_DEG, LOSSY_PERCENT, elevator_limits, loss_limits
+from advisor.doctor.instruments import COARSE_DEG, LOSSY_PERCENT, elevator_limits, loss_limits, path_limits
 from advisor.doctor.pace import ENOUGH_PER_PERIOD, FEWEST_PER_PERIOD, Paced, rate_limits
 from advisor.flight.suitability import SLOWEST_HZ
 from advisor.flight.vehicle import Vehicle
@@ -48,3 +48,14 @@ def test_a_loss_just_too_high_reads_higher_than_the_limit() -> None:
     (limit,) = loss_limits(LOSSY_PERCENT * (1.0 + HAIR))
     lost, most = numbers(limit)
     assert float(lost) > float(most)
+
+
+def test_a_second_path_is_told_with_its_share_its_lateness_and_a_mend() -> None:
+    (limit,) = path_limits(48.2, 6.04)
+    assert limit.text == "a second path repeats 48 % of the packets, 6.0 s late"
+    assert "one path" in limit.fix
+    assert not limit.stops
+
+
+def test_single_packets_that_a_network_repeats_are_no_second_path() -> None:
+    assert path_limits(0.3, 0.01) == []

@@ -71,3 +71,12 @@ def test_a_stamp_that_says_nothing_of_the_boot_gives_way_to_the_time_of_arrival(
 def test_a_stamp_of_another_clock_is_not_believed():
     assert np.isnan(place(np.array([50_000_000]), 1e-6, np.array([100.0]))[0])
     assert np.isnan(place(np.array([50_000_000]), 1e-6, np.array([np.nan]))[0])
+
+
+@pytest.mark.parametrize("late_ms", [2_500, 15_000])
+def test_packets_of_a_path_that_is_seconds_late_are_left_out_and_are_no_reboot(late_ms):
+    late = [300_000 - late_ms + 20 * i for i in range(5)]
+    stamps, clock = advanced(300_000, *late, 300_020)
+    assert np.isnan(stamps.t[1:6]).all()
+    assert stamps.t[6] == 300.02
+    assert clock.boot == 0

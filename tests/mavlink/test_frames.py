@@ -138,7 +138,7 @@ def test_sequence_numbers_tell_how_many_frames_were_lost() -> None:
     records = [record(sender.frame(random_message("HEARTBEAT", rng))) for _ in range(600)]
     scanner = FrameScanner()
     scanner.feed(b"".join(records[:100] + records[103:300] + records[310:]))
-    assert scanner.statistics.lost == {(5, 6): 13}
+    assert scanner.statistics.senders[5, 6].lost == 13
 
 
 def test_a_repeated_or_late_frame_is_not_a_loss() -> None:
@@ -147,7 +147,8 @@ def test_a_repeated_or_late_frame_is_not_a_loss() -> None:
     records = [record(sender.frame(random_message("HEARTBEAT", rng))) for _ in range(10)]
     scanner = FrameScanner()
     scanner.feed(b"".join([*records[:5], records[4], records[2], *records[5:]]))
-    assert scanner.statistics.lost == {}
+    received = scanner.statistics.senders[5, 6]
+    assert (received.frames, received.lost, received.late, received.repeated) == (10, 0, 0, 2)
 
 
 class TestSigned:

@@ -64,7 +64,7 @@ async def test_the_pilots_screen_shows_for_how_long_a_mark_has_been_open():
 def opened(log: Path, speed: float, settings: Settings) -> tuple[AdvisorApp, LogPlayer]:
     """The application over a log, with the campaign in this process."""
     columns = [piece for batch in open_log(log) for piece in batch]
-    player = LogPlayer(log.name, lambda: columns, speed, keep_beside=log)
+    player = LogPlayer(log.name, lambda: columns, speed, keep_beside=[log])
 
     def make(by_hand: ByHand) -> Campaign:
         return Campaign(Aircraft(), settle=True, by_hand=by_hand)

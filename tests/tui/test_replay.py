@@ -1,14 +1,18 @@
 """A log is played in its order, each message once, whatever is done to the player."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf
+from pathlib import Path
 from threading import Event
 
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from advisor.by_hand import NOTHING, Remark
 from advisor.flight.messages import Columns
+from advisor.marks_file import path_beside, read_by_hand
 from advisor.tui.replay import STEP_S, LogPlayer
 from advisor.tui.source import Playable, Tempo
 from advisor.tui.timeline import LONGEST_SILENCE_S, Timeline
@@ -132,3 +136,35 @@ def test_cuts_anywhere_deliver_each_message_once_in_order(
     for position in [*sorted(positions), timeline.duration_s]:
         heard += indices(timeline.up_to(position))
     assert heard == order.tolist()
+
+
+def two_logs() -> list[Columns]:
+    return [*log(), *(replace(piece, flight=1) for piece in log(100))]
+
+
+def test_the_timeline_goes_through_all_logs_one_after_the_other():
+    timeline = Timeline(two_logs())
+    heard: list[tuple[int, int]] = []
+    for position_s in np.arange(0.0, timeline.duration_s + 1.0, 0.1):
+        batch = timeline.up_to(position_s)
+        heard += sorted((piece.flight, k) for piece in batch for k in indices([piece]))
+    assert heard == [*((0, k) for k in range(200)), *((1, k) for k in range(100))]
+
+
+def test_each_decision_is_kept_beside_the_log_that_it_concerns(tmp_path: Path):
+    logs = [tmp_path / "first.tlog", tmp_path / "second.tlog"]
+    player = LogPlayer("x", two_logs, keep_beside=logs)
+    decided = NOTHING.remarking(Remark(5.0, "flaps", flight=1))
+    assert "second.maneuvers.yaml" in player.keep(decided)
+    assert [remark.text for remark in read_by_hand(logs[1]).remarks] == ["flaps"]
+    assert not path_beside(logs[0]).exists()
+    player.keep(NOTHING)
+    assert read_by_hand(logs[1]).remarks == ()
+
+
+def test_what_is_said_of_the_logs_is_told_once_they_are_loaded():
+    player = LogPlayer("x", two_logs, said=lambda: ["in another order"])
+    assert player.take_notices() == ()
+    player.read(0.01)
+    assert player.take_notices() == ["in another order"]
+    assert player.take_notices() == ()

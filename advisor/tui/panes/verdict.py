@@ -34,13 +34,17 @@ white). A line with **!** does not reject the manoeuvre but belongs on its verdi
     def show(self, view: View) -> None:
         """Write the selected manoeuvre's verdict."""
         if view.judged is not None:
-            self.query_one(Lines).write("\n".join(_lines(view.judged)))
+            flight = view.judged.maneuver.flight
+            of = next(
+                (f" of {one.name}" for one in view.state.flights if one.flight == flight and one.name), ""
+            )
+            self.query_one(Lines).write("\n".join(_lines(view.judged, of)))
 
 
-def _lines(judged: JudgedManeuver) -> list[str]:
+def _lines(judged: JudgedManeuver, of: str) -> list[str]:
     verdict, estimate = judged.verdict, judged.estimate
     symbol, word = symbol_and_word(judged)
-    lines = [f"{symbol} {word}  manoeuvre {judged.maneuver.number}: {without_word(verdict.sentence)}"]
+    lines = [f"{symbol} {word}  manoeuvre {judged.maneuver.number}{of}: {without_word(verdict.sentence)}"]
     if judged.excluded_because:
         lines.append(f"excluded by hand: {judged.excluded_because}")
     for r in verdict.reasons:

@@ -1,0 +1,250 @@
+"""The flights of a campaign, one log or link after the other; each manoeuvre has a number and counts once."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.events import (
+    Activity,
+    FlightBegan,
+    FlightEvent,
+    ManeuverAgain,
+    ManeuverFlown,
+    Notice,
+    VehicleFound,
+)
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.marks import Mark
+from advisor.flight.messages import Columns
+from advisor.flight.same import are_one, is_fuller
+from advisor.flight.stream import FlightStream
+from advisor.flight.surfaces import Surface
+from advisor.flight.track import ChannelStatus
+from advisor.flight.vehicle import Vehicle
+from advisor.problems import Problem
+
+_PROBE_US = (1400.0, 1600.0)
+"""Pulses between which two elevators' scales are compared: within the travel of every servo."""
+_SCALES_AGREE = 0.05
+"""Share by which the scale of one elevator may differ from flight to flight, as when a trim is set anew."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlightHeard:
+    """What one log or link of the campaign was."""
+
+    flight: int
+    """0 for the first."""
+    name: str
+    """As the user knows it."""
+    vehicle: Vehicle | None
+    duration_s: float
+    """Vehicle time heard, over all power-ons, s."""
+    channels: Mapping[str, ChannelStatus]
+    again: int = 0
+    """How many of its manoeuvres another log or power-on holds, too."""
+    problems: tuple[Problem, ...] = ()
+    """Why it does not count; known when it is over."""
+
+
+class Flights:
+    """Follows the vehicle through several logs, and through a link at last.
+
+    Each flight is heard as if it were alone, so a log's manoeuvres do not depend on its neighbours.
+
+    Parameters
+    ----------
+    aircraft, target_system
+        As `FlightStream` takes them.
+    marks
+        Stretches that somebody has called manoeuvres, each on its flight.
+    names
+        What the logs are called, in their order; empty for a single one.
+    """
+
+    def __init__(
+        self,
+        aircraft: Aircraft,
+        target_system: int | None = None,
+        marks: Sequence[Mark] = (),
+        names: Sequence[str] = (),
+    ) -> None:
+        self._aircraft, self._target_system = aircraft, target_system
+        self._marks, self._names = tuple(marks), tuple(names) if len(names) > 1 else ()
+        self._found: list[Maneuver] = []
+        self._past: list[FlightHeard] = []
+        self._notes: list[str] = []
+        self._first: tuple[str, Vehicle, Surface | None] | None = None
+        self._begin(0)
+        self._told_of = -1
+
+    def _begin(self, flight: int) -> None:
+        self.flight = flight
+        marks = [mark for mark in self._marks if mark.flight == flight]
+        self.stream = FlightStream(self._aircraft, self._target_system, marks)
+        """The flight being heard."""
+        self._again = 0
+        self._foreign: Problem | None = None
+
+    @property
+    def maneuvers(self) -> int:
+        """How many manoeuvres have been found, each once."""
+        return len(self._found)
+
+    @property
+    def duration_s(self) -> float:
+        """Vehicle time heard so far, over all flights, s."""
+        return sum(past.duration_s for past in self._past) + self.stream.duration_s
+
+    @property
+    def elevator_notes(self) -> tuple[str, ...]:
+        """What the elevator is made of and what is assumed of it, over all flights."""
+        return tuple(dict.fromkeys((*self._notes, *self.stream.elevator_notes)))
+
+    def heard(self, channels: Mapping[str, ChannelStatus], over: bool = False) -> tuple[FlightHeard, ...]:
+        """Every flight so far; ``channels`` are those of the one being heard."""
+        return (*self._past, self._so_far(channels, over))
+
+    def so_far(self) -> Maneuver | None:
+        """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        flying = self.stream.so_far() if self._foreign is None else None
+        return flying and replace(flying, number=len(self._found) + 1, flight=self.flight)
+
+    def problems(self) -> list[Problem]:
+        """Why none of the flights can be used, as far as they have been heard; empty when one can."""
+        now = self._problems()
+        if not now or any(not past.problems for past in self._past):
+            return []
+        name = self._name(self.flight)
+        here = [replace(p, text=f"{name}: {p.text}") for p in now] if name else now
+        before = [replace(p, text=f"{one.name}: {p.text}") for one in self._past for p in one.problems]
+        return [*before, *here]
+
+    def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
+        """Take messages that have arrived, of one flight after the other; what became known by them."""
+        events: list[FlightEvent] = []
+        filled = sorted((c for c in columns if len(c)), key=lambda c: c.flight)
+        for flight, part in groupby(filled, key=lambda c: c.flight):
+            if flight != self.flight:
+                events += self._end()
+                self._begin(flight)
+            if flight != self._told_of:
+                self._told_of = flight
+                events += [FlightBegan(flight, self._name(flight))] if self._names else []
+            if self._foreign is None:
+                events += self._through(self.stream.feed(list(part)))
+        return events
+
+    def finish(self) -> list[FlightEvent]:
+        """No more messages will come: whatever is open is closed."""
+        if self._foreign is not None:
+            return []
+        events = [*self._through(self.stream.finish()), *self._compare_elevators()]
+        if self._names:
+            events += [Notice(p.code, p.about(self.name)) for p in self.stream.problems()]
+        return events
+
+    def _end(self) -> list[FlightEvent]:
+        """Close a flight that another one follows."""
+        events = self.finish()
+        if self.flight == self._told_of:
+            self._past.append(self._so_far(self.stream.channels, over=True))
+            self._notes += self.stream.elevator_notes
+        return events
+
+    def _so_far(self, channels: Mapping[str, ChannelStatus], over: bool) -> FlightHeard:
+        return FlightHeard(
+            self.flight,
+            self._name(self.flight),
+            self.stream.vehicle,
+            self.stream.duration_s,
+            channels,
+            self._again,
+            tuple(self._problems()) if over else (),
+        )
+
+    def _problems(self) -> list[Problem]:
+        return [self._foreign] if self._foreign is not None else self.stream.problems()
+
+    def _name(self, flight: int) -> str:
+        return self._names[flight] if flight < len(self._names) else ""
+
+    @property
+    def name(self) -> str:
+        """What the log being heard is called; empty for a single one."""
+        return self._name(self.flight)
+
+    def _through(self, events: Sequence[FlightEvent]) -> list[FlightEvent]:
+        """The events of one flight as those of the campaign."""
+        through: list[FlightEvent] = []
+        for event in events:
+            match event:
+                case ManeuverFlown(maneuver):
+                    through.append(self._once(replace(maneuver, flight=self.flight)))
+                case Activity():
+                    through.append(replace(event, flight=self.flight))
+                case VehicleFound(vehicle):
+                    through += [event, *self._compare_vehicles(vehicle)]
+                    if self._foreign is not None:
+                        return through
+                case _:
+                    through.append(event)
+        return through
+
+    def _once(self, maneuver: Maneuver) -> FlightEvent:
+        """A manoeuvre with its number in the campaign, be it new or known."""
+        for i, known in enumerate(self._found):
+            if known.power_on != maneuver.power_on and are_one(maneuver, known):
+                self._again += 1
+                again = replace(maneuver, number=known.number)
+                takes_place = is_fuller(again, known)
+                if takes_place:
+                    self._found[i] = again
+                return ManeuverAgain(again, takes_place)
+        self._found.append(replace(maneuver, number=len(self._found) + 1))
+        return ManeuverFlown(self._found[-1])
+
+    def _compare_vehicles(self, vehicle: Vehicle) -> Iterator[FlightEvent]:
+        """What is told of a vehicle that is not the first flight's; another kind of autopilot is refused."""
+        name = self._name(self.flight)
+        if self._first is None:
+            self._first = (name, vehicle, None)
+            return
+        first_name, first, _ = self._first
+        if (vehicle.autopilot, vehicle.is_multicopter) != (first.autopilot, first.is_multicopter):
+            self._foreign = Problem(
+                "other_vehicle",
+                f"The vehicle is {vehicle}, and {first} in {first_name}: two aircraft are no campaign.",
+                "Give the logs of one aircraft only.",
+            )
+            yield Notice(self._foreign.code, f"{name}: {self._foreign}")
+        elif vehicle.system != first.system:
+            said = (
+                f"{name}: the vehicle is {vehicle}, and {first} in {first_name}; both count as one aircraft."
+            )
+            yield Notice("other_system", said)
+
+    def _compare_elevators(self) -> Iterator[FlightEvent]:
+        """What is told of an elevator that is not driven as in the first flight."""
+        elevator = self.stream.elevator
+        if self._first is None or not isinstance(elevator, Surface):
+            return
+        first_name, vehicle, first = self._first
+        if first is None:
+            self._first = (self._name(self.flight), vehicle, elevator)
+        elif elevator.outputs != first.outputs or not _scales_agree(elevator, first):
+            outputs = " + ".join(map(str, elevator.outputs))
+            before = " + ".join(map(str, first.outputs))
+            yield Notice(
+                "other_elevator",
+                f"{self._name(self.flight)}: the elevator is output {outputs} with a scale of its own, and "
+                f"output {before} in {first_name}; both count as one aircraft.",
+            )
+
+
+def _scales_agree(a: Surface, b: Surface) -> bool:
+    steps = [np.diff(s.angles(np.tile(np.array(_PROBE_US)[:, None], len(s.parts))), axis=0) for s in (a, b)]
+    return bool(np.allclose(steps[0], steps[1], rtol=_SCALES_AGREE))

@@ -1,0 +1,113 @@
+"""Several logs as one campaign: in the order of their true times, each message with the number of its flight.
+
+The columns of a series go to ``Campaign.feed`` as they are. A link that follows them is the next flight.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from advisor.by_hand import ByHand, on_all
+from advisor.flight.messages import Columns
+from advisor.marks_file import read_by_hand
+from advisor.problems import Problem, UnusableInputError
+
+_SINCE_1970_S = 1e9
+"""Times of arrival from 2001 on are dates; what a log without a date counts from its boot is smaller."""
+
+
+class LogSeries:
+    """The logs of one campaign, oldest first where all of them tell when they began, else as given.
+
+    Parameters
+    ----------
+    logs
+        Paths of the logs.
+    """
+
+    def __init__(self, logs: Sequence[Path]) -> None:
+        self.logs = _oldest_first(logs) if len(logs) > 1 else list(logs)
+        """Flight by flight."""
+        self.reordered = self.logs != list(logs)
+        """Whether the order is not the one given."""
+        self.unreadable: dict[int, Problem] = {}
+        """Why a log could not be read to its end, by flight; known when its turn has come."""
+
+    @property
+    def names(self) -> list[str]:
+        """What each log is called: its file's name, or its path where two have one name."""
+        names = [log.name for log in self.logs]
+        return [str(log) if names.count(log.name) > 1 else log.name for log in self.logs]
+
+    @property
+    def order_said(self) -> str:
+        """A sentence on the order, where it is not the one given; else nothing."""
+        listed = ", ".join(self.names)
+        return f"The logs are taken in the order of their times: {listed}." if self.reordered else ""
+
+    def batches(self) -> Iterator[list[Columns]]:
+        """The messages of all logs; a log that cannot be read is left out, see ``unreadable``."""
+        # The log reader takes longer to load than the first screen to paint.
+        from advisor.mavlink.logs import open_log
+
+        for flight, log in enumerate(self.logs):
+            try:
+                for columns in open_log(log):
+                    yield of_flight(columns, flight)
+            except UnusableInputError as error:
+                self.unreadable[flight] = error.problem
+
+    def load(self) -> list[Columns]:
+        """The messages of all logs that can be read, at once.
+
+        Raises
+        ------
+        UnusableInputError
+            No log can be read.
+        """
+        columns = [column for batch in self.batches() for column in batch]
+        if len(self.unreadable) == len(self.logs):
+            raise UnusableInputError.of(list(self.unreadable.values()))
+        return columns
+
+    def said(self) -> list[str]:
+        """Sentences on the order of the logs, and on those that could not be read."""
+        wrong = [problem.about(self.names[flight]) for flight, problem in self.unreadable.items()]
+        return [*([self.order_said] if self.reordered else []), *wrong]
+
+    def read_by_hand(self) -> ByHand:
+        """What was decided by hand on every log.
+
+        Raises
+        ------
+        ConfigurationError
+            As :func:`advisor.marks_file.read_by_hand`.
+        """
+        return on_all([read_by_hand(log) for log in self.logs])
+
+
+def of_flight(columns: Sequence[Columns], flight: int) -> list[Columns]:
+    """The columns as those of one flight of a campaign."""
+    return [replace(c, flight=flight) for c in columns] if flight else list(columns)
+
+
+def _oldest_first(logs: Sequence[Path]) -> list[Path]:
+    began_s = [_began_s(log) for log in logs]
+    if not all(at_s >= _SINCE_1970_S for at_s in began_s):
+        return list(logs)
+    return [log for _, log in sorted(zip(began_s, logs, strict=True), key=lambda one: one[0])]
+
+
+def _began_s(log: Path) -> float:
+    """When a log began, s since 1970: smaller for one without dates, infinite for one that cannot be read."""
+    from advisor.mavlink.logs import open_log
+
+    try:
+        first = next(open_log(log), [])
+    except UnusableInputError:
+        return np.inf
+    times = [c.arrival_s for c in first if len(c)]
+    # Nearly the earliest, for single stamps may be wrong.
+    return float(np.quantile(np.concatenate(times), 0.01)) if times else np.inf
