@@ -11,7 +11,6 @@ from advisor.aircraft import Rule
 from advisor.commands.options import (
     NEWEST,
     aircraft_option,
-    decided_on,
     no_marks_option,
     rule_option,
     target_system_option,
@@ -24,6 +23,7 @@ from advisor.problems import ConfigurationError
 if TYPE_CHECKING:
     from advisor.by_hand import ByHand
     from advisor.mavlink.kept_link import KeptLink
+    from advisor.tui.source import Source
 
 
 @click.command
@@ -102,11 +102,11 @@ def command(
         raise ConfigurationError(f"{other} and --no-record contradict each other; give one of them.")
     if logs and resume is None:
         raise ConfigurationError("LOG needs --resume: the flight test of these logs is taken up.")
+    from advisor.by_hand import NOTHING
     from advisor.campaign_file import CampaignFile
     from advisor.commands.resuming import Speaking, start_of, started
     from advisor.mavlink.connection import parse_connection
     from advisor.mavlink.signing import read_key
-    from advisor.tui.live import LinkSource
     from advisor.yaml_file import read_yaml
 
     content = read_yaml(aircraft_file) if aircraft_file else None
@@ -115,7 +115,8 @@ def command(
     for connection in filter(None, (start.campaign.master, announce_to)):
         parse_connection(connection)
     aircraft = start.campaign.parsed_aircraft(str(aircraft_file or start.recording))
-    by_hand = decided_on(start.recording, no_marks) if start.goes_on and start.recording else None
+    before = (*start.earlier, start.recording) if start.goes_on else start.earlier
+    by_hand = NOTHING if no_marks else _decided(before)
     speaking = Speaking(
         source_system, read_key(signing_key) if signing_key else None, request_rates, announce, announce_to
     )
@@ -125,13 +126,14 @@ def command(
         click.echo(_recorded(recordings), err=True)
         link = process.link(aircraft.elevator)
         advise(
-            partial(LinkSource, link),
+            partial(_source, start.earlier, link),
             start.campaign.master,
             aircraft,
             start.campaign.target_system,
             partial(_announce, link) if announce or announce_to else None,
             by_hand=by_hand,
-            kept=partial(_kept, process.recording),
+            kept=partial(_decided, (*start.earlier, process.recording)),
+            names=[*(printable(log.name) for log in start.earlier), start.campaign.master],
         )
 
 
@@ -144,10 +146,19 @@ def _ended(recordings: Sequence[Path]) -> str:
     return f"Stopped; the recording is {printable(str(recordings[0]))}." if recordings else STOPPED
 
 
-def _kept(recording: Path | None) -> "ByHand":
-    from advisor.by_hand import NOTHING
+def _decided(flights: Sequence[Path | None]) -> "ByHand":
+    """What was decided by hand on these flights; on one that is not recorded, nothing is kept."""
+    from advisor.by_hand import NOTHING, on_all
+    from advisor.marks_file import read_by_hand
 
-    return decided_on(recording, no_marks=False) if recording else NOTHING
+    return on_all([read_by_hand(flight) if flight else NOTHING for flight in flights])
+
+
+def _source(earlier: Sequence[Path], link: "KeptLink") -> "Source":
+    from advisor.tui.live import LinkSource
+    from advisor.tui.resumed import ResumedSource
+
+    return ResumedSource(earlier, LinkSource(link)) if earlier else LinkSource(link)
 
 
 def _announce(link: "KeptLink", event: object) -> None:

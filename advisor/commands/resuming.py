@@ -85,8 +85,8 @@ def start_of(
             f"--resume: nothing beside {logs[-1]} says where the vehicle is heard; give --master."
         )
     if place is not None:
-        return Start(campaign, place, earlier=tuple(logs))
-    return Start(campaign, logs[-1], goes_on=True, earlier=tuple(logs[:-1]))
+        return Start(campaign, place, earlier=tuple(_in_order(logs)))
+    return Start(campaign, logs[-1], goes_on=True, earlier=tuple(_in_order(logs[:-1])))
 
 
 @contextmanager
@@ -133,6 +133,12 @@ def _left_alone(start: Start) -> RunningLink | None:
             again = f"; --resume {running.recording} takes its flight test up" if running.recording else ""
             click.echo(said + again, err=True)
     return mine
+
+
+def _in_order(logs: Sequence[Path]) -> list[Path]:
+    from advisor.log_series import LogSeries
+
+    return LogSeries(logs).logs
 
 
 def _same(a: Path, b: Path | None) -> bool:

@@ -76,7 +76,7 @@ class VehicleFinder:
         if not is_aircraft(autopilot, kind):
             return False
         name = _AUTOPILOTS.get(autopilot, f"autopilot {autopilot}")
-        vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind)
+        vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind, carrier=heartbeat.carrier)
         self.heard.setdefault(heartbeat.system, vehicle)
         if self.vehicle is None and self._target in (None, heartbeat.system):
             self.follow(vehicle)

@@ -1,0 +1,72 @@
+"""A link that goes on with a flight test whose earlier flights lie in logs."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from advisor.by_hand import ByHand
+from advisor.flight.messages import Columns
+from advisor.log_series import LogSeries, of_flight
+from advisor.marks_file import keep_on_all
+from advisor.tui.source import LinkHealth, Order, Source
+
+
+class ResumedSource:
+    """Delivers the logs of earlier flights, then what a link delivers, as the last flight.
+
+    Parameters
+    ----------
+    logs
+        Earlier flights, the oldest first; they are only read.
+    link
+        The flight that is in the air.
+    """
+
+    def __init__(self, logs: Sequence[Path], link: Source) -> None:
+        self._series = LogSeries(logs)
+        self._link = link
+        self._past: Iterator[list[Columns]] | None = self._series.batches()
+        self._kept = self._series.read_by_hand()
+        self._notices: list[str] = []
+
+    def read(self, timeout_s: float) -> Sequence[Columns] | None:
+        """The next batch, of the earlier flights first.
+
+        Raises
+        ------
+        UnusableInputError
+            When the link can never serve.
+        """
+        if self._past is not None:
+            batch = next(self._past, None)
+            if batch is not None:
+                return batch
+            self._past = None
+            self._notices += self._series.said()
+        columns = self._link.read(timeout_s)
+        return columns if columns is None else of_flight(columns, len(self._series.logs))
+
+    def health(self) -> LinkHealth:
+        """How the data arrive at this moment."""
+        if self._past is not None:
+            return LinkHealth("waiting", "The earlier flights are being read.")
+        return self._link.health()
+
+    def take_notices(self) -> Sequence[str]:
+        """What happened on the way since the last call."""
+        notices, self._notices = self._notices, []
+        return [*notices, *self._link.take_notices()]
+
+    def order(self, order: Order) -> None:
+        """Pass on what a crew wants of the link."""
+        self._link.order(order)
+
+    def keep(self, by_hand: ByHand) -> str:
+        """Keep each decision beside the log or recording that it concerns."""
+        before, self._kept = self._kept, by_hand
+        said = keep_on_all(self._series.logs, before, by_hand)
+        newest = self._link.keep(by_hand.on_flight(len(self._series.logs)))
+        return "; ".join(filter(None, (said, newest)))
+
+    def close(self) -> None:
+        """Release the link."""
+        self._link.close()
