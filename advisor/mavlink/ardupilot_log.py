@@ -49,6 +49,8 @@ _RECORDS: dict[str, set[str]] = {
 }
 """Records, and the fields needed of each: without them (another kind of vehicle, an older version)
 a record counts as missing."""
+_TEXTS = {"Name", "Message"}
+"""Fields that hold text; all others are numbers."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 """Records of which a vehicle may carry several, and the quantities that they hold."""
 
@@ -62,7 +64,8 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
         When it holds neither attitude, inertial sensors, nor servo outputs.
     """
     apart = (name for names in SENSORS_APART.values() for name in names)
-    stored = read_tables(path, (*_RECORDS, *SDLOG2_RECORDS, *apart))
+    every = read_tables(path, (*_RECORDS, *SDLOG2_RECORDS, *apart))
+    stored = {name: _believable(table) for name, table in every.items()}
     names = None if wanted is None else set(wanted)
     if is_sdlog2(stored):
         yield from _batch(Sdlog2(stored).columns(), names)
@@ -80,6 +83,16 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
             "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
         )
     yield from _batch(_Translation(Clocked(tables, read.epoch_s)).columns(), names)
+
+
+def _believable(table: Table) -> Table:
+    """The fields that hold what their names say: damage to a definition makes a number a text."""
+    fields = {
+        name: values
+        for name, values in table.fields.items()
+        if values.ndim == 1 and (values.dtype.kind == "S") == (name in _TEXTS)
+    }
+    return Table(table.order, fields)
 
 
 def _batch(columns: Iterator[Columns], names: set[str] | None) -> Iterator[list[Columns]]:
