@@ -1,10 +1,11 @@
 """A guess of the elevator where nothing says which output it is: the one that the pitch rate answers to."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.flight.events import FlightEvent, Notice
 from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.record import Channel
 
@@ -84,6 +85,46 @@ class ElevatorGuess:
         if shares[best] < LEAST_SHARE or shares[best] < LEAST_LEAD * shares[following]:
             return None
         return Guess(best + 1, float(shares[best]), float(shares[following]))
+
+
+class ElevatorGuesses:
+    """Guesses at fixed vehicle times, however messages were batched."""
+
+    def __init__(self) -> None:
+        self.newest: Guess | None = None
+        """The newest guess; it outlives a power-on, for the wiring does."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Another power-on, or another vehicle."""
+        self._outputs = ElevatorGuess()
+        self._at_s = -np.inf
+
+    def hear(self, columns: Columns, t: FloatArray) -> None:
+        """Take messages of outputs at these vehicle times, shape (n,)."""
+        self._outputs.hear(columns, t)
+
+    def advance(
+        self, first_s: float, now_s: float, cut: Callable[[str, float, float], Channel | None]
+    ) -> list[FlightEvent]:
+        """Make every guess that is due; a new one is said.
+
+        Parameters
+        ----------
+        first_s, now_s
+            Vehicle times of the first and of the newest message since boot, s.
+        cut
+            Gives a stretch of a channel: name, start and end, s.
+        """
+        events: list[FlightEvent] = []
+        next_s = max(self._at_s + EVERY_S, EVERY_S * np.ceil(first_s / EVERY_S))
+        for at_s in np.arange(next_s, now_s, EVERY_S).tolist():
+            self._at_s = at_s
+            guess = self._outputs.made(cut("q", at_s - KEEP_S, at_s - LATE_S))
+            if guess is not None and (self.newest is None or guess.output != self.newest.output):
+                events.append(Notice("elevator_guess", f"Nothing says which is the elevator; {guess}."))
+            self.newest = guess or self.newest
+        return events
 
 
 def _share(rate: FloatArray, moved: FloatArray) -> float:

@@ -19,26 +19,18 @@ from advisor.flight.clocks import BootClock
 from advisor.flight.commanded import Commanded, commanded
 from advisor.flight.cutting import Cutting
 from advisor.flight.derived_alpha import DERIVED_ALPHA, promised
-from advisor.flight.elevator_guess import EVERY_S, LATE_S, ElevatorGuess, Guess
-from advisor.flight.elevator_guess import KEEP_S as GUESS_S
-from advisor.flight.elevator_watch import SETTLE_S, ElevatorWatch
-from advisor.flight.events import (
-    FlightEvent,
-    ManeuverFlown,
-    ModeChanged,
-    Notice,
-    Rebooted,
-)
+from advisor.flight.elevator_guess import ElevatorGuesses, Guess
+from advisor.flight.elevator_path import ElevatorPath
+from advisor.flight.events import FlightEvent, ModeChanged, Rebooted
 from advisor.flight.identity import Identity
-from advisor.flight.maneuver import Maneuver, Span
+from advisor.flight.maneuver import Maneuver
 from advisor.flight.markers import HEARD, MarkerWatch
-from advisor.flight.marks import Due, Mark, Marks
+from advisor.flight.marks import Mark, Marks
 from advisor.flight.messages import Columns, FloatArray, arrivals
 from advisor.flight.mixing import Mixing
 from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.pieces import pieces
 from advisor.flight.record import Channel
-from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.senders import SenderWatch
 from advisor.flight.sense import SAID
 from advisor.flight.service import Service
@@ -83,33 +75,31 @@ class FlightStream:
         self.marks = Marks(marks)
         """What is marked by hand, by a switch and by texts."""
         self._markers = MarkerWatch(aircraft.markers)
+        self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
         self._over = False
-        self._start_boot()
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
+        self._guesses = ElevatorGuesses()
+        self._start_boot()
         self.seen: set[str] = set()
         """Names of the messages the vehicle has sent."""
-        self._best: dict[str, ChannelStatus] = {}
+        self._past: dict[str, ChannelStatus] = {}
         self._service = Service(self._wanting)
         self._senders = SenderWatch()
-        self.guess: Guess | None = None
-        """Which output may be the elevator, while nothing says it."""
         self._system: int | None = None
         self._earlier_s = 0.0
 
     def _start_boot(self) -> None:
         self._tracks.clear()
-        self._watch = ElevatorWatch()
+        self._path.begin(self.boot)
         self._banks = Banks()
         self._mixing.begin()
-        self._elevator_message: str | None = None
         self._cutting.begin(self._who.mode)
         self._first_s = np.nan
         self._flown_before = self._cutting.maneuvers
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
-        self._guesses = ElevatorGuess()
-        self._guessed_s = -np.inf
+        self._guesses.begin()
 
     @property
     def vehicle(self) -> Vehicle | None:
@@ -158,7 +148,7 @@ class FlightStream:
     @property
     def channels(self) -> Mapping[str, ChannelStatus]:
         """How every channel arrives, from the source that would be used now; at the end, as at its best."""
-        arriving = self._best if self._over else {**self._best, **self._tracks.statuses()}
+        arriving = self._past if self._over else {**self._past, **self._tracks.statuses()}
         return {
             name: replace(status, provenance=self._who.provenance(status.source, status.provenance))
             for name, status in arriving.items()
@@ -166,12 +156,17 @@ class FlightStream:
 
     def problems(self) -> list[Problem]:
         """Why this stream cannot be used, as far as it has been heard; empty when it can."""
-        self._note_rates()
         flown = self._cutting
         found = problems(
-            self.vehicle, self.other_systems, self.elevator, self._best, flown.maneuvers, flown.activities,
-            self.frozen, self.seen,
-        )  # fmt: skip
+            self.vehicle,
+            self.other_systems,
+            self.elevator,
+            self._at_best(),
+            flown.maneuvers,
+            flown.activities,
+            self.frozen,
+            self.seen,
+        )
         wrong = self._mixing.contradiction
         if self.guess is not None and isinstance(self.elevator, Problem):
             found = [with_guess(problem, self.guess) for problem in found]
@@ -181,6 +176,11 @@ class FlightStream:
             *([wrong] if wrong and not flown.maneuvers else ()),
             *found,
         ]
+
+    @property
+    def guess(self) -> Guess | None:
+        """Which output may be the elevator, while nothing says it."""
+        return self._guesses.newest
 
     @property
     def no_data(self) -> tuple[Problem, ...]:
@@ -204,7 +204,7 @@ class FlightStream:
     @property
     def frozen(self) -> list[Distrust]:
         """Channels that have stood still in flight."""
-        ranges = {name: (status.lowest, status.highest) for name, status in self._best.items()}
+        ranges = {name: (status.lowest, status.highest) for name, status in self._at_best().items()}
         return self._who.distrusts(frozen(ranges))
 
     def recent(self, name: str, seconds: float) -> Channel | None:
@@ -213,17 +213,7 @@ class FlightStream:
 
     def so_far(self) -> Maneuver | None:
         """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
-        now = self._watch.newest_s
-        marked_s = self.marks.since_s(now)
-        onset = self._watch.onset_s if marked_s is None else marked_s
-        if onset is None or not now > onset:
-            return None
-        if marked_s is None and not self._cutting.pilot_flies(onset):
-            return None
-        span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
-        if marked_s is None and self._cutting.why_on_ground(span) is not None:
-            return None
-        return self._cutting.so_far(span, self.boot)
+        return self._path.so_far()
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
         """Take messages that have arrived; what became known by them, in order."""
@@ -241,18 +231,14 @@ class FlightStream:
         return events
 
     def _finish_boot(self) -> list[FlightEvent]:
-        events = self._watch_elevator(self._mixing.finish())
-        due = self.marks.finish(self._master_s)
-        for span in self._watch.finish():
-            events += self._found(span, None)
-        events += self._marked(due, None)
-        self._note_rates()
+        events = self._path.finish(self._master_s)
+        self._past = self._at_best()
         return events
 
-    def _note_rates(self) -> None:
-        """Remember how each channel arrived when it arrived fastest."""
-        for name, status in self._tracks.statuses().items():
-            self._best[name] = status.at_best(self._best.get(name))
+    def _at_best(self) -> dict[str, ChannelStatus]:
+        """How each channel arrived when it arrived fastest, over all power-ons."""
+        now = {name: status.at_best(self._past.get(name)) for name, status in self._tracks.statuses().items()}
+        return {**self._past, **now}
 
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Columns within which neither vehicle nor parameters nor mode change."""
@@ -272,7 +258,7 @@ class FlightStream:
             if np.isfinite(self._master_s):
                 order = min(int(c.order[0]) for c in piece)
                 earliest_s = max(self._heartbeat_s, self._master_s - _HEARTBEAT_S)
-                self._watch.mode_changed(earliest_s, order)
+                self._path.mode_changed(earliest_s, order)
                 # Who takes over and flies an input at once did so before the heartbeat that tells of it.
                 closed = closes_pitch_loop(self._who.mode)
                 self._cutting.change(self._who.mode, self._master_s if closed else earliest_s)
@@ -301,7 +287,7 @@ class FlightStream:
 
     def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
         """Columns of one boot: channels first, then the elevator sample by sample."""
-        self._tracks.forget(max(self._watch.newest_s, self._master_s) - KEEP_S)
+        self._tracks.forget(max(self._path.newest_s, self._master_s) - KEEP_S)
         orders = np.concatenate(([-1], master.order))
         # A late ATTITUDE says when it was, not what the time is.
         clock = np.fmax.accumulate(np.concatenate(([self._master_s], master.t)))
@@ -336,21 +322,10 @@ class FlightStream:
             self._first_s = float(master.t[0])
             self.marks.start_clock(self._first_s)
         self._master_s = float(clock[-1])
-        return [*self._feed_elevator(elevator), *self._guess_elevator()]
-
-    def _guess_elevator(self) -> list[FlightEvent]:
-        """Guess at fixed vehicle times, however messages were batched; say a new guess."""
+        followed = self._path.feed(elevator, closes_pitch_loop(self._who.mode))
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
-            return []
-        events: list[FlightEvent] = []
-        first_s = max(self._guessed_s + EVERY_S, EVERY_S * np.ceil(self._first_s / EVERY_S))
-        for now_s in np.arange(first_s, self._master_s, EVERY_S).tolist():
-            self._guessed_s = now_s
-            guess = self._guesses.made(self._tracks.cut("q", now_s - GUESS_S, now_s - LATE_S))
-            if guess is not None and (self.guess is None or guess.output != self.guess.output):
-                events.append(Notice("elevator_guess", f"Nothing says which is the elevator; {guess}."))
-            self.guess = guess or self.guess
-        return events
+            return followed
+        return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]
 
     def _decode(self, columns: Columns, t: FloatArray) -> Iterator[Decoded]:
         yield from quantities(columns, t)
@@ -358,52 +333,3 @@ class FlightStream:
             yield given_airspeed(columns, t, self._aircraft.airspeed_m_s)
         if columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
             yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))
-
-    def _feed_elevator(self, moved: Sequence[Commanded]) -> list[FlightEvent]:
-        """Form the elevator's samples out of its outputs, and follow them."""
-        events: list[FlightEvent] = []
-        arrived = [new for new in moved if len(new.t)]
-        if self._elevator_message is None and arrived:
-            # Some vehicles report their outputs in two messages: the first to speak is listened to.
-            self._elevator_message = min(arrived, key=lambda new: int(new.order[0])).message
-        for new in arrived:
-            if new.message == self._elevator_message:
-                for known in self._mixing.take(new, closes_pitch_loop(self._who.mode)):
-                    events += [known] if isinstance(known, Notice) else self._watch_elevator([known])
-        return events
-
-    def _watch_elevator(self, decoded: Sequence[Decoded]) -> list[FlightEvent]:
-        """Give the segmenter its samples in the order of their stamps, and cut what has ended."""
-        events: list[FlightEvent] = []
-        arrived: list[tuple[int, float, float]] = []
-        for new in decoded:
-            self._tracks.append(new)
-            arrived += zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
-        for order, t, y in sorted(arrived):
-            self.marks.advance(order)
-            for found in self._watch.push(t, order, y):
-                if isinstance(found, Span):
-                    events += self._found(found, order)
-                elif self._cutting.pilot_flies(found.at_s):
-                    events.append(found)
-            events += self._marked(self.marks.due(self._watch.newest_s - SETTLE_S), order)
-        return events
-
-    def _found(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
-        """What the finder has found, unless it lies in a marked stretch."""
-        return [] if self.marks.hides(span, up_to_order) else self._flown(span, up_to_order)
-
-    def _marked(self, due: Due, up_to_order: int | None) -> list[FlightEvent]:
-        events: list[FlightEvent] = list(due.notices)
-        for span, order in due.spans:
-            events += self._flown(span, order)
-        for mark in due.marks:
-            events += self._cutting.marked(mark, self.boot, up_to_order)
-            self._note_rates()
-        return events
-
-    def _flown(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
-        events = self._cutting.flown(self.marks.before(span), self.boot, up_to_order)
-        if any(isinstance(event, ManeuverFlown) for event in events):
-            self._note_rates()
-        return events

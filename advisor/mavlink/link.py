@@ -26,14 +26,13 @@ from advisor.mavlink.framing import CRC_EXTRA, Frame
 from advisor.mavlink.health import LinkStatistics, Notice
 from advisor.mavlink.inquiry import Inquiry
 from advisor.mavlink.intake import Intake
+from advisor.mavlink.line import Line
 from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Ids, Talker
 from advisor.mavlink.recorder import Recorder
 from advisor.mavlink.signing import SignatureCheck
-from advisor.mavlink.transport import ConnectionCutError, Transport
-from advisor.mavlink.transports import open_transport
+from advisor.mavlink.transport import ConnectionCutError
 from advisor.mavlink.watch import LinkWatch
 from advisor.printable import printable
-from advisor.problems import UnusableInputError
 
 if TYPE_CHECKING:
     from advisor.mavlink.decoding import Decoding
@@ -42,7 +41,6 @@ BATCH_S = 0.012
 """Frames gather this long before they are handed over together."""
 PAUSE_S = 0.003
 """Rest between two looks at a busy socket, so that several packets share one look."""
-REOPEN_EVERY_S = 1.0
 UNREACHABLE_S = 3.0
 """Silence of the vehicle after which nothing is sent to it, s: three heartbeats."""
 FAREWELL_S = 0.7
@@ -102,7 +100,6 @@ class Link:
     ) -> None:
         self.address = parse_connection(connection)
         self._record_to, self._goes_on = record_to, goes_on
-        self._inherited = inherited
         self._patience_s = patience_s
         greeting = [Heartbeat()] if self.address.speaks_first else []
         self._conversation = Conversation([*talkers, *greeting], (source_system, source_component), key)
@@ -115,10 +112,9 @@ class Link:
         self._notices: deque[Notice] = deque(maxlen=1000)
         self._queue: Queue[bytes] = Queue(QUEUE_LENGTH)
         self._recorder: Recorder | None = None
-        self._transport: Transport | None = None
-        self._reopen_at_s = 0.0
         self._failure: BaseException | None = None
         self._stop = threading.Event()
+        self._line = Line(self.address, inherited, self._stop)
         self._thread = threading.Thread(target=self._run, name="link", daemon=True)
         self._unix_offset_s = 0.0
 
@@ -130,7 +126,7 @@ class Link:
         UnusableInputError
             When the connection cannot be opened or the recording cannot be made.
         """
-        self._transport = self._open_first()
+        self._line.open(self._patience_s)
         if self._record_to is not None:
             self._recorder = Recorder(self._record_to, self._goes_on)
         # Stamps run on the monotonic clock: a host whose clock is set does not tear the recording.
@@ -147,9 +143,7 @@ class Link:
         self._stop.set()
         if self._thread.ident is not None:
             self._thread.join()
-        if self._transport is not None:
-            self._transport.close()
-            self._transport = None
+        self._line.close()
         if self._recorder is not None:
             self._recorder.close()
 
@@ -164,12 +158,12 @@ class Link:
     @property
     def port(self) -> int | None:
         """The local network port, which the system chose where the address says 0."""
-        return self._transport.port if self._transport is not None else None
+        return self._line.port
 
     @property
     def descriptor(self) -> int | None:
         """File descriptor of a socket that another process can go on with; None where there is none."""
-        return self._transport.descriptor if self._transport is not None else None
+        return self._line.descriptor
 
     catching_up = False
     """A link of this process has no past that a reader would have to catch up with."""
@@ -231,7 +225,7 @@ class Link:
         now_s = time.monotonic()
         counters = self._intake.counters
         found = LinkStatistics(
-            connected=self._transport is not None,
+            connected=self._line.is_open,
             vehicle=self._intake.vehicle,
             messages=counters.messages,
             messages_per_s=counters.rate(now_s),
@@ -245,26 +239,6 @@ class Link:
             recording_problem=self._recorder.problem if self._recorder else None,
         )
         return self._decoding.counted(found) if self._decoding is not None else found
-
-    def _open_first(self) -> Transport:
-        give_up_s = time.monotonic() + self._patience_s
-        while True:
-            try:
-                return open_transport(self.address, self._inherited)
-            except ImportError as error:
-                raise UnusableInputError(
-                    "no_connection",
-                    f"{self.address.text} needs the Python package {error.name}.",
-                    f"Install it with: pip install {error.name}",
-                ) from None
-            except OSError as error:
-                if time.monotonic() >= give_up_s or self.address.kind.startswith(("udp", "tcpin")):
-                    raise UnusableInputError(
-                        "no_connection",
-                        f"{self.address.text} cannot be opened: {error.strerror or error}.",
-                        "Check the address, and that no other program uses it.",
-                    ) from None
-            self._stop.wait(0.2)
 
     # From here on: the reader thread.
 
@@ -311,27 +285,13 @@ class Link:
         return bytes(records)
 
     def _take_frames(self, wait_s: float) -> list[Frame]:
-        if self._transport is None:
-            self._reopen()
-            return []
         try:
-            pieces = self._transport.receive() if self._transport.wait(wait_s) else []
+            pieces = self._line.take(wait_s)
         except ConnectionCutError as cut:
-            if not cut.listening:
-                self._transport.close()
-                self._transport = None
             self._intake.forget_pieces()
             self._say([self._watch.cut(str(cut), time.monotonic())], time.monotonic())
             return []
         return self._intake.take(pieces, time.monotonic()) if pieces else []
-
-    def _reopen(self) -> None:
-        if time.monotonic() < self._reopen_at_s:
-            self._stop.wait(0.05)
-            return
-        self._reopen_at_s = time.monotonic() + REOPEN_EVERY_S
-        with contextlib.suppress(OSError):  # not yet back: tried again a second later
-            self._transport = open_transport(self.address)
 
     def _obey(self) -> list[bytes]:
         """Do what was ordered since the last look; texts for the stream alone are returned."""
@@ -354,11 +314,11 @@ class Link:
 
     def _reachable(self, now_s: float) -> bool:
         """Whether the vehicle is known and hears what is asked."""
-        down = self._transport is None or self._watch.silent_s(now_s) > UNREACHABLE_S
+        down = not self._line.is_open or self._watch.silent_s(now_s) > UNREACHABLE_S
         return not down and self._intake.vehicle is not None
 
     def _send(self, raw: bytes) -> bool:
-        return self._transport is not None and self._transport.send(raw, self._intake.vehicle_peer)
+        return self._line.send(raw, self._intake.vehicle_peer)
 
     def _records(self, frames: Iterable[bytes], now_s: float, link_number: int) -> bytes:
         stamp_us = int((now_s + self._unix_offset_s) * 1e6) & ~3 | link_number

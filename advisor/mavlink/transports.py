@@ -1,6 +1,8 @@
 """Opening what a connection string names; serial lines and what is left to pymavlink."""
 
 import contextlib
+import errno
+import os
 import select
 
 from advisor.mavlink.connection import Address
@@ -14,6 +16,8 @@ class SerialTransport(Transport):
     def __init__(self, address: Address) -> None:
         import serial
 
+        if not _is_terminal(address.host):
+            raise OSError(errno.ENOTTY, "this is no serial line")
         self._line = serial.Serial(address.host, address.port, timeout=0, write_timeout=0.5, exclusive=True)
 
     def wait(self, timeout_s: float) -> bool:
@@ -71,6 +75,17 @@ class PymavlinkTransport(Transport):
     def close(self) -> None:
         """Let go."""
         self._connection.close()
+
+
+def _is_terminal(path: str) -> bool:
+    """Whether a file of the system is a serial line; a name that is no file may be one of Windows."""
+    if not os.path.exists(path):
+        return True
+    end = os.open(path, os.O_RDWR | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_NONBLOCK", 0))
+    try:
+        return os.isatty(end)
+    finally:
+        os.close(end)
 
 
 def open_transport(address: Address, inherited: int | None = None) -> Transport:
