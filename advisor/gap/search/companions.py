@@ -13,16 +13,14 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.search.merit import LEAST_SIGMA
+from advisor.gap.search.merit import CERTAIN, LEAST_SIGMA
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.stage import Stage, added_in, is_likelier, only, rebuilt, replaced_by
 
 _CLEARLY = 20.0
 """Cost by which a pair of names must beat those that were found first."""
-_CERTAIN = 30.0
-"""Log likelihood from which on something is there, however small ..."""
 _TRIED = 3
-"""... and how many of its likenesses, and companions of each, are tried."""
+"""How many likenesses of what is certain, and companions of each, are tried."""
 _PROMISING = 0.5
 """Share of what the first effect brings that the screening must promise of another companion."""
 _BESIDE = 2
@@ -41,7 +39,7 @@ def one_for_another(problem: Problem, stages: list[Stage], _: Sequence[Variant])
     names = [j.effect for j in added_in(stages)]
     for n, stage in enumerate(stages[1:], start=1):
         rival = next(iter(stage.considered), None)
-        if rival is None or rival.sigmas > LEAST_SIGMA or rival.gain < _CERTAIN:
+        if rival is None or rival.sigmas > LEAST_SIGMA or rival.gain < CERTAIN:
             continue
         others = [[name for name in names[:n] if name != left_out] for left_out in names[:n]]
         fits = [only(problem, rival.fitted, [*kept, rival.effect]) for kept in others]
@@ -61,7 +59,7 @@ def two_in_place_of_one(problem: Problem, stages: list[Stage], variants: Sequenc
     first = stages[0].added
     if first is None or len(stages) != 2:
         return stages
-    certain = [j for j in stages[1].considered if j.gain >= _CERTAIN and j.effect not in BY_NATURE]
+    certain = [j for j in stages[1].considered if j.gain >= CERTAIN and j.effect not in BY_NATURE]
     best, least = None, min((j.fitted.cost for j in certain), default=first.fitted.cost)
     for rest in certain[:_TRIED]:
         alone = only(problem, rest.fitted, [rest.effect])

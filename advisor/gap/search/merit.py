@@ -23,7 +23,7 @@ _PLAINLY, _PLAIN_SIGMAS = 15.0, 5.0
 """... unless nothing else was named, it changes ten times the least, and a number is as far from nothing."""
 LEAST_SIGMA = 3.0
 """Standard deviations by which a number of it must differ from nothing."""
-_CERTAIN = 30.0
+CERTAIN = 30.0
 """Log likelihood from which on there is no doubt that something like the effect is there."""
 BEYOND_DOUBT, _SEEN_CHANGE, _PLAIN_CHANGE = 100.0, 5.0, 10.0
 """Log likelihood, and changes of the least size, from which on stamps that jitter hide no time, and an effect
@@ -41,6 +41,7 @@ LEAST_BELIEF = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
 _SUPPORT = 4.0
 """The same of an effect that is certain anyway."""
+_HOLD_OUT = "hold-out"
 LEAST_SUPPORT = 1.0
 """Standard errors over manoeuvres by which an effect must lower the gap of those kept out: of two, both."""
 
@@ -97,7 +98,7 @@ class Judged:
     @property
     def decisions(self) -> tuple[Decision, ...]:
         """What is asked of an effect before it has a name; all must hold."""
-        certain = self.gain >= _CERTAIN
+        certain = self.gain >= CERTAIN
         of_the_file = self.belief >= (_SUPPORT if certain else LEAST_BELIEF)
         change = 0.0 if of_the_file else self.least_certain if certain else self.least
         asked = [
@@ -108,7 +109,7 @@ class Judged:
             ("range", 0.0 if self.at_its_bounds else 1.0, 1.0, "inside the searched range"),
         ]
         if self.is_foretold:
-            asked.append(("hold-out", self.support, LEAST_SUPPORT, "standard errors of the gap removed"))
+            asked.append((_HOLD_OUT, self.support, LEAST_SUPPORT, "standard errors of the gap removed"))
         return tuple(Decision(self.effect, *question) for question in asked)
 
     @property
@@ -120,6 +121,11 @@ class Judged:
     def is_supported(self) -> bool:
         """Whether manoeuvres kept out support it, as far as they can foretell its work."""
         return not self.is_foretold or self.support >= LEAST_SUPPORT
+
+    @property
+    def is_disputed(self) -> bool:
+        """Whether manoeuvres kept out alone refuse it: each of them may tell another size."""
+        return all(decision.holds != (decision.name == _HOLD_OUT) for decision in self.decisions)
 
     @property
     def least_gain(self) -> float:

@@ -33,6 +33,12 @@ class Stage:
         best = self.considered[0].gain if self.considered else 0.0
         return frozenset(judged.effect for judged in self.considered if judged.gain > _NEAR * best)
 
+    @property
+    def disputed(self) -> Judged | None:
+        """The likeliest candidate, where nothing was added and manoeuvres kept out alone refuse it."""
+        first = next(iter(self.considered), None)
+        return first if first is not None and self.added is None and first.is_disputed else None
+
     def slight_in(self, block: str) -> Judged | None:
         """What is beyond doubt in a block, and too small for a name only."""
         found = (j for j in self.considered if j.block == block and j.gain >= BEYOND_DOUBT)

@@ -17,7 +17,7 @@ from advisor.gap.search.companions import (
     other_description,
     two_in_place_of_one,
 )
-from advisor.gap.search.merit import LEAST_BELIEF, MOST_EFFECTS, Judged
+from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, MOST_EFFECTS, Judged
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.restarts import from_every_start
 from advisor.gap.search.score import addition
@@ -53,19 +53,36 @@ def one_after_another(
 ) -> list[Stage]:
     """Stages from the plain model to the last addition; the last stage adds nothing."""
     stages: list[Stage] = []
-    fitted, held = baseline, hold_out(problem, baseline)
+    fitted, held, ahead = baseline, hold_out(problem, baseline), None
     for n in range(MOST_EFFECTS + 1):
         progress(f"trying {len(variants)} ways to explain what is left", 0.2 + 0.15 * n)
         if n == MOST_EFFECTS:
             stages.append(Stage(fitted, held, (), None))
             break
-        considered = _judged(problem, fitted, held, variants)
-        added = next((j for j in considered if j.worth_naming), None)
+        considered = ahead or _judged(problem, fitted, held, variants)
+        added, ahead = next((j for j in considered if j.worth_naming), None), None
+        if added is None and n < MOST_EFFECTS - 1:
+            added, ahead = _leading_on(problem, considered, variants)
         stages.append(Stage(fitted, held, tuple(considered), added))
         if added is None:
             break
         fitted, held = added.fitted, added.held_out
     return stages
+
+
+def _leading_on(
+    problem: Problem, considered: Sequence[Judged], variants: Sequence[Variant]
+) -> tuple[Judged | None, list[Judged] | None]:
+    """An effect too small for a name that is certain all the same, where another shows beside it.
+
+    Two effects may hide each other: with one of them in the model derivatives make up for the other. Also
+    returned is what was thought of adding to it. Whether both stay is decided when all have been found.
+    """
+    if not considered or considered[0].gain < BEYOND_DOUBT:
+        return None, None
+    first = considered[0]
+    beside = _judged(problem, first.fitted, first.held_out, variants)
+    return (first, beside) if any(j.worth_naming for j in beside) else (None, None)
 
 
 def _judged(problem: Problem, fitted: Fitted, held: HeldOut, variants: Sequence[Variant]) -> list[Judged]:

@@ -19,14 +19,12 @@ from advisor.gap.fitting.step import own_eliminated
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.records.flights import Flights
 from advisor.gap.result import spelled
-from advisor.gap.search.merit import Judged
+from advisor.gap.search.merit import CERTAIN, Judged
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import ENTRIES
 from advisor.gap.unnamed.leftover import Leftover
 
-_CERTAIN = 30.0
-"""Log likelihood that the change must bring on manoeuvres kept out."""
 _LEAST_CHANGE = 0.8
 """From the first manoeuvre to the last, over the number itself."""
 _ALONE = 2
@@ -67,13 +65,18 @@ def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
     """The named effect that is not the same throughout; None where all are, or the flight is too short."""
     if len(problem.flights) < _FEW:
         return None
+    alone = len(stages) == _ALONE or stages[0].disputed is not None
     for stage in stages:
-        if stage.added is None or stage.added.effect not in STEADY or len(stage.added.value) != 1:
+        said, model, held = stage.added, stages[-1].fitted, stages[-1].held_out
+        if said is None and stage.disputed is not None:
+            # Manoeuvres kept out refuse what is another number in each of them.
+            said, model, held = stage.disputed, stage.disputed.fitted, stage.disputed.held_out
+        if said is None or said.effect not in STEADY or len(said.value) != 1:
             continue
-        said, scatter = stage.added, _scatter(problem, stages[-1].fitted, stage.added)
+        scatter = _scatter(problem, model, said)
         if not scatter.may_drift:
             continue
-        drift = _with_drift(problem, stages[-1].fitted, stages[-1].held_out, said)
+        drift = _with_drift(problem, model, held, said)
         if not _is_plain(drift, said):
             if not scatter.is_plain:
                 continue
@@ -81,7 +84,7 @@ def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
             return Leftover(block, 1.0, ((block, 1.0),), note=_varies(said, scatter))
         # Of a lag and a clock that are hard to tell apart one may drift as the other does not.
         alike = [j for j in stage.considered if j.effect in STEADY and j.variant.block != said.variant.block]
-        for rival in alike if len(stages) == _ALONE else []:
+        for rival in alike if alone else []:
             other = _with_drift(problem, rival.fitted, rival.held_out, rival)
             if other.fitted.cost < drift.fitted.cost and _is_plain(other, rival):
                 said, drift = rival, other
@@ -93,7 +96,7 @@ def drifting(problem: Problem, stages: list[Stage]) -> Leftover | None:
 def _is_plain(drift: Judged, named: Judged) -> bool:
     """Whether the change is certain, shows, and is a good part of the number itself."""
     change = abs(float(drift.value[0]))
-    shows = drift.gain >= _CERTAIN and drift.removed >= drift.least
+    shows = drift.gain >= CERTAIN and drift.removed >= drift.least
     return shows and change >= _LEAST_CHANGE * abs(float(named.value[0]))
 
 

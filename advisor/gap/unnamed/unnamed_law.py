@@ -15,7 +15,7 @@ from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
 from advisor.gap.search.air import Air
-from advisor.gap.search.merit import Judged
+from advisor.gap.search.merit import CERTAIN, Judged
 from advisor.gap.search.score import (
     addition,
     difference,
@@ -30,8 +30,6 @@ from advisor.gap.unnamed.laws import PLAIN, RINGING, laws_for, said
 from advisor.gap.unnamed.leftover import Leftover
 from advisor.gap.unnamed.stops import SURFACE_STOP
 
-_CERTAIN = 30.0
-"""Log likelihood that a law must bring: most of what a reading's does is the lift's own slope."""
 _WORTH_A_FIT = 0.2
 """Share of the likeliest law's gain in the screening from which on another is fitted, too."""
 _OUT_OF_REACH = 200.0
@@ -91,7 +89,7 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     found = Screen(problem, plain).quick_fits(laws_for(problem.flights), plain.cost - named_cost)
     samples = float(np.sum(worth(problem, plain.innovations)))
     best = min((s.cost for s in found), default=plain.cost)
-    most = plain.cost - 2.0 * max(_CERTAIN, 0.5 * _WORTH_A_FIT * (plain.cost - best))
+    most = plain.cost - 2.0 * max(CERTAIN, 0.5 * _WORTH_A_FIT * (plain.cost - best))
     # A law that changes what the derivatives are takes more steps than a screening makes.
     fits: list[tuple[Variant, Fitted]] = []
     lost = named_cost + _OUT_OF_REACH
@@ -111,9 +109,10 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     independent = worth(problem, fitted.innovations)
     bent = addition(problem, plain, held, fitted, law.effect, independent)
     # What one sample is worth depends on the fit that says so: both are held against the same.
-    named = _gain_of_all(problem, stages, independent)
+    disputed = stages[-1].disputed
+    named = max(_gain_of_all(problem, stages, independent), 0.0 if disputed is None else disputed.gain)
     is_stop = law.effect == SURFACE_STOP and _begins_beyond_the_trim(stages)
-    if not bent.worth_naming or bent.gain < max(_CERTAIN, named + (-_LIKELIER if is_stop else _LIKELIER)):
+    if not bent.worth_naming or bent.gain < max(CERTAIN, named + (-_LIKELIER if is_stop else _LIKELIER)):
         return None
     after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
     if np.mean(after < before) < _IN_MOST or not _shows(problem, held, bent.held_out):
@@ -189,7 +188,7 @@ def _is_another_matter(problem: Problem, stages: list[Stage], bent: Judged, inde
     alone = gained(first.fitted, first.held_out, last.fitted, last.held_out)
     beside = gained(bent.fitted, bent.held_out, both, held)
     matters = difference(problem, bent.held_out, held) > _BESIDE * bent.removed
-    return matters and beside > min(_BESIDE * alone, _CERTAIN)
+    return matters and beside > min(_BESIDE * alone, CERTAIN)
 
 
 def _share(judged: Judged, best: Judged) -> float:
