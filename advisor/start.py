@@ -1,5 +1,6 @@
 """Where the ``advisor`` program begins: what holds for the whole process, before large imports."""
 
+import signal
 import sys
 import warnings
 
@@ -21,4 +22,8 @@ def main() -> None:
         warnings.simplefilter("ignore")
     from advisor.cli import main as run
 
-    run()
+    try:
+        run()
+    finally:
+        # All is said: the interpreter's own end would otherwise die of a signal without a word.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -115,8 +115,9 @@ def command(
     for connection in filter(None, (start.campaign.master, announce_to)):
         parse_connection(connection)
     aircraft = start.campaign.parsed_aircraft(str(aircraft_file or start.recording))
-    before = (*start.earlier, start.recording) if start.goes_on else start.earlier
-    by_hand = NOTHING if no_marks else _decided(before)
+    # A recording that exists, and is not taken up, is another flight's, and so is what was decided on it.
+    mine = start.goes_on or not (start.recording and start.recording.exists())
+    by_hand = NOTHING if no_marks else _decided((*start.earlier, start.recording if mine else None))
     speaking = Speaking(
         source_system, read_key(signing_key) if signing_key else None, request_rates, announce, announce_to
     )

@@ -62,7 +62,7 @@ def test_a_name_in_a_refusal_is_shown_on_one_line(command: str, advisor: Advisor
 
 
 def test_arguments_in_a_usage_error_are_shown(advisor: Advisor) -> None:
-    run = advisor("analyze", "a.tlog", f"b{ESCAPE}")
+    run = advisor("study", f"b{ESCAPE}")
     assert run.returncode == 2
     assert all(line.isprintable() for line in run.stderr.split("\n"))
 

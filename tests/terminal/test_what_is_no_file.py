@@ -23,7 +23,7 @@ def test_what_is_no_file_is_one_sentence_and_exit_code_3(
     run = advisor(command, place)
     assert run.returncode == 3
     assert run.stderr.count("\n") == 1
-    assert ("folder" if what == "folder" else "no regular file") in run.stderr
+    assert ("folder" if what == "folder" else "not a file") in run.stderr
 
 
 @pytest.mark.parametrize("command", ["analyze", "gap", "replay"])
