@@ -13,6 +13,8 @@ from advisor.flight.same import are_one, is_fuller
 from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
+from advisor.gap.search.baseline import believed_derivatives
+from advisor.gap.verdict.untested import without_simulator
 from advisor.mavlink.logs import open_log
 from advisor.printable import printable
 from advisor.problems import Problem, UnusableInputError
@@ -117,6 +119,8 @@ def diagnose_logs(
     progress("reading", 0.0)
     flown = maneuvers_of(logs, aircraft, target_system, by_hand)
     found = diagnose(flown.maneuvers, aircraft, holdout, progress)
+    if believed_derivatives(aircraft) is None:
+        found = without_simulator(found)
     notes = list(flown.notes)
     if flown.again:
         every = len(flown.maneuvers) + flown.again

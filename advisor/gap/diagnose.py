@@ -26,7 +26,6 @@ from advisor.gap.verdict.amid import is_told_without, torn_by_a_change
 from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
-from advisor.gap.verdict.untested import without_simulator
 from advisor.problems import UnusableInputError
 
 
@@ -70,8 +69,6 @@ def diagnose(
             torn = None
     progress("measuring the gap", 0.9)
     diagnosis = answer(evidence, aircraft, kinematics, holdout)
-    if evidence.problem.believed is None:
-        diagnosis = without_simulator(diagnosis)
     used = {flight.number for flight in evidence.problem.flights.flights}
     missing = left_out([m for m in maneuvers if m.number not in used], torn)
     return replace(diagnosis, notes=(*diagnosis.notes, *missing))
