@@ -14,10 +14,10 @@ from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import believed_derivatives
-from advisor.gap.verdict.untested import without_simulator
 from advisor.mavlink.logs import open_log
 from advisor.printable import printable
 from advisor.problems import Problem, UnusableInputError
+from advisor.untested import without_simulator
 
 _PAUSE_S = 60.0
 """Between the last manoeuvre of one log and the first of the next, which no clock has measured."""
