@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality survival study-second damage pictures clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality study-gap survival study-second damage pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -100,7 +100,10 @@ robustness: .venv/.developed ## the estimator's own start on 2,000 random aircra
 	$(BIN)/python -m benchmarks.robustness
 
 study-quality: .venv/.developed ## good manoeuvres rejected, and other tests marked as studies
-	$(BIN)/python -m pytest -m study
+	$(BIN)/python -m pytest -m study --ignore tests/gap
+
+study-gap: .venv/.developed ## whole diagnoses of flights whose cause is known (ten minutes)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m study tests/gap
 
 survival: .venv/.developed ## a live campaign in which fifty processes are killed (three minutes)
 	$(BIN)/python -m pytest -m study tests/link/test_never_lost.py

@@ -6,6 +6,9 @@ from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 HARD = {"gust_std": 0.1, "coloured": 0.5, "jitter": 0.003, "speed_change": 0.03}
 
 

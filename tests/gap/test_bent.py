@@ -10,6 +10,9 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from tests.gap.generator import UAV, Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 
 @pytest.mark.parametrize(
     ("effect", "switches", "speed_change"),

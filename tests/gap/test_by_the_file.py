@@ -6,6 +6,9 @@ from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 
 @pytest.fixture(scope="module")
 def plane() -> Aircraft:

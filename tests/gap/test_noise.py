@@ -20,6 +20,9 @@ from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.innovations import DIFFUSE, AirModel, cost_of, gains_of
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 SYSTEM = np.array([-4.3, -0.03, -37.0, -4.8, 22.0])
 
 

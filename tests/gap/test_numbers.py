@@ -8,6 +8,9 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.normal import solved_within
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 HEIGHTS = (120.0, 121.0, 119.0)
 CAUSES = {
     "transport_delay": Setup(maneuvers=4, switches={"delay": 0.06}, seed=21),

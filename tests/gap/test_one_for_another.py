@@ -16,6 +16,9 @@ from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 SKEW_S, ARM_M = 0.08, 2.4
 
 

@@ -10,6 +10,9 @@ from sim.record import record
 from sim.scenario import read_scenario
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 C172 = """
 aircraft: c172p
 engine: jsbsim
@@ -26,7 +29,7 @@ def test_a_tail_in_the_wash_of_the_propeller_is_no_gap_at_any_speed():
 
 @pytest.mark.parametrize(
     ("effects", "verdict", "named"),
-    [("", "none", None), ("effects: {transport_delay: {delay_s: 0.06}}", "effect", "transport_delay")],
+    [("", "untested", None), ("effects: {transport_delay: {delay_s: 0.06}}", "effect", "transport_delay")],
 )
 def test_another_engines_aircraft_gets_no_other_name_than_what_was_put_into_it(
     tmp_path, effects, verdict, named

@@ -32,6 +32,9 @@ from advisor.gap.unnamed.remainder import (
 )
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 
 @pytest.fixture(scope="module")
 def gyro():

@@ -11,6 +11,9 @@ from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
 from tests.gap.generator import LIGHT_AIRCRAFT, Airframe, Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 
 @pytest.fixture(scope="module")
 def plane() -> Aircraft:

@@ -14,6 +14,9 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, SPEED
 from tests.gap.generator import UAV, Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 
 def remembering(rng, n, memory):
     """Noise of variance 1, each sample correlated with the one before."""

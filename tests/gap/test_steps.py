@@ -10,6 +10,9 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 
 def rounded(flown, channel, step, noise=0.0, seed=0):
     """The same with one channel rounded to a step, and noise added after that."""

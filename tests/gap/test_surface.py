@@ -15,6 +15,9 @@ from sim.record import record
 from sim.scenario import read_scenario
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 H, SMALL, DURATION = 0.005, 2e-5, 0.8
 OF_THE_SURFACE = (
     "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",

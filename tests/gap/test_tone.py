@@ -17,6 +17,9 @@ from advisor.gap.unnamed.swing import swings_the_aircraft
 from advisor.gap.unnamed.tone import line_of, ringing_hz, tone_in
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 STANDS_OUT = 3.8
 """The contrast from which on a line counts."""
 

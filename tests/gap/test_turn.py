@@ -10,6 +10,9 @@ from advisor.gap.diagnose import diagnose
 from advisor.gravity import GRAVITY_M_S2
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 BANKS = (-8.0, 14.0, 3.0, -20.0, 25.0)
 
 

@@ -24,6 +24,9 @@ from advisor.gap.unnamed.swing import swinging
 from advisor.gap.unnamed.wind import wind_shear
 from tests.gap.generator import LIGHT_AIRCRAFT, UAV, Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 BELIEVED = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0])
 
 

@@ -14,6 +14,9 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.unnamed.unnamed_air import unlike_gusts, wave_in
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 T = KNOTS_S * np.arange(80)
 IS_NO_GUST, IS_A_WAVE = 0.25, 0.55
 

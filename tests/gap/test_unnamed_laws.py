@@ -17,6 +17,9 @@ from advisor.gap.unnamed.unnamed_law import Law
 from advisor.gap.unnamed.weight import Weight
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 HARD = Setup(maneuvers=6, gust_std=0.12, coloured=0.5, jitter=0.004, speed_change=0.03, seed=37)
 
 

@@ -13,6 +13,9 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.unnamed.unsteady import unsteady
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 
 @pytest.fixture(scope="module")
 def flown():

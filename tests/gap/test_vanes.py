@@ -12,6 +12,9 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import INDEX
 from tests.gap.generator import Setup, fly
 
+pytestmark = pytest.mark.study
+"""Whole diagnoses, run by ``make study-gap``."""
+
 HARD = Setup(gust_std=0.12, coloured=0.5, jitter=0.004, speed_change=0.03, seed=37)
 
 
