@@ -89,6 +89,7 @@ def measure(seconds: float, rate: float) -> None:
         process.link() as link,
     ):
         assert process.pid is not None
+        link.read(0.5)  # as in flight: the advisor reads before the vehicle flies
         vehicle = subprocess.Popen(
             [sys.executable, __file__, "--send", str(port), "--seconds", str(seconds), "--rate", str(rate)],
             stdout=subprocess.PIPE,

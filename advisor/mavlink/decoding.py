@@ -8,7 +8,7 @@ from advisor.flight.messages import Columns
 from advisor.flight.pieces import pieces
 from advisor.mavlink.frames import FrameScanner
 from advisor.mavlink.health import LinkStatistics
-from advisor.mavlink.outgoing import Ids
+from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Ids, Packer
 
 
 class Decoding:
@@ -23,6 +23,9 @@ class Decoding:
     """
 
     def __init__(self, elevator: Elevator | None, target_system: int | None) -> None:
+        # No packet of the vehicle shall wait for the decoder's kernels to be loaded.
+        hello = Packer(None).pack(Heartbeat().speak(None, 0.0)[0], (OWN_SYSTEM, OWN_COMPONENT), 0)
+        FrameScanner().feed(bytes(8) + hello)
         self._scanner = FrameScanner()
         self._who = Identity(elevator or Elevator(), target_system)
         self._followed: Ids | None = None
