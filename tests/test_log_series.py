@@ -17,10 +17,13 @@ from advisor.cli import main
 from advisor.flight.same import are_one
 from advisor.log_series import LogSeries
 from advisor.marks_file import write_by_hand
-from tests.flights import SHIPPED, TWO, recorded
+from tests.flights import TWO, recorded
 from tests.mavlink.paths import Way, heard_over, records
 
 DAY_US = 86_400_000_000
+
+CASES = Path(__file__).parent / "cases"
+"""One flight, cut to a manoeuvre, as three kinds of log."""
 
 
 def flight(tmp_path: Path, name: str, seed: int, day: int = 0) -> Path:
@@ -158,10 +161,7 @@ def recorded_from_s(log: Path) -> float:
 
 
 def test_a_log_and_the_vehicles_own_log_of_one_flight_count_once() -> None:
-    cases = SHIPPED.parent.parent / "shared" / "cases"
-    if not cases.is_dir():
-        pytest.skip("the small logs are not at hand")
-    state = followed(cases / "base.bin", cases / "t_base.tlog").state
+    state = followed(CASES / "base.bin", CASES / "t_base.tlog").state
     assert [j.maneuver.number for j in state.maneuvers] == [1]
 
 
@@ -241,10 +241,7 @@ def test_a_mark_of_the_command_line_needs_a_single_log(
 def test_the_log_of_another_kind_of_autopilot_is_refused_by_name(
     first: Path, run: Callable[..., Ended]
 ) -> None:
-    cases = SHIPPED.parent.parent / "shared" / "cases"
-    if not cases.is_dir():
-        pytest.skip("the small logs are not at hand")
-    document = run("analyze", first, cases / "u_base.ulg", "--json").document
+    document = run("analyze", first, CASES / "u_base.ulg", "--json").document
     assert [p["code"] for p in document["problems"]] == ["other_vehicle"]
 
 

@@ -15,7 +15,7 @@ from advisor.flight.motion import bank_at, integrated
 from advisor.flight.record import Channel
 
 MOVED_RAD = radians(2.0)
-"""Range of the pitch angle, or of the integrated pitch rate, rad, from which on the aircraft has moved. Every
+"""Least range of the pitch angle, or of the integrated pitch rate, of an aircraft that has moved, rad. Every
 manoeuvre on record moves by more, and no parked aircraft does."""
 _ALIKE = (0.5, 2.0)
 """Ratio of the pitch angle's change to the integrated pitch rate, within which both are of one motion. The

@@ -17,7 +17,7 @@ _FOLLOWS = 0.5
 """Share that the pitch command explains at least of what the other commands leave of an output's movement. At
 10 Hz two topics catch different moments of each step and keep about 0.8."""
 _SMALLER = 0.3
-"""Share of the largest effect of pitch on an output from which on another output counts as well: less is a
+"""Least effect of pitch on an output that counts, as a share of the largest effect on any output: less is a
 mixer's trim, such as flaps that compensate."""
 _LEAST_SAMPLES = 20
 

@@ -34,7 +34,7 @@ TOPICS: dict[str, set[str]] = {
 """Topics, and the fields needed of each: without them (another version) a topic counts as missing."""
 
 ENOUGH_HZ = 25.0
-"""Rate from which on the preferred of several topics is read though another is faster, 1/s: twelve samples
+"""Least rate at which the preferred topic is read although another topic is faster, 1/s: twelve samples
 to a short period of 2 Hz. PX4's filtered rates come at 50 Hz by default, its raw gyro at 200 Hz."""
 
 Topic = Mapping[str, NDArray[Any]]

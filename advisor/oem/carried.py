@@ -33,7 +33,7 @@ manoeuvre of ``logs/arduplane-calm.tlog``)."""
 REST_S = 2.0
 """Of the command before the new samples: a servo has forgotten what came earlier."""
 NEARLY_SINGULAR = 1e12
-"""Sum of the variances, each over what it were alone, from which on round-off decides the inverse."""
+"""Largest sum of variances, each relative to the variance alone, that round-off leaves alone."""
 _INITIAL = [N_SHARED + LOCAL.index(name) for name in ("alpha_initial", "q_initial", "theta_initial")]
 _Q_BIAS = LOCAL.index("q_bias")
 _EIGHT = np.array([i if is_shared else N_SHARED + i for is_shared, i in REPORTED])
