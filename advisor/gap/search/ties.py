@@ -8,7 +8,7 @@ from advisor.gap.search.merit import Judged
 NEAR = 5.0
 """Difference of held-out log likelihood below which two explanations are a tie."""
 _LITTLE = 0.1
-"""Difference in gain below which twin effects tie, as a share of the gain of either: twins differ by a rest."""
+"""Difference in gain below which twin effects tie, as a share of the gain of either."""
 
 
 def breaking(effect: str, other: str) -> str:
