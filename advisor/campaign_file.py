@@ -82,12 +82,7 @@ def read_campaign(recording: Path) -> CampaignFile | None:
     if not path.exists():
         return None
     content = read_yaml(path, "Mend the file, or move it away and give the options again.")
-    known = isinstance(content, dict) and set(content) <= set(_KEYS)
-    if (
-        not known
-        or not isinstance(content.get("master"), str)
-        or content.get("rule") not in (None, *get_args(Rule))
-    ):
+    if not _is_campaign(content):
         raise ConfigurationError(
             f"{path}: must hold master and may hold {', '.join(_KEYS[1:])}. Move the file away and give the "
             "options again."

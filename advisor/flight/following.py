@@ -77,10 +77,6 @@ class Following:
             newest[""] = newest[kind] = float(c.arrival_s[-1])
         return found
 
-    def is_silent(self, system: int, now_s: float) -> bool:
-        """Whether nothing of a vehicle has come lately."""
-        return now_s - self._heard.get(system, {}).get("", -np.inf) > LATELY_S
-
     def _weigh(self, now_s: float, vehicle: Vehicle, all_heard: Sequence[Vehicle]) -> Vehicle | None:
         if self._qualifies(vehicle, now_s):
             self._served[vehicle.system] = self._served.get(vehicle.system, 0) + 1
