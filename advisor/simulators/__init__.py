@@ -1,0 +1,1 @@
+"""Simulators that a flight is compared with: a small protocol, and adapters to real programs."""
