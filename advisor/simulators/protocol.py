@@ -1,9 +1,9 @@
 """What a simulator must do to be compared with a flight.
 
-A simulator trims at a flight condition and replays recorded inputs from there. Effects of the command and of the
-instruments are applied around a simulator, so every simulator carries them. Effects of the force and of the
-pitching moment need a simulator that takes increments. Other packages add simulators with the entry point
-``inflight_advisor.simulators``: a name before the colon of a specification, and a factory that takes the rest.
+A simulator trims at a flight condition and replays recorded inputs from there. Effects of the command and of
+the instruments are applied around a simulator, so every simulator carries them. Effects of the force and of
+the pitching moment need a simulator that takes increments. Other packages add simulators with the entry point
+``inflight_advisor.simulators``: a name before the colon of a specification, and a factory for the rest.
 """
 
 from collections.abc import Callable, Mapping
@@ -98,7 +98,10 @@ class Simulator(Protocol):
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e at the condition; None: to be identified from replays."""
+        """Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e at the condition.
+
+        None: they are identified from replays.
+        """
 
     def close(self) -> None:
         """End whatever process the simulator runs in."""
