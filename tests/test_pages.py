@@ -14,7 +14,7 @@ from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Trace
 from benchmarks.pages import decisions, effects, results
 from benchmarks.pages.__main__ import DATA, DOCS, made, main
-from benchmarks.pages.example import excerpt
+from benchmarks.pages.example import excerpt, foresight, transcript
 from benchmarks.pages.figure import figure
 from tests.gap.test_report_screen import diagnosis
 
@@ -73,8 +73,15 @@ def test_two_constants_of_one_assignment_have_a_value_each(room):
     assert row.values == (("_FEW", "3"), ("_MANY", "5.0"))
 
 
-def test_an_index_of_an_array_is_no_decision(room):
-    assert list(decisions.rows_of(room("SPEED, HEIGHT = range(2)\nSIZE = Size(3)\n") / "module.py")) == []
+def test_an_index_of_an_array_and_a_description_are_no_decision(room):
+    assert (
+        list(
+            decisions.rows_of(
+                room("SPEED, HEIGHT = range(2)\nSIZE = Size(3)\nFIRST = ALL[:3]\n") / "module.py"
+            )
+        )
+        == []
+    )
 
 
 def test_the_page_of_decisions_has_every_number_of_the_diagnosis_with_its_value():
@@ -197,6 +204,12 @@ def test_the_example_shows_the_verdict_the_place_and_the_causes():
     head, causes = "CAUSE FOUND\n╭─ where: here ─╮\n", "cause  prob.\n● lag  100 %\n"
     output = f"{head}╭─ where in the flight ─╮\nx\n{causes}● part of it\n"
     assert excerpt(output) == "CAUSE FOUND\n╭─ where: here ─╮\n[...]\ncause  prob.\n● lag  100 %"
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(("page", "told"), [("gap.md", transcript), ("foresee.md", foresight)])
+def test_a_worked_example_is_what_the_command_says_today(page, told):
+    assert told() in (DOCS / page).read_text(encoding="utf-8"), "stale: run make examples"
 
 
 def test_the_figure_has_both_errors_of_every_channel():

@@ -63,7 +63,9 @@ def _is_number(node: ast.AST) -> bool:
 
 
 def _is_plain(value: ast.expr) -> bool:
-    called = (node.func for node in ast.walk(value) if isinstance(node, ast.Call))
-    return all(
+    parts = list(ast.walk(value))
+    called = (node.func for node in parts if isinstance(node, ast.Call))
+    known = (
         isinstance(f, ast.Attribute) or (isinstance(f, ast.Name) and f.id in _ARITHMETIC) for f in called
     )
+    return all(known) and not any(isinstance(node, ast.Subscript) for node in parts)
