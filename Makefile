@@ -112,6 +112,13 @@ DAMAGE_CASES ?= 3400
 damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAMAGE_CASES of each of three kinds)
 	DAMAGE_CASES=$(DAMAGE_CASES) $(BIN)/python -m pytest --timeout 0 tests/test_damaged_logs.py
 
+.PHONY: pages examples
+pages: .venv/.developed ## the pages that are made from the code and from scored runs
+	$(BIN)/python -m benchmarks.pages
+
+examples: .venv/.developed ## the same, with the worked examples and their figure
+	$(BIN)/python -m benchmarks.pages --examples
+
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
 	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs
 

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from advisor.gap.candidates.traits import TRAITS
+from benchmarks.pages.constants import constants_in
 
 ROOM = Path(__file__).parents[1] / "advisor" / "gap"
 TABLE = ROOM / "candidates"
@@ -44,24 +45,9 @@ def counted() -> dict[str, int]:
         found["lines"] += len(text.splitlines())
         found["complex functions"] += sum(_complexity(f) > MOST_COMPLEX for f in _functions(tree))
         if not path.is_relative_to(TABLE):
-            found["constants"] += sum(_constants(tree))
+            found["constants"] += sum(len(constant.names) for constant in constants_in(tree))
             found["names compared"] += sum(map(_compares_a_name, ast.walk(tree)))
     return found
-
-
-def _constants(tree: ast.Module) -> Iterator[int]:
-    """How many names in capitals each assignment at the top of a module gives to numbers."""
-    for node in tree.body:
-        if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
-            continue
-        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-        names = [name.id for target in targets for name in ast.walk(target) if isinstance(name, ast.Name)]
-        if any(map(_is_number, ast.walk(node.value))):
-            yield sum(name.isupper() for name in names)
-
-
-def _is_number(node: ast.AST) -> bool:
-    return isinstance(node, ast.Constant) and type(node.value) in (int, float)
 
 
 def _compares_a_name(node: ast.AST) -> bool:

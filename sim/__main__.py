@@ -1,5 +1,6 @@
 """``python -m sim``: fly the bundled aircraft on a link, or record its telemetry."""
 
+import json
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -163,12 +164,17 @@ def commit(folder: Path, answers: Path) -> None:
 @click.argument("answers", type=click.Path(path_type=Path, exists=True))
 @click.option("--key", type=click.Path(path_type=Path, exists=True), help="Default: beside the folder.")
 @click.option("--details", is_flag=True, help="Also effect by effect, and every wrong answer.")
-def reveal(folder: Path, answers: Path, key: Path | None, details: bool) -> None:
+@click.option("--json", "as_json", is_flag=True, help="The figures as one JSON document.")
+def reveal(folder: Path, answers: Path, key: Path | None, details: bool, as_json: bool) -> None:
     """Open the key and score committed answers, with 95 % intervals."""
     from sim.blind.generate import key_beside
-    from sim.blind.reveal import report
+    from sim.blind.reveal import report, score_document
 
-    for line in report(folder, answers, key or key_beside(folder), details):
+    opened = key or key_beside(folder)
+    if as_json:
+        click.echo(json.dumps(score_document(folder, answers, opened), indent=1))
+        return
+    for line in report(folder, answers, opened, details):
         click.echo(line)
 
 

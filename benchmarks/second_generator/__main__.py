@@ -5,10 +5,11 @@ python -m benchmarks.second_generator score cases answers.jsonl --details
 """
 
 import argparse
+import json
 from pathlib import Path
 
 from .case_files import draw_set
-from .score import report
+from .score import report, score_document
 
 
 def main() -> None:
@@ -23,9 +24,12 @@ def main() -> None:
     score.add_argument("folder", type=Path)
     score.add_argument("answers", type=Path)
     score.add_argument("--details", action="store_true", help="one line a wrong case")
+    score.add_argument("--json", action="store_true", help="the figures as one JSON document")
     chosen = options.parse_args()
     if chosen.command == "draw":
         draw_set(chosen.out, chosen.cases, chosen.seed, chosen.only)
+    elif chosen.json:
+        print(json.dumps(score_document(chosen.folder, chosen.answers), indent=1))
     else:
         print(report(chosen.folder, chosen.answers, details=chosen.details))
 

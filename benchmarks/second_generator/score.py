@@ -1,5 +1,6 @@
 """Score the diagnosis' answers against a key."""
 
+import hashlib
 import json
 import math
 from collections.abc import Iterable
@@ -188,18 +189,53 @@ def _speed_lines(seconds: list[float]) -> Iterable[str]:
         yield f"{f'CPU seconds at most {FAST_S:.0f}':<52}{fast.text()}"
 
 
-def report(folder: Path, answers: Path, details: bool = False) -> str:
-    """The table as text; `details` adds a line a wrong case. A case without an answer is unusable."""
-    cases = json.loads(key_file(folder).read_text())["cases"]
+@dataclass(frozen=True)
+class Scored:
+    """A set and its answers laid side by side."""
+
+    seed: int | None
+    cases: int
+    answered: int
+    table: Table
+    seconds: list[float]
+    """CPU time of each answer that says it."""
+
+
+def scored(folder: Path, answers: Path) -> Scored:
+    """Score a set. A case without an answer is unusable."""
+    key = json.loads(key_file(folder).read_text())
+    cases = key["cases"]
     lines = [json.loads(line) for line in answers.read_text().splitlines() if line.strip()]
     given = {str(line["case"]): line for line in lines}
     table = Table()
     for name, case in cases.items():
         _score_case(table, name, case, given.get(name, {}).get("answer") or {})
-    width = 52
-    out = [f"{len(cases)} cases, {len(given)} answers; shares with Wilson 95 % intervals", ""]
+    seconds = [float(line["cpu_s"]) for line in lines if line.get("cpu_s") is not None]
+    return Scored(key.get("seed"), len(cases), len(given), table, seconds)
+
+
+def report(folder: Path, answers: Path, details: bool = False) -> str:
+    """The table as text; `details` adds a line a wrong case."""
+    found = scored(folder, answers)
+    table, width = found.table, 52
+    out = [f"{found.cases} cases, {found.answered} answers; shares with Wilson 95 % intervals", ""]
     out += [f"{title:<{width}}{table.rows[title].text()}" for title in sorted(table.rows)]
-    out += _speed_lines([float(line["cpu_s"]) for line in lines if line.get("cpu_s") is not None])
+    out += _speed_lines(found.seconds)
     if details:
         out += ["", *table.wrong]
     return "\n".join(out)
+
+
+def score_document(folder: Path, answers: Path) -> Document:
+    """The table as one JSON document, with the seed of the set and the hash of the answers."""
+    found = scored(folder, answers)
+    fast = Row(sum(value <= FAST_S for value in found.seconds), len(found.seconds))
+    rows = {**found.table.rows, f"CPU seconds at most {FAST_S:.0f}": fast}
+    return {
+        "schema": "score/1",
+        "seed": found.seed,
+        "cases": found.cases,
+        "answered": found.answered,
+        "answers_sha256": hashlib.sha256(answers.read_bytes()).hexdigest(),
+        "figures": [{"name": title, "hits": row.hits, "trials": row.trials} for title, row in rows.items()],
+    }

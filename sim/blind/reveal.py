@@ -1,11 +1,12 @@
 """Open the key of sealed cases and tell how well they were answered."""
 
+import hashlib
 import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from sim.blind.score import by_effect, judge, score
+from sim.blind.score import Rate, by_effect, in_time, judge, score
 from sim.blind.seal import SealError, unseal
 
 
@@ -57,3 +58,39 @@ def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -
             sizes = {effect: {k: round(v, 5) for k, v in own.items()} for effect, own in j.sizes.items()}
             truth = f"{name} {j.group:10s} {sizes or '-'} gap {j.gap:.2f}"
             yield f"  {truth} -> {told} @ {j.block} p={j.probability:.2f}"
+
+
+def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
+    """The score table as one JSON document, with the hash of the answers.
+
+    Each figure has ``trials``, and ``hits`` where it is a share, else ``value`` in percent.
+
+    Raises
+    ------
+    SealError
+        The answers are not those committed, or the key is not the one sealed.
+    """
+    said = read_answers(answers)
+    key = unseal(folder, answers, key_file)
+    return {
+        "schema": "score/1",
+        "cases": len(key),
+        "answered": len(set(said) & set(key)),
+        "answers_sha256": hashlib.sha256(answers.read_bytes()).hexdigest(),
+        "figures": [_figure(rate) for rate in (*score(judge(key, said)), in_time(_seconds_of(answers)))],
+    }
+
+
+def _figure(rate: Rate) -> dict[str, Any]:
+    said: dict[str, Any] = {"name": rate.name.strip(), "trials": rate.count}
+    if rate.hits is not None:
+        said["hits"] = rate.hits
+    elif rate.count:
+        said["value"] = rate.value
+    return said
+
+
+def _seconds_of(answers: Path) -> list[float]:
+    """Processor time of each answer that says it."""
+    lines = (json.loads(line) for line in answers.read_text(encoding="utf-8").splitlines() if line.strip())
+    return [float(line["cpu_s"]) for line in lines if line.get("cpu_s") is not None]

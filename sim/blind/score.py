@@ -10,6 +10,8 @@ import numpy as np
 MODERATE_GAP = 0.2
 """Structural gap above the noise from which an effect counts as moderate."""
 
+FAST_S = 5.0
+"""Processor time that one diagnosis may take."""
 Z95 = 1.959964
 BINS = 10
 
@@ -24,6 +26,8 @@ class Rate:
     high: float
     count: int
     goal: str
+    hits: int | None = None
+    """Cases of a share that are right; None of a median or an error."""
 
     def line(self) -> str:
         """One row of the table; values in percent unless the goal speaks otherwise."""
@@ -153,6 +157,11 @@ def by_effect(judged: Sequence[Judged]) -> list[Rate]:
     ]
 
 
+def in_time(seconds: Sequence[float]) -> Rate:
+    """How many answers took no more processor time than they may."""
+    return _share(f"CPU seconds at most {FAST_S:g}", [s <= FAST_S for s in seconds], "all")
+
+
 def _alarm(j: Judged) -> bool:
     """An effect, a change or an unknown claimed where nothing was; background turbulence may be named."""
     return j.verdict != "none" and not j.is_there
@@ -175,11 +184,12 @@ def _covered(j: Judged) -> list[bool]:
 def _share(name: str, hits: Sequence[bool], goal: str) -> Rate:
     count = len(hits)
     if not count:
-        return Rate(name, math.nan, math.nan, math.nan, 0, goal)
+        return Rate(name, math.nan, math.nan, math.nan, 0, goal, 0)
     share, squared = sum(hits) / count, Z95**2
     middle = (share + squared / (2 * count)) / (1 + squared / count)
     half = Z95 / (1 + squared / count) * math.sqrt(share * (1 - share) / count + squared / (4 * count**2))
-    return Rate(name, 100 * share, 100 * max(middle - half, 0.0), 100 * min(middle + half, 1.0), count, goal)
+    low, high = 100 * max(middle - half, 0.0), 100 * min(middle + half, 1.0)
+    return Rate(name, 100 * share, low, high, count, goal, sum(hits))
 
 
 def _median(name: str, judged: Sequence[Judged], goal: str) -> Rate:

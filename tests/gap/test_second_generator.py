@@ -38,7 +38,7 @@ from benchmarks.second_generator.motion import (
     derivatives,
 )
 from benchmarks.second_generator.planning import Wishes
-from benchmarks.second_generator.score import report, wilson
+from benchmarks.second_generator.score import report, score_document, wilson
 from benchmarks.second_generator.telemetry import Noise
 from benchmarks.second_generator.trim import level_state, linearised, trimmed
 from benchmarks.second_generator.visibility import (
@@ -313,5 +313,9 @@ def test_score_counts_a_perfect_set_of_answers(tmp_path: Path) -> None:
     table = report(folder, answers, details=True)
     assert "0 of 1" in table.split("false alarm")[1]
     assert table.count("0 of 1") == 2  # both rows of false alarms, nothing else missed
+    document = score_document(folder, answers)
+    assert (document["cases"], document["answered"]) == (5, 5)
+    assert {"name": "CPU seconds at most 5", "hits": 5, "trials": 5} in document["figures"]
+    assert {"name": "nothing there: false alarm", "hits": 0, "trials": 1} in document["figures"]
     answers.write_text("")
     assert "usable" in report(folder, answers)

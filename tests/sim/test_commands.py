@@ -83,6 +83,10 @@ def test_sealed_cases_are_made_committed_and_revealed(tmp_path, sim):
     assert code == 0
     assert "false alarms without an effect" in table
     assert key_beside(folder).exists()
+    code, document, _ = sim("reveal", folder, answers, "--json")
+    assert code == 0
+    alarms = {"name": "false alarms without an effect", "trials": 2, "hits": 0}
+    assert alarms in json.loads(document)["figures"]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,198 @@
+"""``docs/effects.md``: the table of effects, from its traits and from what the fit is given of each."""
+
+import re
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from advisor.effects import LEAST
+from advisor.gap.candidates.trait import Said, Trait
+from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.verdict.causes import parameters_of
+from advisor.report.gap_sizes import in_units, short
+from benchmarks.pages.planned import PLANS, Plan, described
+
+_HEAD = """# The effects that a diagnosis can name
+
+Made by `make pages` from `advisor/gap/candidates`; edit the table there, not this page.
+
+{count} effects, by the block of the simulator that they belong to. For each this page says:
+
+- *Said*: the sentence of a verdict. Letters in italics stand for sizes.
+- *Parameters*: as `effects:` of the aircraft file spells them, in the file's unit, and the range that a
+  search covers. A dash marks what is not searched for: a choice between two descriptions, or a number that
+  another module finds.
+- *Named from*: the least size of the first parameter. Where none stands, the change of the motion alone
+  decides ([decisions](decisions-of-the-gap.md), `search/merit.py` and `search/score.py`).
+- *Needs*: channels, or a change in the flight, without which the effect cannot be seen.
+- *Apart from*: what looks alike, and what tells the two apart.
+
+"By the flight" marks a bound that depends on the length of the flight, on its heights or on its air speed.
+Where an autopilot has filtered the channels, a time of a sensor has a name from `_FILTERED_S` of the
+decisions on.
+"""
+_BLOCKS = {
+    "input": "between command and surface",
+    "moment_equation": "pitching moment",
+    "force_equation": "lift",
+    "air": "air",
+    "alpha_sensor": "angle of attack",
+    "pitch_rate_sensor": "pitch rate",
+    "accelerometer": "accelerometer",
+    "timing": "time stamps",
+}
+_KINDS = {
+    "by_nature": "Every aircraft has some: faint, it is no finding.",
+    "of_one_flight": "It belongs to one flight and is left aside where an aircraft file states it.",
+    "of_one_imu": "An angle of attack that an autopilot estimates cannot show it.",
+    "takes": "Its size is what it takes away.",
+    "left_open": "Where the aircraft file does not state it, it is named after all else.",
+}
+_CHANNELS = {"alpha": "angle of attack", "a_z": "vertical acceleration", "theta": "attitude"}
+_SI_ENDINGS = {
+    "_rad_s": "rad/s",
+    "_per_s": "1/s",
+    "_m_s": "m/s",
+    "_rad": "rad",
+    "_hz": "Hz",
+    "_s": "s",
+    "_m": "m",
+}
+_CHOICES = ("about_trim", "stability_only", "with_moment", "with_attitude", "with_pitch_rate")
+_BY_FLIGHT = "by the flight"
+
+
+def page() -> str:
+    """The page as Markdown."""
+    parts = [_HEAD.format(count=len(TRAITS))]
+    for block, title in _BLOCKS.items():
+        parts.append(f"## {title[0].upper()}{title[1:]} (`{block}`)\n")
+        parts += [_section(name, trait) for name, trait in TRAITS.items() if trait.block == block]
+    return "\n".join(parts)
+
+
+def _section(effect: str, trait: Trait) -> str:
+    lines = [f"### `{effect}`\n", *(f"- {said}" for said in _said(trait)), *_parameters(effect)]
+    lines += [f"- *Named from*: {size}." for size in _named_from(effect)]
+    lines += [f"- *Needs*: {need}." for need in _needs(effect, trait)]
+    lines += [f"- *Apart from* {other}: {way}." for other, way in _apart(effect, trait)]
+    lines += [f"- {sentence}" for flag, sentence in _KINDS.items() if getattr(trait, flag)]
+    return "\n".join(lines) + "\n"
+
+
+def _said(trait: Trait) -> Iterator[str]:
+    yield f"*Said*: {_sentences(trait.said)}"
+    for parameter, said in trait.said_with.items():
+        yield f"*Said*, with `{parameter}`: {_sentences(said)}"
+    if trait.said_beyond:
+        yield f"*Said*, where the simulator has some of it: {_sentences(trait.said_beyond)}"
+    if trait.stated is not None:
+        yield f"*Stated* in the aircraft file as `{'.'.join(trait.stated)}`."
+
+
+def _sentences(said: Said) -> str:
+    both = (said,) if isinstance(said, str) else said
+    return " / ".join(re.sub(r"\{\w+:[^}]*\}", "*x*", text) + "." for text in both)
+
+
+def _parameters(effect: str) -> Iterator[str]:
+    yield "- *Parameters*:\n"
+    yield "  | parameter | unit | searched from | to |\n  |---|---|---|---|"
+    for parameter in LEAST[effect]:
+        low, high = _range(effect, parameter)
+        yield f"  | `{parameter}` | {_unit(parameter)} | {low} | {high} |"
+    yield ""
+
+
+def _unit(parameter: str) -> str:
+    if parameter in _CHOICES:
+        return "1 for yes"
+    for ending, unit in _SI_ENDINGS.items():
+        if parameter.endswith(ending):
+            return unit
+    _, unit = in_units(parameter)
+    return "share" if unit == "%" or parameter.endswith("share") else unit or "1"
+
+
+def _range(effect: str, parameter: str) -> tuple[str, str]:
+    """Bounds of the search, from every description that has the parameter, on two flights."""
+    ends = [
+        [bounds for v in variants if (bounds := _bounds(v).get(parameter)) is not None]
+        for variants in (described(effect, plan) for plan in PLANS)
+    ]
+    if not ends[0]:
+        return "–", "–"
+    lows, highs = ({pick(b[i] for b in of_plan) for of_plan in ends} for i, pick in ((0, min), (1, max)))
+    return _figure(lows), _figure(highs)
+
+
+def _figure(values: set[float]) -> str:
+    shown = {short(value).replace("-", "−") for value in values}
+    return "no end" if max(map(abs, values)) >= 1e8 else shown.pop() if len(shown) == 1 else _BY_FLIGHT
+
+
+def _bounds(variant: Variant) -> Mapping[str, tuple[float, float]]:
+    """The ends of each parameter as the aircraft file spells them."""
+    ends = [
+        parameters_of(variant, np.array(end), np.zeros(len(end))) for end in zip(*variant.bounds, strict=True)
+    ]
+    return {
+        name: (min(low, high), max(low, high))
+        for name in ends[0]
+        if name not in variant.fixed
+        for low, high in [(ends[0][name].value, ends[1][name].value)]
+    }
+
+
+def _named_from(effect: str) -> Iterator[str]:
+    here, elsewhere = (_least(effect, plan) for plan in PLANS)
+    for parameter, sizes in here.items():
+        shown = " or ".join(sizes)
+        changes = sizes != elsewhere[parameter]
+        yield f"`{parameter}` {shown}{f' in {PLANS[0].what}, {_BY_FLIGHT}' if changes else ''}"
+
+
+def _least(effect: str, plan: Plan) -> Mapping[str, list[str]]:
+    """Of each size of an effect the least that has a name, in words, and the least beyond doubt."""
+    found: dict[str, list[str]] = {}
+    for v in described(effect, plan):
+        if v.smallest > 0.0:
+            factor, unit = in_units(v.names[0])
+            size = factor * (1.0 / v.smallest if v.inverted else v.smallest)
+            text = f"{_rounded(size)} {unit}".rstrip() + (" and slower" if v.inverted else "")
+            if v.if_beyond_doubt < 1.0:
+                text += f" (beyond doubt {_rounded(v.if_beyond_doubt * size)} {unit})"
+            known = found.setdefault(v.names[0], [])
+            known += [text] if text not in known else []
+    return found
+
+
+def _rounded(size: float) -> str:
+    return short(float(f"{size:.2g}"))
+
+
+def _needs(effect: str, trait: Trait) -> Iterator[str]:
+    reasons: dict[str, list[str]] = {}
+    if trait.need is not None:
+        reasons.setdefault(trait.need.add, []).append(trait.need.because)
+    if trait.unrecorded is not None:
+        _, because, add = trait.unrecorded
+        reasons.setdefault(add, []).append(because)
+    yield from (f"{add}; without that: “{'” or “'.join(because)}”" for add, because in reasons.items())
+    if trait.need is None and trait.channel:
+        yield f"the channel {_CHANNELS[trait.channel]}"
+    if trait.unrecorded is None:
+        yield from sorted({f"the {need} in the log" for v in described(effect, PLANS[0]) for need in v.needs})
+    if not trait.of_the_stick:
+        yield "something besides the elevator that varies"
+
+
+def _apart(effect: str, trait: Trait) -> Iterator[tuple[str, str]]:
+    yield from ((f"`{other}`", way) for other, way in trait.apart.items())
+    yield from ((f"`{other}`", t.apart[effect]) for other, t in TRAITS.items() if effect in t.apart)
+    if trait.imitated_by is not None:
+        yield trait.imitated_by
+    if trait.imitated_without is not None:
+        output, other, way = trait.imitated_without
+        yield f"{other}, without the {_CHANNELS[output]}", way
