@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality study-gap survival study-second damage pictures clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality study-gap survival study-second study-third damage pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -88,6 +88,12 @@ study-second: .venv/.developed ## the diagnosis on 240 flights of the second gen
 	$(BIN)/python -m benchmarks.second_generator draw --cases 240 --seed $(SEED) --out build/second
 	$(BIN)/python -m benchmarks.answer_sealed build/second build/second.jsonl
 	$(BIN)/python -m benchmarks.second_generator score build/second build/second.jsonl --details
+
+study-third: .venv/.developed ## the diagnosis on 240 flights of the third generator (SEED=...; about fifteen minutes)
+	rm -rf build/third build/third.key.json build/third.jsonl
+	$(BIN)/python -m benchmarks.third_generator draw --cases 240 --seed $(SEED) --out build/third
+	$(BIN)/python -m benchmarks.answer_sealed build/third build/third.jsonl
+	$(BIN)/python -m benchmarks.third_generator score build/third build/third.jsonl --details
 
 FLIGHTS ?= ../shared/flights
 real: .venv/.developed ## records of real aircraft against what is known of them (FLIGHTS=folder)

@@ -58,28 +58,28 @@ def parameters(wiring: Wiring) -> dict[str, float]:
     return values
 
 
-def _milliseconds(seconds: float) -> int:
+def milliseconds(seconds: float) -> int:
     return round(seconds * 1e3) & 0xFFFFFFFF
 
 
-def _microseconds(seconds: float) -> int:
+def microseconds(seconds: float) -> int:
     return round(seconds * 1e6)
 
 
-def _int16(value: float) -> int:
+def int16(value: float) -> int:
     return int(np.clip(round(value), -32768, 32767))
 
 
-def _imu(name: str, stamp: float, a_x: float, a_z: float, q: float) -> mavlink.MAVLink_message:
+def imu_message(name: str, stamp: float, a_x: float, a_z: float, q: float) -> mavlink.MAVLink_message:
     if name == "HIGHRES_IMU":
         return mavlink.MAVLink_highres_imu_message(
-            _microseconds(stamp), a_x, 0.0, a_z, 0.0, q, 0.0, 0.2, 0.0, 0.4, 950.0, 0.0, 500.0, 20.0, 63
+            microseconds(stamp), a_x, 0.0, a_z, 0.0, q, 0.0, 0.2, 0.0, 0.4, 950.0, 0.0, 500.0, 20.0, 63
         )
     milli_g, milli_rate = 1e3 / GRAVITY, 1e3
-    values = (_int16(a_x * milli_g), 0, _int16(a_z * milli_g), 0, _int16(q * milli_rate), 0, 200, 0, 400)
+    values = (int16(a_x * milli_g), 0, int16(a_z * milli_g), 0, int16(q * milli_rate), 0, 200, 0, 400)
     if name == "RAW_IMU":
-        return mavlink.MAVLink_raw_imu_message(_microseconds(stamp), *values)
-    return mavlink.MAVLink_scaled_imu2_message(_milliseconds(stamp), *values)
+        return mavlink.MAVLink_raw_imu_message(microseconds(stamp), *values)
+    return mavlink.MAVLink_scaled_imu2_message(milliseconds(stamp), *values)
 
 
 def _servo(stamp: float, elevator_us: int, throttle_us: int, wiring: Wiring) -> mavlink.MAVLink_message:
@@ -87,7 +87,7 @@ def _servo(stamp: float, elevator_us: int, throttle_us: int, wiring: Wiring) -> 
     outputs = wiring.outputs()
     widths[outputs["throttle"] - 1] = throttle_us
     widths[outputs["elevator"] - 1] = elevator_us
-    return mavlink.MAVLink_servo_output_raw_message(_microseconds(stamp) & 0xFFFFFFFF, 0, *widths)
+    return mavlink.MAVLink_servo_output_raw_message(microseconds(stamp) & 0xFFFFFFFF, 0, *widths)
 
 
 def _rows(stream: Stream, *channels: str) -> zip:  # type: ignore[type-arg]
@@ -108,15 +108,13 @@ def messages(streams: dict[str, Stream], wiring: Wiring, elevation_m: float) -> 
         out.append((boot + 0.01 + 0.005 * k, message))
     for stamp, alpha in _rows(streams["air_data"], "alpha"):
         sent = boot + stamp
-        out.append(
-            (sent, mavlink.MAVLink_aoa_ssa_message(_microseconds(sent), float(np.degrees(alpha)), 0.0))
-        )
+        out.append((sent, mavlink.MAVLink_aoa_ssa_message(microseconds(sent), float(np.degrees(alpha)), 0.0)))
     for stamp, q, theta in _rows(streams["attitude"], "q", "theta"):
         sent = boot + stamp
-        message = mavlink.MAVLink_attitude_message(_milliseconds(sent), 0.0, theta, 0.0, 0.0, q, 0.0)
+        message = mavlink.MAVLink_attitude_message(milliseconds(sent), 0.0, theta, 0.0, 0.0, q, 0.0)
         out.append((sent, message))
     for stamp, a_x, a_z, q in _rows(streams["imu"], "a_x", "a_z", "imu_q"):
-        out.append((boot + stamp, _imu(wiring.imu, boot + stamp, a_x, a_z, q)))
+        out.append((boot + stamp, imu_message(wiring.imu, boot + stamp, a_x, a_z, q)))
     for stamp, command, thrust in _rows(streams["servo"], "command", "thrust"):
         throttle = round(float(np.clip(1100.0 + 270.0 * thrust, 1100.0, 1900.0)))
         out.append((boot + stamp, _servo(boot + stamp, wiring.pulse_width(command), throttle, wiring)))
@@ -137,27 +135,32 @@ def _slow_messages(streams: dict[str, Stream], wiring: Wiring, elevation_m: floa
     for stamp, climb, height, airspeed in _rows(streams["position"], "climb", "height", "airspeed"):
         north_m, before = north_m + airspeed * (stamp - before), stamp
         message = mavlink.MAVLink_global_position_int_message(
-            _milliseconds(boot + stamp),
+            milliseconds(boot + stamp),
             round(473_000_000 + north_m * 89.8),
             85_000_000,
             round((elevation_m + height) * 1e3),
             round(height * 1e3),
-            _int16(airspeed * 100.0),
+            int16(airspeed * 100.0),
             0,
-            _int16(-climb * 100.0),
+            int16(-climb * 100.0),
             0,
         )
         out.append((boot + stamp, message))
     return out
 
 
-def tlog(streams: dict[str, Stream], wiring: Wiring, elevation_m: float) -> bytes:
-    """The whole log: records in the order of sending, each with the ground's clock."""
+def packed(timed: list[Timed]) -> bytes:
+    """Messages as records in the order of sending, each with the ground's clock."""
     link = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
     parts = []
-    for sent, message in sorted(messages(streams, wiring, elevation_m), key=lambda timed: timed[0]):
+    for sent, message in sorted(timed, key=lambda pair: pair[0]):
         frame = message.pack(link)
         link.seq = (link.seq + 1) % 256
         # The low two bits of the stamp name the link it came on: zero.
-        parts.append(struct.pack(">Q", (EPOCH_US + _microseconds(sent)) & ~3) + frame)
+        parts.append(struct.pack(">Q", (EPOCH_US + microseconds(sent)) & ~3) + frame)
     return b"".join(parts)
+
+
+def tlog(streams: dict[str, Stream], wiring: Wiring, elevation_m: float) -> bytes:
+    """The whole log."""
+    return packed(messages(streams, wiring, elevation_m))

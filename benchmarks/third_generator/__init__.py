@@ -1,0 +1,1 @@
+"""A third generator of flights with a withheld cause: wing in strips, tail in lagging downwash."""
