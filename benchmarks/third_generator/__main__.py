@@ -9,6 +9,7 @@ from pathlib import Path
 
 from benchmarks.second_generator.score import report
 
+from . import late_alpha
 from .files import draw_set
 
 
@@ -31,6 +32,7 @@ def main() -> None:
         except ValueError as error:
             options.error(str(error))
     else:
+        print(late_alpha.line(chosen.folder, chosen.answers))
         print(report(chosen.folder, chosen.answers, details=chosen.details))
 
 

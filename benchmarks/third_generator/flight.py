@@ -12,6 +12,8 @@ from .servo import Servo, moved
 
 STEP_S = 0.005
 TAKE_OVER_S = 3.0
+LARGEST_SWING_RAD = 0.35
+"""Angle of attack between its least and its largest value; beyond, the aircraft is out of control."""
 RECORDED = (
     "alpha",
     "q",
@@ -135,6 +137,6 @@ def fly(
     )
     latch = np.array([spoilers[0], spoilers[1], reach_rad])
     rows = _fly(start, plan, np.array(inputs.around), shape, faults, servo, gains, latch)
-    if not np.all(np.isfinite(rows)) or np.max(np.abs(rows[2])) > 1.0:
+    if not np.all(np.isfinite(rows)) or np.ptp(rows[0]) > LARGEST_SWING_RAD:
         raise ArithmeticError("the aircraft left its regime of flight")
     return STEP_S * np.arange(plan.shape[1]), dict(zip(RECORDED, rows, strict=True))

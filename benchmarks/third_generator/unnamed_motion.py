@@ -77,7 +77,7 @@ def _buzz(setup: Setup, size: float, rng: Generator) -> Applied:
 
 def _boom(setup: Setup, size: float, rng: Generator) -> Applied:
     """The tail boom bends and overshoots."""
-    own = float(rng.uniform(1.3, 2.2)) * setup.plan.own_rad_s
+    own = float(rng.uniform(2.0, 3.5)) * setup.plan.own_rad_s
     return setup.fault(bend=size, bend_rad_s=own), named_parameters(share=size, own_rad_s=own)
 
 
@@ -163,7 +163,7 @@ MOTION = {
     "servo_brownout": Effect("input", 0.25, 0.7, 1.0, _brownout),
     "gear_cycle": Effect("moment_equation", 0.2, 1.0, 2.0, _gear),
     "cowl_buzz": Effect("moment_equation", 0.15, 0.7, 1.5, _buzz),
-    "soft_tail_boom": Effect("moment_equation", 0.15, 0.5, 0.7, _boom),
+    "soft_tail_boom": Effect("moment_equation", 0.05, 0.2, 0.35, _boom),
     "swinging_load": Effect("moment_equation", 0.1, 0.4, 0.6, _load),
     "floating_spoilers": Effect("force_equation", 0.03, 0.12, 0.2, _spoilers),
     "lift_pulsation": Effect("force_equation", 0.02, 0.08, 0.15, _pulsation),
