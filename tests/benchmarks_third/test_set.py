@@ -1,5 +1,6 @@
 """A set of the third generator: the same bytes, the promised shares, and logs that the advisor reads."""
 
+import ast
 import json
 from collections import Counter
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 import yaml
 from click.testing import CliRunner
 
+import benchmarks.third_generator
 from advisor.cli import advisor
 from benchmarks.third_generator import late_alpha
 from benchmarks.third_generator.cases import EFFECTS, NAMED, UNNAMED, Assignment, assignments, draw_case
@@ -41,6 +43,18 @@ def key(folder: Path) -> dict:
 
 def document(*arguments: str) -> dict:
     return json.loads(CliRunner().invoke(advisor, [*arguments, "--json"], standalone_mode=False).stdout)
+
+
+def test_the_generator_shares_only_records_key_and_score_with_anything_of_the_project():
+    shared = set()
+    for path in Path(benchmarks.third_generator.__file__).parent.glob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.level == 0:
+                shared.add(str(node.module))
+            elif isinstance(node, ast.Import):
+                shared |= {name.name for name in node.names}
+    ours = {name for name in shared if name.split(".")[0] in ("advisor", "sim", "benchmarks", "tests")}
+    assert ours == {f"benchmarks.second_generator.{name}" for name in ("tlog", "case_files", "score")}
 
 
 def test_a_seed_gives_the_same_bytes_again(quiet, tmp_path):
