@@ -32,7 +32,7 @@ def main() -> None:
         except ValueError as error:
             options.error(str(error))
     else:
-        print(late_alpha.line(chosen.folder, chosen.answers))
+        print(late_alpha.lines(chosen.folder, chosen.answers))
         print(report(chosen.folder, chosen.answers, details=chosen.details))
 
 

@@ -242,7 +242,8 @@ def _troubles(setup: Setup, rms: float) -> tuple[str, ...]:
     found = {
         "turbulence": rms > 0.0,
         "stamp_jitter": setup.kit.stamp_error_s > 0.0,
-        "alpha_made_by_autopilot": not setup.kit.boom,
+        "alpha_made_by_autopilot": setup.kit.sends_alpha and not setup.kit.boom,
+        "no_alpha": not setup.kit.sends_alpha,
         "stabilised_mode": setup.plan.gains.damper > 0.0,
     }
     return tuple(name for name, there in found.items() if there)

@@ -55,6 +55,12 @@ def aircraft_file(case: Case) -> str:
     return yaml.safe_dump(document, sort_keys=False)
 
 
+def _equipment(case: Case) -> str:
+    if case.setup.kit.boom:
+        return "boom"
+    return "autopilot" if case.setup.kit.sends_alpha else "no alpha"
+
+
 def key_entry(case: Case) -> dict[str, Any]:
     """What is true of a case, SI units."""
     kit, turbulent = case.setup.kit, case.turbulence_rms > 0.0
@@ -74,7 +80,7 @@ def key_entry(case: Case) -> dict[str, Any]:
             for one in case.wrong
         ],
         "condition": {
-            "name": f"{'boom' if kit.boom else 'autopilot'}, {'turbulent' if turbulent else 'calm'}",
+            "name": f"{_equipment(case)}, {'turbulent' if turbulent else 'calm'}",
             "troubles": list(case.troubles),
             "background_turbulence_rms_m_s": case.turbulence_rms,
             "pre_filtered_hz": None,

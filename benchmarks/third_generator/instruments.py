@@ -1,4 +1,4 @@
-"""Two ways to measure: a research boom, or a small autopilot that makes its angle of attack itself."""
+"""Three ways to measure: a boom, an autopilot that makes its own angle of attack, and one that sends none."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,6 +21,7 @@ class Instruments:
     """What is on board, how often each sends, and how much noise each adds."""
 
     boom: bool
+    sends_alpha: bool
     imu_message: str
     rates_hz: dict[str, float]
     noise: dict[str, float]
@@ -42,8 +43,9 @@ class Instruments:
 
 
 def draw_instruments(aircraft: Aircraft, rng: Generator) -> Instruments:
-    """Draw the equipment of one aircraft: half of all have a boom."""
+    """Draw the equipment of one aircraft: half of all have a boom, a quarter no angle of attack at all."""
     boom = bool(rng.random() < 0.5)
+    sends_alpha = boom or bool(rng.random() < 0.5)
     fine = 1.0 if boom else 1.6
     noise = {
         "alpha": float(rng.uniform(0.05, 0.18)) * DEG * (1.0 if boom else 0.6),
@@ -65,6 +67,7 @@ def draw_instruments(aircraft: Aircraft, rng: Generator) -> Instruments:
     imu_arm = float(rng.uniform(-0.15, 0.4)) * aircraft.chord_m if rng.random() < 0.5 else 0.0
     return Instruments(
         boom=boom,
+        sends_alpha=sends_alpha,
         imu_message="HIGHRES_IMU"
         if boom and rng.random() < 0.5
         else str(rng.choice(["RAW_IMU", "SCALED_IMU2"])),

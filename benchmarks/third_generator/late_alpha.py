@@ -10,12 +10,14 @@ MADE_BY_AUTOPILOT = "alpha_made_by_autopilot"
 TRUE_OF_IT = ("alpha_skew", "alpha_lag")
 
 
-def line(folder: Path, answers: Path) -> str:
-    """One row: the strict score counts these as wrong, though the lateness is in the log."""
+def lines(folder: Path, answers: Path) -> str:
+    """A row a class: the strict score counts these as wrong, though the lateness is in the log."""
     cases = json.loads(key_file(folder).read_text())["cases"]
-    row = Row()
+    rows: dict[str, Row] = {}
     for text in answers.read_text().splitlines():
         answer = json.loads(text)
-        if MADE_BY_AUTOPILOT in cases[answer["case"]]["condition"]["troubles"]:
-            row.add(named(answer["answer"]) in TRUE_OF_IT)
-    return f"{'autopilot: its late angle of attack named first':<52}{row.text()}"
+        case = cases[answer["case"]]
+        if MADE_BY_AUTOPILOT in case["condition"]["troubles"]:
+            rows.setdefault(case["class"], Row()).add(named(answer["answer"]) in TRUE_OF_IT)
+    titles = {kind: f"autopilot, {kind}: its late alpha named first" for kind in sorted(rows)}
+    return "\n".join(f"{title:<52}{rows[kind].text()}" for kind, title in titles.items())

@@ -38,7 +38,7 @@ def _beats(wiring: Wiring, end_s: float, mode: int) -> list[Timed]:
 
 def _fast(streams: dict[str, Stream], wiring: Wiring) -> list[Timed]:
     boot, out = wiring.boot_s, []
-    for stamp, alpha in _rows(streams["alpha"], "alpha"):
+    for stamp, alpha in _rows(streams["alpha"], "alpha") if "alpha" in streams else ():
         at = boot + stamp
         out.append((at, mavlink.MAVLink_aoa_ssa_message(microseconds(at), float(np.degrees(alpha)), 0.0)))
     for stamp, q, theta in _rows(streams["attitude"], "q", "theta"):

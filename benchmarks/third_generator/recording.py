@@ -44,7 +44,8 @@ def record(shown: Channels, kit: Instruments, rng: Generator) -> dict[str, Strea
         seen[name] = seen[name] + np.sqrt(share) * kit.noise[name] * slow_noise(
             count, STEP_S, kit.colour_s, rng
         )
-    return {name: _stream(name, channels, time, seen, kit, rng) for name, channels in CARRIES.items()}
+    sent = [name for name in CARRIES if name != "alpha" or kit.sends_alpha]
+    return {name: _stream(name, CARRIES[name], time, seen, kit, rng) for name in sent}
 
 
 def _stream(

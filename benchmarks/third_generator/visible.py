@@ -82,6 +82,8 @@ def visibility(setup: Setup, plain: Channels, other: Channels) -> dict[str, dict
     """
     model, tests = setup.plan.model, setup.plan.maneuvers
     noise = np.array([setup.kit.noise[name] for name in CHANNELS])[:, None]
+    if not setup.kit.sends_alpha:
+        noise[CHANNELS.index("alpha")] = np.inf
     raw, moving, shared = [], [], []
     for test in tests:
         apart, command = _difference(plain, other, test, model)

@@ -128,11 +128,13 @@ def test_the_aircraft_file_states_the_servo_that_is_flown(quiet):
 
 def test_an_autopilots_late_angle_of_attack_has_a_row_of_its_own(tmp_path):
     (tmp_path / "cases.key.json").write_text(
-        json.dumps({"cases": {"0001": {"condition": {"troubles": ["alpha_made_by_autopilot"]}}}})
+        json.dumps(
+            {"cases": {"0001": {"class": "none", "condition": {"troubles": ["alpha_made_by_autopilot"]}}}}
+        )
     )
     answer = {"case": "0001", "answer": {"verdict": "effect", "causes": [{"effect": "alpha_skew"}]}}
     (tmp_path / "answers.jsonl").write_text(json.dumps(answer) + "\n")
-    assert "1 of 1" in late_alpha.line(tmp_path / "cases", tmp_path / "answers.jsonl")
+    assert "1 of 1" in late_alpha.lines(tmp_path / "cases", tmp_path / "answers.jsonl")
 
 
 @pytest.mark.study
