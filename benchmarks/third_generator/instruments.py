@@ -124,3 +124,17 @@ def slow_noise(count: int, step_s: float, lag_s: float, rng: Generator) -> Float
     white = rng.normal(size=count)
     white[0] /= np.sqrt(1.0 - keep**2)
     return np.asarray(lfilter([np.sqrt(1.0 - keep**2)], [1.0, -keep], white))
+
+
+def ringing(driving: Floats, own: float, damping: float) -> Floats:
+    """Mass on a spring after a driven base: its deflection, Newmark's rule (average acceleration)."""
+    x = v = a = 0.0
+    out, pull = np.empty(driving.size), own**2 * (driving - driving[0])
+    bottom = 1.0 + damping * own * STEP_S + 0.25 * own**2 * STEP_S**2
+    for k, value in enumerate(pull.tolist()):
+        if k > 0:
+            x_0, v_0 = x + STEP_S * v + 0.25 * STEP_S**2 * a, v + 0.5 * STEP_S * a
+            a = (value - 2.0 * damping * own * v_0 - own**2 * x_0) / bottom
+            x, v = x_0 + 0.25 * STEP_S**2 * a, v_0 + 0.5 * STEP_S * a
+        out[k] = x
+    return out

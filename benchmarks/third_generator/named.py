@@ -7,9 +7,9 @@ from numpy.random import Generator
 
 from .air import cosine_gust, dryden
 from .flight import STEP_S
-from .instruments import DEG, filtered, shifted
+from .instruments import DEG, filtered, ringing, shifted
 from .plan import Wishes
-from .setup import Applied, Effect, Sensing, Setup, change_at, moments, named_parameters, only, sign
+from .setup import Applied, Effect, Setup, both_gyros, change_at, moments, named_parameters, only, sign
 
 
 def _lag(setup: Setup, size: float, rng: Generator) -> Applied:
@@ -173,11 +173,6 @@ def _rate_bias(setup: Setup, size: float, rng: Generator) -> Applied:
     return setup.seen(*both_gyros(lambda x: x + bias)), named_parameters(bias_rad_s=bias)
 
 
-def both_gyros(change) -> tuple[Sensing, Sensing]:  # type: ignore[no-untyped-def]
-    """One change for the attitude's rate and the raw gyro, which are one sensor."""
-    return only("q", lambda t, x, c: change(x)), only("imu_q", lambda t, x, c: change(x))
-
-
 def _rate_scale(setup: Setup, size: float, rng: Generator) -> Applied:
     part = sign(rng) * size
     return setup.seen(*both_gyros(lambda x: (1.0 + part) * x)), named_parameters(scale=part)
@@ -196,20 +191,6 @@ def _structure(setup: Setup, size: float, rng: Generator) -> Applied:
     return setup.seen(only("q", bent), only("imu_q", bent)), named_parameters(
         own_rad_s=own, damping=damping, gain=gain
     )
-
-
-def ringing(driving: np.ndarray, own: float, damping: float) -> np.ndarray:
-    """Mass on a spring after a driven base: its deflection, Newmark's rule (average acceleration)."""
-    x = v = a = 0.0
-    out, pull = np.empty(driving.size), own**2 * (driving - driving[0])
-    bottom = 1.0 + damping * own * STEP_S + 0.25 * own**2 * STEP_S**2
-    for k, value in enumerate(pull.tolist()):
-        if k > 0:
-            x_0, v_0 = x + STEP_S * v + 0.25 * STEP_S**2 * a, v + 0.5 * STEP_S * a
-            a = (value - 2.0 * damping * own * v_0 - own**2 * x_0) / bottom
-            x, v = x_0 + 0.25 * STEP_S**2 * a, v_0 + 0.5 * STEP_S * a
-        out[k] = x
-    return out
 
 
 def _imu_place(setup: Setup, size: float, rng: Generator) -> Applied:

@@ -98,6 +98,11 @@ def only(channel: str, change: Callable[[Floats, Floats, Channels], Floats]) -> 
     return sensing
 
 
+def both_gyros(change: Callable[[Floats], Floats]) -> tuple[Sensing, Sensing]:
+    """One change for the attitude's rate and the raw gyro, which are one sensor."""
+    return only("q", lambda t, x, c: change(x)), only("imu_q", lambda t, x, c: change(x))
+
+
 def named_parameters(**values: Any) -> dict[str, float]:
     """Parameters as plain numbers."""
     return {name: float(value) for name, value in values.items()}

@@ -7,9 +7,8 @@ from scipy.signal import lfilter
 
 from .fleet import Floats
 from .flight import STEP_S
-from .instruments import DEG, filtered, shifted
-from .named import both_gyros, ringing
-from .setup import Applied, Effect, Setup, moments, named_parameters, only, sign
+from .instruments import DEG, filtered, ringing, shifted
+from .setup import Applied, Effect, Setup, both_gyros, moments, named_parameters, only, sign
 
 # Angle-of-attack sensor.
 
