@@ -5,9 +5,10 @@ python -m benchmarks.third_generator score cases answers.jsonl --details
 """
 
 import argparse
+import json
 from pathlib import Path
 
-from benchmarks.second_generator.score import report
+from benchmarks.second_generator.score import report, score_document
 
 from . import late_alpha
 from .files import draw_set
@@ -25,12 +26,15 @@ def main() -> None:
     score.add_argument("folder", type=Path)
     score.add_argument("answers", type=Path)
     score.add_argument("--details", action="store_true", help="one line a wrong case")
+    score.add_argument("--json", action="store_true", help="the figures as one JSON document")
     chosen = options.parse_args()
     if chosen.command == "draw":
         try:
             draw_set(chosen.out, chosen.cases, chosen.seed, chosen.only)
         except ValueError as error:
             options.error(str(error))
+    elif chosen.json:
+        print(json.dumps(score_document(chosen.folder, chosen.answers), indent=1))
     else:
         print(late_alpha.lines(chosen.folder, chosen.answers))
         print(report(chosen.folder, chosen.answers, details=chosen.details))
