@@ -14,8 +14,7 @@ NUISANCES = ("alpha_start", "q_start", "Z_trim", "M_trim")
 """Free in every manoeuvre: deviation of α and q at its start, and the trim terms of Eqs. (1)-(2)
 at the trimmed α and δe instead of at zero."""
 EFFECT_ENTRIES = (
-    # input: first, for the surface's compiled code, which may be older than this list, knows them by place;
-    # the latency is the few milliseconds between a command's stamp and its effect, in every model
+    # input; the latency is the few milliseconds between a command's stamp and its effect, in every model
     "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
     "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
     "breakaway_rad", "sliding_share", "loop_s",

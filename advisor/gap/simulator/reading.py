@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 
 from advisor.flight.messages import FloatArray
+from compiled import kernel
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def read_rows(
     packs: FloatArray, h: float, stamps: FloatArray, output: np.ndarray, flown: np.ndarray, skews: FloatArray
 ) -> FloatArray:
@@ -50,7 +50,7 @@ def read_rows(
     return y
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: FloatArray) -> FloatArray:
     """Residuals and sensitivities from readings, shape (rows, k) like them.
 
@@ -75,7 +75,7 @@ def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: 
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
     """The same response, shape (4, n + 1), starting later by each of some delays, as one pack to read.
 
@@ -96,7 +96,7 @@ def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def superposed(response: FloatArray, h: float, delays: FloatArray, weights: FloatArray) -> FloatArray:
     """The sum of the responses that ``delayed`` gives, each by its weight, shape (4, n + 1)."""
     n = response.shape[1]
@@ -112,14 +112,14 @@ def superposed(response: FloatArray, h: float, delays: FloatArray, weights: Floa
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _passed(out: complex, before: complex, here: complex, steps: complex, decay: complex) -> complex:
     """What a pole passes on at the end of a step in which its input moves linearly."""
     trail = steps * (here - before)
     return here - trail + decay * (out - before + trail)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray) -> FloatArray:
     """Simulations with one output of each behind a filter 1/(1 + T p + c T² p²), as one pack to read.
 

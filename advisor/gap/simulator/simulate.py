@@ -19,7 +19,6 @@ the same inputs, so the loop advances a pack of them side by side, each in a lan
 """
 
 import numpy as np
-from numba import njit
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.circle import cos_sin
@@ -42,6 +41,7 @@ from advisor.gap.simulator.layout import (
     TURN,
 )  # fmt: skip
 from advisor.gravity import GRAVITY_M_S2
+from compiled import kernel
 
 LANES = 8
 """Simulations in a pack: the numbers in the widest registers."""
@@ -73,14 +73,14 @@ _ANYWHERE = 9.0
 ) = range(len(ENTRIES), len(ENTRIES) + 43)  # fmt: skip
 
 
-@njit(cache=True)
+@kernel()
 def _attached(beyond: float) -> float:
     """Share of the lift that is left, the flow separated over half the chord at 0 (Kirchhoff's flow)."""
     chord = 1.0 / (1.0 + np.exp(2.0 * beyond))
     return float(0.25 * (1.0 + np.sqrt(chord)) ** 2)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _separate(x: FloatArray, m: int, before: float, now: float) -> None:
     """The flow separates above one angle, and attaches again below another: a relay's memory.
 
@@ -95,7 +95,7 @@ def _separate(x: FloatArray, m: int, before: float, now: float) -> None:
         x[SEPARATED, m], x[MISSING, m] = 0.0, -min(late, 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _begin(
     x: FloatArray, lane: int, p: FloatArray, dose: float, h: float, speed: float, trim: FloatArray
 ) -> None:
@@ -132,7 +132,7 @@ def _begin(
     x[NEAR, lane], x[POWER, lane], x[TURNING, lane], x[ATTACHED, lane] = 0.0, 1.0, 1.0, 1.0
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@kernel(error_model="numpy", fastmath={"contract"})
 def simulate(
     h: float,
     delta: FloatArray,

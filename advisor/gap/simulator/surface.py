@@ -1,12 +1,11 @@
 """From stick to surface: delay, lag, rate limit, play, dead band and stops, each switched off by a zero."""
 
 import numpy as np
-from numba import njit
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.layout import INDEX
+from compiled import kernel
 
-# Compiled code is kept as long as this file is the same: the entries it reads stand first in the layout.
 _READ = tuple(INDEX[name] for name in (
     "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
     "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
@@ -25,7 +24,7 @@ _PARTS = 8
 """Of a piece of the command, at most: at its limit, lagging, and at its limit the other way."""
 
 
-@njit(cache=True)
+@kernel()
 def surfaces(
     h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray, lanes: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -58,7 +57,7 @@ def surfaces(
     return delta, above
 
 
-@njit(cache=True)
+@kernel()
 def _differ(one: FloatArray, other: FloatArray) -> bool:
     differ = False
     for entry in _READ:
@@ -66,7 +65,7 @@ def _differ(one: FloatArray, other: FloatArray) -> bool:
     return differ
 
 
-@njit(cache=True)
+@kernel()
 def _above_start(mean: FloatArray) -> FloatArray:
     """What the mean over each step is above the value at its start.
 
@@ -84,7 +83,7 @@ def _above_start(mean: FloatArray) -> FloatArray:
     return out
 
 
-@njit(cache=True)
+@kernel()
 def _lesser(one: float, other: float) -> float:
     """The smaller of two differences of one sign; zero where they differ in sign."""
     if one * other <= 0.0:
@@ -92,7 +91,7 @@ def _lesser(one: float, other: float) -> float:
     return one if abs(one) < abs(other) else other
 
 
-@njit(cache=True)
+@kernel()
 def surface(
     h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray
 ) -> FloatArray:
@@ -188,7 +187,7 @@ def surface(
     return out
 
 
-@njit(cache=True)
+@kernel()
 def _through(
     servo: float, link: float, begin: float, end: float, dt: float, tau: float, most: float, play: float
 ) -> tuple[float, float, float]:
@@ -226,7 +225,7 @@ def _through(
     return servo, link, area
 
 
-@njit(cache=True)
+@kernel()
 def _broken_away(
     link: float, way: float, begin: float, end: float, dt: float, holds: float, drags: float, tau: float
 ) -> tuple[float, float, float]:
@@ -271,12 +270,12 @@ def _broken_away(
     return link, way, area
 
 
-@njit(cache=True)
+@kernel()
 def _beyond(x: float, dead: float) -> float:
     return float(np.sign(x) * max(abs(x) - dead, 0.0))
 
 
-@njit(cache=True)
+@kernel()
 def _mean_beyond(begin: float, end: float, dead: float) -> float:
     """Mean of what lies beyond the dead band while its argument moves linearly from begin to end."""
     if abs(end - begin) < _HERE:
@@ -285,7 +284,7 @@ def _mean_beyond(begin: float, end: float, dead: float) -> float:
     return float(0.5 * squares / (end - begin))
 
 
-@njit(cache=True)
+@kernel()
 def _mean_over(begin: float, end: float, top: float) -> float:
     """Mean of what lies above a stop while its argument moves linearly from begin to end."""
     if abs(end - begin) < _HERE:
