@@ -10,7 +10,7 @@ import numpy as np
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import bank_at, integrated, speed_rate
+from advisor.flight.motion import integrated, speed_rate_at
 from advisor.gap.records.grid import smooth
 
 _SLOWEST_M_S = 1.0
@@ -47,13 +47,7 @@ def airspeed_on(
     as_read = smooth(np.interp(grid, t, y), _READ_OVER_S)
     if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
         return as_read
-
-    def at(name: str) -> FloatArray:
-        return np.interp(grid, found[name].t - start_s, found[name].y)
-
-    bank = bank_at(grid + start_s, found)
-    rate = speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"), bank)
-    shape = integrated(grid, rate) / true_over_read
+    shape = integrated(grid, speed_rate_at(grid + start_s, found)) / true_over_read
     inside = (t >= grid[0]) & (t <= grid[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return as_read
