@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.simulator.layout import FILTERED
 from compiled import kernel
 
 
@@ -128,8 +129,8 @@ def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray
     packs, h, flown
         As ``read_rows`` takes them.
     filters
-        Shape (k, 3): of each column T in s, by which a ramp is late, c (0: first order, 1/2: Butterworth's),
-        and the place of the output. No T: no filter.
+        Shape (k, 3), as ``layout.FILTER``: of each column T in s, by which a ramp is late, c (0: first order,
+        1/2: Butterworth's), and the place of the output. No T: no filter.
     """
     k, n = len(flown), packs.shape[1]
     out = np.empty((1, n, 4, k))
@@ -138,7 +139,8 @@ def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray
         for i in range(n):
             for c in range(4):
                 out[0, i, c, j] = packs[pack, i, c, lane_of]
-        late, shape, c = filters[j, 0], max(filters[j, 1], 1e-3), int(filters[j, 2])
+        late, shape = filters[j, FILTERED.filter_lag_s], max(filters[j, FILTERED.filter_shape], 1e-3)
+        c = int(filters[j, FILTERED.filter_output])
         if late <= 0.0:
             continue
         # Two poles, one behind the other: a pair of conjugates below critical damping.
