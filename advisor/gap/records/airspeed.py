@@ -8,13 +8,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.motion import integrated, speed_rate_at
 from advisor.gap.records.grid import smooth
+from advisor.oem.airspeed import LARGEST_DISAGREEMENT
 
-_SLOWEST_M_S = 1.0
-"""Air speed at which nothing flies."""
 _LEAST_SAMPLES = 6
 """Of the instrument in a manoeuvre, from which on a parabola may be fitted to them ..."""
 _LEAST_SPARE = 10
@@ -32,7 +32,7 @@ def measures_speed(maneuver: Maneuver) -> bool:
     speed = maneuver.channels.get("airspeed")
     if speed is None or speed.provenance == "given":
         return False
-    return len(speed) > 1 and float(np.min(speed.y)) > _SLOWEST_M_S
+    return len(speed) > 1 and float(np.min(speed.y)) > SLOWEST_FLIGHT_M_S
 
 
 def airspeed_on(
@@ -55,7 +55,7 @@ def airspeed_on(
     rebuilt = shape + np.polyval(drift, grid)
     apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
     # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
-    return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else as_read
+    return rebuilt if apart < LARGEST_DISAGREEMENT * float(np.mean(y[inside])) else as_read
 
 
 def speed_doubts(

@@ -23,9 +23,7 @@ from advisor.gap.records.unmeasured_speed import speed_without_instrument, speed
 from advisor.gap.records.usable import outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
 from advisor.gravity import GRAVITY_M_S2
-
-ASSUMED_M_S = 20.0
-"""Air speed where neither log nor file nor motion has one: then only the weight's part of α̇ knows of it."""
+from advisor.oem.place import ASSUMED_M_S
 
 
 def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float = 1.0) -> Flights:

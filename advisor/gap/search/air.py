@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.flight.robust import robust_std
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import KNOTS_S, Course, disturbance_courses
 from advisor.gap.noise.quiet import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
-from advisor.gap.records.smoothness import robust_std
 from advisor.gap.search.merit import LEAST_BELIEF, Judged
 from advisor.model.response import OUTPUTS
 from advisor.oem.turbulence import Turbulence, find_turbulence
