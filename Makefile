@@ -17,10 +17,9 @@ $(STAMP): pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable .
 	touch $@
 
-# A compiled kernel outlives a change of the function that it calls: compile all of them anew when one changes.
-KERNELS := $(shell grep -rlE --include='*.py' 'njit|@kernel' advisor sim benchmarks)
+# Compiled before a user waits for it; what was compiled from another text is compiled anew by itself.
+KERNELS := $(shell grep -rl --include='*.py' '@kernel' advisor sim) compiled/__init__.py
 .venv/.compiled: $(STAMP) $(KERNELS)
-	find advisor sim benchmarks -name '*.nb[ic]' -delete
 	$(BIN)/python -m advisor.mavlink.warm
 	$(BIN)/python -m advisor.oem.warm
 	$(BIN)/python -m advisor.gap.warm

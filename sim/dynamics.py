@@ -15,9 +15,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from compiled import kernel
 from sim.airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
 
 FloatArray = NDArray[np.float64]
@@ -32,7 +32,7 @@ DERIVATIVES = (*(f"{name}_dot" for name in STATES), "a_x", "a_z")
 """What :func:`derivatives` fills: the states' rates, then specific force along body x and z, m/s²."""
 
 
-@njit(cache=True)
+@kernel()
 def derivatives(
     x: NDArray[np.float64], u: NDArray[np.float64], airframe: Any, dx: NDArray[np.float64]
 ) -> None:
@@ -109,7 +109,7 @@ def derivatives(
     dx[9] = (-drag_path * sin_a - lift_path * cos_a) / a.mass
 
 
-@njit(cache=True)
+@kernel()
 def step(
     x: FloatArray,
     u_from: FloatArray,

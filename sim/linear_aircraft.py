@@ -10,9 +10,9 @@ from dataclasses import astuple, dataclass, fields
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from compiled import kernel
 from sim.airframe import GRAVITY_M_S2
 from sim.linear import ShortPeriod
 from sim.motion import Controls, Motion
@@ -83,14 +83,14 @@ MODEL_RECORD = np.dtype(
 )
 
 
-@njit(cache=True)
+@kernel()
 def _bent(angle: float, trimmed: float, about: float, square: float, cube: float) -> float:
     """Square and cube of an angle about another, less those at the trim, which are in Z_0 and M_0."""
     off, usual = angle - about, trimmed - about
     return square * (off**2 - usual**2) + cube * (off**3 - usual**3)
 
 
-@njit(cache=True)
+@kernel()
 def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArray[np.float64]) -> None:
     """Fill ``dx`` from x = [α, q, θ, h, φ, p, α_late, P_late] and u = [δe, P, aileron, w, V, ΔZ, ΔM, V̇].
 
@@ -159,7 +159,7 @@ def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArra
     dx[7] = (u[1] - x[7]) / m.throttle_lag if m.throttle_lag > 0.0 else 0.0
 
 
-@njit(cache=True)
+@kernel()
 def step(
     x: NDArray[np.float64],
     u_from: NDArray[np.float64],

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import bank_at, gravity_in_plane, integrated
+from advisor.flight.motion import bank_at, integrated, path_turning
 from advisor.flight.record import Channel
 from advisor.gravity import GRAVITY_M_S2
 
@@ -46,8 +46,7 @@ def alpha_rate(
         a_z = a_z + arm_m * np.gradient(q, t)
     has_a_x = "a_x" in channels and len(channels["a_x"]) > 1
     a_x = at("a_x") if has_a_x else GRAVITY_M_S2 * np.sin(theta)
-    up, size = gravity_in_plane(theta, bank_at(t, channels))
-    return np.asarray(q + (a_z * np.cos(alpha) - a_x * np.sin(alpha) + size * np.cos(up - alpha)) / speed)
+    return np.asarray(q + path_turning(a_x, a_z, theta, alpha, bank_at(t, channels)) / speed)
 
 
 def inferred_alpha(channels: Mapping[str, Channel], speed: FloatArray) -> Channel | None:

@@ -37,6 +37,17 @@ def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, F
     return np.arctan2(along, down), GRAVITY_M_S2 * np.hypot(along, down)
 
 
+def path_turning(
+    a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray, bank: FloatArray
+) -> FloatArray:
+    """Specific force and gravity across the path, down, m/s²: over the speed, what α̇ has beyond q.
+
+    a_z cos α − a_x sin α + g cos γ; specific force in m/s², angles in rad, all of shape (n,).
+    """
+    up, size = gravity_in_plane(theta, bank)
+    return np.asarray(a_z * np.cos(alpha) - a_x * np.sin(alpha) + size * np.cos(up - alpha))
+
+
 def speed_rate(
     a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray, bank: FloatArray
 ) -> FloatArray:
@@ -46,6 +57,22 @@ def speed_rate(
     """
     up, size = gravity_in_plane(theta, bank)
     return np.asarray(a_x * np.cos(alpha) + a_z * np.sin(alpha) - size * np.sin(up - alpha))
+
+
+def speed_rate_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
+    """Rate of the speed, m/s², as the channels a_x, a_z, theta, alpha and bank show it.
+
+    Parameters
+    ----------
+    t
+        Shape (n,), s.
+    channels
+        All but the bank are needed.
+    """
+    a_x, a_z, theta, alpha = (
+        np.interp(t, channels[name].t, channels[name].y) for name in ("a_x", "a_z", "theta", "alpha")
+    )
+    return speed_rate(a_x, a_z, theta, alpha, bank_at(t, channels))
 
 
 def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:

@@ -11,8 +11,9 @@ time stamp would count as new. When the first path falls silent, the late path's
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from compiled import kernel
 
 Ints = NDArray[np.int64]
 
@@ -51,7 +52,7 @@ COUNT = 256
 """Entry of ``newest`` that holds the number of packets so far, behind one for each sequence number."""
 
 
-@njit(cache=True)
+@kernel()
 def _heard_ago(packets: Ints, newest: Ints, sequence: int, mark: int, now_us: int) -> int:
     """How long ago, us, a packet was heard; -1: not within ``REPEAT_US``."""
     number = newest[sequence]
@@ -66,13 +67,13 @@ def _heard_ago(packets: Ints, newest: Ints, sequence: int, mark: int, now_us: in
     return -1
 
 
-@njit(cache=True)
+@kernel()
 def _has_path(senders: Ints, source: int, now_us: int) -> bool:
     """Whether a second path was heard lately."""
     return bool(senders[source, _ECHO_RUN] > 0 and 0 <= now_us - senders[source, _ECHO_US] <= _PATH_US)
 
 
-@njit(cache=True)
+@kernel()
 def _is_heard_again(
     senders: Ints, packets: Ints, newest: Ints, source: int, sequence: int, mark: int, now_us: int
 ) -> bool:
@@ -96,7 +97,7 @@ def _is_heard_again(
     return True
 
 
-@njit(cache=True)
+@kernel()
 def _is_overtaken(senders: Ints, source: int, sequence: int, now_us: int) -> bool:
     """Whether a packet that is no repeat came by the late path, after younger ones by the first."""
     if senders[source, _ECHO_RUN] < _RUN or not _has_path(senders, source, now_us):
@@ -113,7 +114,7 @@ def _is_overtaken(senders: Ints, source: int, sequence: int, now_us: int) -> boo
     return bool(beside < ahead and late_us > LATE_US and now_us - senders[source, NEWEST_US] < late_us)
 
 
-@njit(cache=True)
+@kernel()
 def weigh(
     senders: Ints, packets: Ints, newest: Ints, source: int, sequence: int, mark: int, now_us: int
 ) -> bool:

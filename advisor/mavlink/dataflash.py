@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from advisor.flight.messages import FloatArray, IntArray
+from compiled import kernel
 
 HEADER = b"\xa3\x95"
 _HEADER_0, _HEADER_1 = HEADER
@@ -153,14 +153,14 @@ def _records(stream: NDArray[np.uint8], bodies: IntArray, layout: "np.dtype[np.v
     return np.asarray(rows.view(layout)[:, 0])
 
 
-@njit(cache=True)
+@kernel()
 def gather(stream: NDArray[np.uint8], bodies: IntArray, rows: NDArray[np.uint8]) -> None:
     """Copy what begins at each of ``bodies`` into its row of ``rows``."""
     for i in range(len(bodies)):
         rows[i] = stream[bodies[i] : bodies[i] + rows.shape[1]]
 
 
-@njit(cache=True)
+@kernel()
 def scan_records(stream: NDArray[np.uint8], starts: IntArray) -> int:
     """Find the records; fill ``starts``, give their number. FMT records teach the lengths."""
     n = len(stream)

@@ -8,11 +8,11 @@ second path repeats is stepped over.
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from advisor.mavlink.arrivals import weigh
 from advisor.mavlink.checksum import AFTER, FROM_HIGH_BYTE, INITIAL, TABLE
+from compiled import kernel
 
 Bytes = NDArray[np.uint8]
 Ints = NDArray[np.int64]
@@ -34,7 +34,7 @@ _EARLIEST_US, _LATEST_US = 1_000_000, 1 << 52
 _WAIT, _NONE = -1, 0
 
 
-@njit(cache=True)
+@kernel()
 def _little_endian(stream: Bytes, at: int, size: int) -> int:
     value = 0
     for i in range(size):
@@ -42,7 +42,7 @@ def _little_endian(stream: Bytes, at: int, size: int) -> int:
     return value
 
 
-@njit(cache=True)
+@kernel()
 def _remainder(stream: Bytes, first: int, past: int) -> int:
     """CRC-16 of the bytes from ``first`` to before ``past``, four at a time."""
     crc = INITIAL
@@ -56,7 +56,7 @@ def _remainder(stream: Bytes, first: int, past: int) -> int:
     return int(crc)
 
 
-@njit(cache=True)
+@kernel()
 def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
     """Length of the good frame that begins at ``at``; ``_NONE``, or ``_WAIT`` for more bytes.
 
@@ -101,7 +101,7 @@ def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
     return length if stream[following] == V1 or stream[following] == V2 else _NONE
 
 
-@njit(cache=True)
+@kernel()
 def _stamp(stream: Bytes, at: int, last: int) -> int:
     """Big-endian microseconds at ``at``; the last good stamp instead of an impossible one."""
     stamp = 0
@@ -110,7 +110,7 @@ def _stamp(stream: Bytes, at: int, last: int) -> int:
     return stamp if _EARLIEST_US <= stamp < _LATEST_US else last
 
 
-@njit(cache=True)
+@kernel()
 def scan(
     stream: Bytes,
     final: bool,
@@ -199,7 +199,7 @@ def scan(
     return rows, keep
 
 
-@njit(cache=True)
+@kernel()
 def copy_payloads(stream: Bytes, starts: Ints, payloads: Bytes) -> None:
     """Copy the payload of each frame into its row; the zeros MAVLink 2 cut off stay zeros.
 

@@ -24,12 +24,12 @@ with k the scale error of the air speed (a_z: specific force along body z; Klein
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from advisor.flight.messages import FloatArray
 from advisor.model.transition import WIDTH, divisions, fill
+from compiled import kernel
 
 Index = NDArray[np.int64]
 
@@ -78,7 +78,7 @@ class Grid(NamedTuple):
     """x_a in m."""
 
 
-@numba.njit(cache=True)
+@kernel()
 def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g: FloatArray) -> bool:
     """Solve the model and write outputs and sensitivities.
 
@@ -177,7 +177,7 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
     return True
 
 
-@numba.njit(cache=True)
+@kernel()
 def _carry(
     t: FloatArray,
     s: float,
@@ -239,7 +239,7 @@ def _carry(
     state[2, 8] += s * s * t[29]
 
 
-@numba.njit(cache=True)
+@kernel()
 def _specific_force(
     s: float,
     delta: float,

@@ -9,9 +9,8 @@ below runs on scalars, to round-off, for the highest order; the others follow fr
 
 import math
 
-import numba
-
 from advisor.flight.messages import FloatArray
+from compiled import kernel
 
 ORDERS = 4
 """φ₀ to φ₃."""
@@ -22,7 +21,7 @@ REACH = 2.0
 MOST_DIVISIONS = 256
 
 
-@numba.njit(cache=True)
+@kernel()
 def divisions(a11: float, a12: float, a21: float, a22: float, h: float) -> int:
     """Equal parts a step is cut into so that the series converges fast; 0 when A is beyond use."""
     trace = abs(a11 + a22)
@@ -33,7 +32,7 @@ def divisions(a11: float, a12: float, a21: float, a22: float, h: float) -> int:
     return max(1, math.ceil(size / REACH))
 
 
-@numba.njit(cache=True)
+@kernel()
 def fill(row: FloatArray, a11: float, a12: float, a21: float, a22: float, h: float) -> None:
     """Write the step of length ``h`` into ``row``, shape (``WIDTH``,).
 

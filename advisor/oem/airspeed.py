@@ -17,7 +17,7 @@ import numpy as np
 
 from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import bank_at, integrated, speed_rate
+from advisor.flight.motion import integrated, speed_rate_at
 from advisor.flight.record import Channel
 from advisor.oem.problem import Signal
 
@@ -54,7 +54,7 @@ def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
     if any(name not in channels or len(channels[name]) < FEWEST_SAMPLES for name in MOTION):
         return plain
     t = channels["theta"].t
-    shape = _shape(t, channels)
+    shape = integrated(t, speed_rate_at(t, channels))
     inside = (measured.t >= t[0] + LONGEST_LAG_S) & (measured.t <= t[-1])
     if np.count_nonzero(inside) < FEWEST_SAMPLES:
         return plain
@@ -67,15 +67,6 @@ def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
     if np.sqrt(left[best]) > LARGEST_DISAGREEMENT * level:
         return plain
     return Airspeed(Signal(t, shape + level + drift * (t - t[0])), float(lags[best]), True)
-
-
-def _shape(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
-    """∫V̇ from the first of ``t`` on."""
-
-    def at(name: str) -> FloatArray:
-        return np.interp(t, channels[name].t, channels[name].y)
-
-    return integrated(t, speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"), bank_at(t, channels)))
 
 
 def _joined(

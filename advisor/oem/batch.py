@@ -6,7 +6,6 @@ and everything after that is compiled.
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from advisor.aircraft import PARAMETERS
@@ -17,6 +16,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.gauss_newton import CONVERGED, cholesky, descend, normal_equations, solve_lower
 from advisor.oem.problem import Problem, Record, Signal, assemble
 from advisor.oem.solution import noise_floor, solve
+from compiled import kernel
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ _POSITION = np.array([index if is_shared else N_SHARED + index for is_shared, in
 """Where the eight stand among all parameters."""
 
 
-@numba.njit(cache=True)
+@kernel()
 def _each(
     grid: Grid,
     z: FloatArray,

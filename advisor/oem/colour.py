@@ -13,13 +13,13 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from scipy.optimize import minimize
 
 from advisor.flight.messages import FloatArray
 from advisor.oem.recursion import accumulated
 from advisor.oem.whitening import schedule, whiten
+from compiled import kernel
 
 MEMORIES = (-0.4, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.993)
 """First guesses of φ."""
@@ -160,7 +160,7 @@ def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:
     )
 
 
-@numba.njit(cache=True, fastmath={"reassoc", "contract"})
+@kernel(fastmath={"reassoc", "contract"})
 def _restricted(block: FloatArray, memory: float, share: float) -> tuple[float, float]:
     """Residual power after whitening and regression, and log det Γ + log det XᵀΓ⁻¹X.
 

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft import PARAMETERS
+from advisor.flight.robust import robust_std
 from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.oem.covariance import Coloured, coloured, colours_of, influence, widening
 from advisor.oem.innovations import AirModel
@@ -59,7 +60,7 @@ def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
 def _white(rows: Sequence[Rows], channel: int) -> float:
     """Standard deviation of the white part of an output's residual, from its differences."""
     steps = np.concatenate([np.diff(r.left[r.channel == channel]) for r in rows])
-    return float(np.median(np.abs(steps))) / 0.6745 / np.sqrt(2.0) if len(steps) else 1.0
+    return robust_std(steps) / float(np.sqrt(2.0)) if len(steps) else 1.0
 
 
 def _rows(place: Place) -> list[Rows]:

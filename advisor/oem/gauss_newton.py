@@ -14,11 +14,11 @@ linearly with their number.
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, Index, respond
+from compiled import kernel
 
 FLAT = 1e-11
 """Converged when the last step promised less than this change of log J; what is left after it is far less."""
@@ -58,7 +58,7 @@ class Optimum(NamedTuple):
     """(N, 14) their derivatives by the parameters of the row's manoeuvre."""
 
 
-@numba.njit(cache=True)
+@kernel()
 def weigh(z: FloatArray, y: FloatArray, channel: Index, floor: FloatArray) -> tuple[FloatArray, float]:
     """σ of each output from its residuals, Eq. (8), and the cost Σ n_c·log σ_c²."""
     power = np.zeros(len(OUTPUTS))
@@ -75,7 +75,7 @@ def weigh(z: FloatArray, y: FloatArray, channel: Index, floor: FloatArray) -> tu
     return noise, cost
 
 
-@numba.njit(cache=True, fastmath={"reassoc", "contract"})
+@kernel(fastmath={"reassoc", "contract"})
 def _add_products(block: FloatArray, information: FloatArray, gradient: FloatArray) -> None:
     """Add the products of the rows of ``block`` (n + 1, BLOCK); sums may be reordered to run in parallel."""
     n = len(gradient)
@@ -91,7 +91,7 @@ def _add_products(block: FloatArray, information: FloatArray, gradient: FloatArr
         gradient[j] += total
 
 
-@numba.njit(cache=True)
+@kernel()
 def normal_equations(
     grid: Grid,
     z: FloatArray,
@@ -128,7 +128,7 @@ def normal_equations(
     return information, gradient
 
 
-@numba.njit(cache=True)
+@kernel()
 def cholesky(a: FloatArray) -> bool:
     """Lower factor in place; False when ``a`` is not positive definite to working precision."""
     n = a.shape[0]
@@ -148,7 +148,7 @@ def cholesky(a: FloatArray) -> bool:
     return True
 
 
-@numba.njit(cache=True)
+@kernel()
 def solve_lower(a: FloatArray, b: FloatArray) -> None:
     """b ← L⁻¹·b for the columns of ``b`` (n, k)."""
     for i in range(a.shape[0]):
@@ -158,7 +158,7 @@ def solve_lower(a: FloatArray, b: FloatArray) -> None:
             b[i, c] /= a[i, i]
 
 
-@numba.njit(cache=True)
+@kernel()
 def solve_upper(a: FloatArray, b: FloatArray) -> None:
     """b ← L⁻ᵀ·b for the columns of ``b`` (n, k)."""
     for i in range(a.shape[0] - 1, -1, -1):
@@ -168,7 +168,7 @@ def solve_upper(a: FloatArray, b: FloatArray) -> None:
             b[i, c] /= a[i, i]
 
 
-@numba.njit(cache=True)
+@kernel()
 def arrow_step(
     information: FloatArray, gradient: FloatArray, free: Index, damping: float
 ) -> tuple[bool, FloatArray, FloatArray, float]:
@@ -230,7 +230,7 @@ def arrow_step(
     return True, shared_step, local_step, promise
 
 
-@numba.njit(cache=True)
+@kernel()
 def descend(
     grid: Grid,
     z: FloatArray,

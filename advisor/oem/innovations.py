@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.model.response import OUTPUTS
 from advisor.oem import kalman
 from advisor.oem.kalman import DIFFUSE
 
-CHANNELS = ("alpha", "q", "a_z", "theta")
-ALPHA, A_Z = CHANNELS.index("alpha"), CHANNELS.index("a_z")
+ALPHA, A_Z = OUTPUTS.index("alpha"), OUTPUTS.index("a_z")
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,11 @@ class AirModel:
     gust_memory_s: float
     seen_by_alpha: float = 1.0
     """1 when the α channel reads the air (a vane), 0 when it is made from inertial sensors."""
+
+    @classmethod
+    def still(cls, white: FloatArray, seen_by_alpha: float = 1.0) -> "AirModel":
+        """White noise of the instruments, shape (4,), and nothing besides."""
+        return cls(white, np.full(len(OUTPUTS), 1e-12), 0.3, 0.0, 1.0, seen_by_alpha)
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,16 @@ one at a time, in order of time, so that every update is by a scalar.
 """
 
 import numpy as np
-from numba import njit
 
 from advisor.flight.messages import FloatArray
+from compiled import kernel
 
 STATES = 8
 DIFFUSE = 1e3
 """Variance of a motion of which nothing is known at the start of the record."""
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def observed_by(system: FloatArray, seen_by_alpha: float, vane_m: float, imu_m: float) -> FloatArray:
     """Shape (4, 8): how α, q, a_z and θ see the states; ``system``, shape (5,), is Z_α, Z_q, M_α, M_q, V."""
     z_a, z_q, m_a, m_q, speed = system[0], system[1], system[2], system[3], system[4]
@@ -28,7 +28,7 @@ def observed_by(system: FloatArray, seen_by_alpha: float, vane_m: float, imu_m: 
     return observed
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@kernel(error_model="numpy", fastmath={"contract"})
 def _begun(
     system: FloatArray, memory: FloatArray, start_variance: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -49,7 +49,7 @@ def _begun(
     return A, half_square, P
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@kernel(error_model="numpy", fastmath={"contract"})
 def _transition(
     step: FloatArray, A: FloatArray, half_square: FloatArray, dt: float, keep_gust: float
 ) -> None:
@@ -61,7 +61,7 @@ def _transition(
     step[3, 3] = keep_gust
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@kernel(error_model="numpy", fastmath={"contract"})
 def _propagate(
     P: FloatArray, moved: FloatArray, step: FloatArray, keep: float, keep_gust: float, memory: FloatArray
 ) -> None:
@@ -97,7 +97,7 @@ def _propagate(
         P[4 + c, 4 + c] += memory[c] ** 2 * (1.0 - keep * keep)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@kernel(error_model="numpy", fastmath={"contract"})
 def _correct(P: FloatArray, gain: FloatArray, observed: FloatArray, white: float) -> float:
     """Take a row into the covariance; its variance, and the ``gain``, shape (8,), filled in."""
     gain[:] = 0.0
@@ -119,7 +119,7 @@ def _correct(P: FloatArray, gain: FloatArray, observed: FloatArray, white: float
     return variance
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@kernel(error_model="numpy", fastmath={"contract"})
 def gains_along(
     t: FloatArray,
     channel: np.ndarray,
@@ -167,7 +167,7 @@ def gains_along(
     return steps, keeps, gains, roots
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@kernel(error_model="numpy", fastmath={"contract"})
 def cost_along(
     t: FloatArray,
     channel: np.ndarray,
@@ -213,7 +213,7 @@ def cost_along(
     return cost
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@kernel(error_model="numpy", fastmath={"contract"})
 def pass_through(
     steps: FloatArray,
     keeps: FloatArray,

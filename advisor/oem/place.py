@@ -12,8 +12,8 @@ from advisor.model.response import N_PARAMETERS, N_SHARED, SHARED, Index, respon
 from advisor.oem.instruments import Instrument, by_instruments
 from advisor.oem.problem import Assembly, Problem, assemble
 
-_STILL_M_S = 20.0
-"""Air speed supposed where none was measured, to turn a gust's speed into an angle."""
+ASSUMED_M_S = 20.0
+"""Air speed supposed where none is known: a gust's angle and the weight's part of α̇ depend on it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ def in_time(assembly: Assembly, m: int) -> Index:
 def speeds_of(place: Place) -> list[float]:
     """Mean air speed of each manoeuvre, m/s."""
     speeds = [record.airspeed for record in place.problem.records]
-    return [_STILL_M_S if speed is None else float(np.mean(speed.y)) for speed in speeds]
+    return [ASSUMED_M_S if speed is None else float(np.mean(speed.y)) for speed in speeds]
 
 
 def system_of(place: Place, ratio: float) -> FloatArray:

@@ -7,11 +7,11 @@ gives the errors corrected for colour. A first-order memory needs of the earlier
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.oem.colour import Colour
+from compiled import kernel
 
 
 @dataclass(slots=True)
@@ -45,7 +45,7 @@ class Sums:
         return max(float(moved @ self.gram @ moved), 0.0) / self.samples
 
 
-@numba.njit(cache=True)
+@kernel()
 def _add(
     gram: FloatArray,
     coloured: FloatArray,

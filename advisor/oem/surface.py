@@ -10,10 +10,10 @@ about 0.1 % of a step's height at a lag of 0.1 s.
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from compiled import kernel
 
 LONGEST_STEP_S = 0.0105
 
@@ -60,7 +60,7 @@ class Servo:
         return surface, surface, surface[1:]
 
 
-@numba.njit(cache=True)
+@kernel()
 def _lagged(
     step: FloatArray, start: FloatArray, arrival: FloatArray, lag: float, initial: float
 ) -> FloatArray:

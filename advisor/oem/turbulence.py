@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.model.response import OUTPUTS
 from advisor.oem import innovations
 from advisor.oem.innovations import A_Z, ALPHA, AirModel
 from advisor.oem.kalman import DIFFUSE
@@ -21,7 +22,7 @@ class Rows:
 
     t: FloatArray
     channel: np.ndarray
-    """Shape (n,), int64: index into ``CHANNELS``."""
+    """Shape (n,), int64: index into ``model.response.OUTPUTS``."""
     left: FloatArray
     speed: float
 
@@ -95,11 +96,11 @@ def find_turbulence(
     def descend(start: AirModel, moving: bool, steps: Sequence[float] = _STEPS) -> tuple[AirModel, float]:
         return _descend(rows, system, start, moving, steps, start_variance)
 
-    rms = np.array([_rms(rows, c) for c in range(4)])
+    rms = spread_of(rows)
     white = np.clip(white, 1e-3 * rms + 1e-9, rms + 1e-9)
     colour = np.sqrt(np.maximum(rms**2 - white**2, (0.1 * rms) ** 2))
     still = descend(AirModel(white, colour, 0.3, 0.0, 1.0, float(seen_by_alpha)), False)
-    plain = AirModel(rms, np.full(4, 1e-12), 0.3, 0.0, 1.0, float(seen_by_alpha))
+    plain = AirModel.still(rms, float(seen_by_alpha))
     if 0.5 * (cost_of(rows, system, plain, start_variance) - still[1]) < _MEMORY_GAIN:
         # Air that moves has a memory; where no channel shows any, there is nothing to tell apart.
         return Turbulence(0.0, 0.0, still[0])
@@ -122,9 +123,10 @@ def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -
     return float(rms[A_Z] / max(speed * abs(system[0]), 1e-6))
 
 
-def _rms(rows: Sequence[Rows], channel: int) -> float:
-    picked = np.concatenate([r.left[r.channel == channel] for r in rows])
-    return float(np.sqrt(np.mean(picked**2))) if len(picked) else 1.0
+def spread_of(rows: Sequence[Rows]) -> FloatArray:
+    """Root mean square of each output's residuals, shape (4,); 1 for one that is missing."""
+    picked = [np.concatenate([r.left[r.channel == c] for r in rows]) for c in range(len(OUTPUTS))]
+    return np.array([max(float(np.sqrt(np.mean(left**2))), 1e-12) if len(left) else 1.0 for left in picked])
 
 
 def _descend(

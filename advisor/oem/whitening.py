@@ -11,10 +11,10 @@ begins with the stationary variance of x, so nothing has to settle.
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from compiled import kernel
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class Whitening:
         return whiten_adjoint(np.ascontiguousarray(rows), self.memory, self.scale, self.gain)
 
 
-@numba.njit(cache=True)
+@kernel()
 def schedule(samples: int, memory: float, white_share: float) -> tuple[FloatArray, FloatArray, float]:
     """``scale`` and ``gain`` of a ``Whitening`` with var x = 1, and log det Γ."""
     scale, gain = np.empty(samples), np.empty(samples)
@@ -58,7 +58,7 @@ def schedule(samples: int, memory: float, white_share: float) -> tuple[FloatArra
     return scale, gain, log_determinant
 
 
-@numba.njit(cache=True)
+@kernel()
 def whiten(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray) -> FloatArray:
     """(L⁻¹·rows)ᵀ, shape (k, n): transposed, because what follows are products along time."""
     n, width = rows.shape
@@ -72,7 +72,7 @@ def whiten(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray)
     return white
 
 
-@numba.njit(cache=True)
+@kernel()
 def whiten_adjoint(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray) -> FloatArray:
     """L⁻ᵀ·rows, shape (n, k): the recursion of ``whiten`` run backwards."""
     n, width = rows.shape

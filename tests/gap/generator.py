@@ -8,10 +8,10 @@ Used to develop and to test the diagnosis; it shares nothing with what it tests.
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.record import Channel
+from compiled import kernel
 
 H = 0.0005
 G = 9.80665
@@ -68,7 +68,7 @@ _K = {name: i for i, name in enumerate(SWITCHES)}
  BREAKS, DRAGS, MPOWER, MATT) = range(len(SWITCHES))  # fmt: skip
 
 
-@njit(cache=True)
+@kernel()
 def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
     (mass, iyy, area, chord, speed, cl0, cla, clq, clde, cd0, induced, cma, cmq, cmde, cmad) = body
     rho = 1.225

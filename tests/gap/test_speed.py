@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
+from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.search.baseline import fit_baseline
@@ -19,6 +21,7 @@ from advisor.gap.search.speed import swings
 from advisor.gap.search.work import unasked, work
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THRUST
 from advisor.gravity import GRAVITY_M_S2
+from advisor.oem.airspeed import airspeed
 from advisor.oem.recursion import accumulated
 from tests.gap.generator import UAV, Setup, fly
 
@@ -39,6 +42,16 @@ def flights_with(speed_of, height_of):
 
 def phugoid(t):
     return 22.0 + 2.0 * np.sin(0.6 * t)
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_speed_at_which_nothing_flies_is_none_to_estimator_and_diagnosis_alike(share):
+    flown = fly(Setup(maneuvers=1))[0]
+    speed = flown.channels["airspeed"]
+    slow = replace(speed, y=np.full(len(speed), share * SLOWEST_FLIGHT_M_S))
+    maneuver = replace(flown, channels={**flown.channels, "airspeed": slow})
+    assert measures_speed(maneuver) == (share > 1.0)
+    assert (airspeed(maneuver.channels) is not None) == (share > 1.0)
 
 
 def test_a_speed_exchanged_for_height_is_no_work():

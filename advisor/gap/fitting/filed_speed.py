@@ -10,10 +10,11 @@ from advisor.gap.fitting.belief import distance_of, log_belief
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import covariance, file_is_off, worth
-from advisor.gap.simulator.layout import SPEED
+from advisor.gap.simulator.layout import DERIVATIVES, SPEED
+from advisor.model.short_period import SPEED_EXPONENTS
 
-_POWERS = np.array([1.0, 0.0, 1.0, 2.0, 1.0, 2.0])
-"""Of the speed, by which Z_α, Z_q, Z_δe, M_α, M_q, M_δe grow with it."""
+_POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
+"""Of the speed, by which each derivative grows with it."""
 _FARTHEST = 0.06
 """Relative: numbers that hold at no speed near those of the flight are wrong ones."""
 _TRIED = 25

@@ -11,7 +11,7 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.belief import HELD, NARROW, WIDE, pull_of
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.records.flights import Flight, Flights
-from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, NUISANCES, SKEWS
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
 from advisor.gap.simulator.reading import delayed, filtered, lane, packed, read_rows
 from advisor.gap.simulator.simulate import LANES, simulate
 from advisor.gap.simulator.surface import surfaces
@@ -185,9 +185,10 @@ class Problem:
         The disturbance, shape (4, n), enters each simulation by its dose, shape (k,).
         """
         stamps = flight.t_held if self.held else flight.t_u
-        delta, above = surfaces(flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim, p, LANES)
+        command = (flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim)
+        delta, above = surfaces(LAYOUT, *command, p, LANES)
         doses = np.zeros(len(p)) if doses is None else doses
-        return simulate(flight.h, delta, above, flight.slow, disturbance, doses, flight.trim, p)
+        return simulate(LAYOUT, flight.h, delta, above, flight.slow, disturbance, doses, flight.trim, p)
 
     def read_all(
         self, flight: Flight, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None

@@ -14,7 +14,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import INDEX, SPEED, short_period
-from advisor.oem.innovations import CHANNELS, AirModel, Gains, gains_of
+from advisor.oem.innovations import ALPHA, AirModel, Gains, gains_of
 
 
 class Whitening(Protocol):
@@ -85,15 +85,12 @@ def filters_for(
 
 
 def rows_in_time(flights: Flights, i: int, p: FloatArray) -> tuple[FloatArray, np.ndarray, np.ndarray]:
-    """Times and channels (indices into ``CHANNELS``) of one manoeuvre in order of time, and that order.
+    """Times and channels (indices into ``OUTPUTS``) of one manoeuvre in order of time, and that order.
 
     A vane that is late by ``p``, shape (entries,), saw the air before its stamp: it is put in order by that.
     """
     flight = flights.flights[i]
     late_s = 0.0 if flights.alpha_is_derived else float(p[INDEX["alpha_skew_s"]] + p[INDEX["alpha_lag_s"]])
-    t = np.concatenate([flight.outputs[c].t - late_s * (c == "alpha") for c in flights.channels])
-    channel = np.concatenate(
-        [np.full(len(flight.outputs[c].t), CHANNELS.index(c), dtype=np.int64) for c in flights.channels]
-    )
+    t = flight.stamps - late_s * (flight.output == ALPHA)
     order = np.argsort(t, kind="stable")
-    return t[order], channel[order], order
+    return t[order], flight.output[order], order

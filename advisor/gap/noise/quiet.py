@@ -20,9 +20,9 @@ from advisor.gap.fitting.whitening import Weighting, Whitening, filters_for, row
 from advisor.gap.noise.probes import probe_blocks
 from advisor.gap.noise.stamps import stamp_variance
 from advisor.gap.records.floor import stated_floor
-from advisor.gap.simulator.layout import DERIVATIVES, SPEED, short_period
-from advisor.oem.innovations import CHANNELS, AirModel
-from advisor.oem.turbulence import Rows, cost_of, find_turbulence
+from advisor.gap.simulator.layout import DERIVATIVES, OUTPUTS, SPEED, short_period
+from advisor.oem.innovations import AirModel
+from advisor.oem.turbulence import Rows, cost_of, find_turbulence, spread_of
 
 _LEAST_SAMPLES = 50
 """Of a channel in quiet stretches, from which on they tell its noise."""
@@ -52,9 +52,7 @@ def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> 
     """
     extra = stamp_variance(problem, fitted)
     air = noise_in_quiet(problem, fitted)
-    still = air or with_floor(
-        problem, AirModel(instrument_noise(problem), np.full(4, 1e-9), 0.3, 0.0, 1.0, _seen(problem))
-    )
+    still = air or with_floor(problem, AirModel.still(instrument_noise(problem), _seen(problem)))
     gusts = gusts_in(problem, fitted, still, first_look)
     if air is not None or gusts:
         airs = [gusts.get(i, still) for i in range(len(problem.flights))]
@@ -80,8 +78,8 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
     loud = np.array([float(np.mean((r.left / white[r.channel]) ** 2)) for r in rows])
     rows = [r for r, power in zip(rows, loud, strict=True) if power <= _LONE * np.median(loud)]
     found = find_turbulence(rows, system, white, bool(_seen(problem)))
-    plain = AirModel(_spread(rows), np.full(4, 1e-9), 0.3, 0.0, 1.0)
-    gain = 0.5 * (cost_of(rows, system, plain) - cost_of(rows, system, found.air))
+    plain = cost_of(rows, system, AirModel.still(spread_of(rows)))
+    gain = 0.5 * (plain - cost_of(rows, system, found.air))
     return with_floor(problem, found.air) if gain > _LEAST_GAIN else None
 
 
@@ -100,7 +98,7 @@ def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool
     does not explain its residual better than one in any other place.
     """
     noise = np.array([float(np.hypot(still.white[c], still.coloured[c]))
-                      for c in (CHANNELS.index(name) for name in problem.channels)])  # fmt: skip
+                      for c in (OUTPUTS.index(name) for name in problem.channels)])  # fmt: skip
     power = np.mean(mean_squares(problem, _begun_anew(problem, fitted, noise)) / noise**2, axis=1)
     louder = power / np.percentile(power, 25.0)
     likelier = {int(i): _likelier(problem, fitted, int(i), noise) for i in np.flatnonzero(louder > _FAINT)}
@@ -163,7 +161,7 @@ def with_floor(problem: Problem, air: AirModel) -> AirModel:
     """
     white = air.white.copy()
     for c, least in zip(problem.channels, 0.5 * stated_floor(problem.flights), strict=True):
-        white[CHANNELS.index(c)] = max(white[CHANNELS.index(c)], least)
+        white[OUTPUTS.index(c)] = max(white[OUTPUTS.index(c)], least)
     return replace(air, white=white)
 
 
@@ -187,7 +185,7 @@ def instrument_noise(problem: Problem) -> FloatArray:
     """
     least = _NONE_OF_PEAK * problem.flights.peaks
     white = dict(zip(problem.channels, np.maximum(problem.flights.white, least), strict=True))
-    return np.array([white.get(c, 1.0) for c in CHANNELS])
+    return np.array([white.get(c, 1.0) for c in OUTPUTS])
 
 
 def system_of(problem: Problem, fitted: Fitted) -> FloatArray:
@@ -216,19 +214,9 @@ def _quiet_parts(problem: Problem, fitted: Fitted, i: int) -> list[Rows]:
 
 def _without_offsets(rows: Sequence[Rows]) -> list[Rows]:
     """The same less what a channel has in every stretch: an offset is an effect, no noise with a memory."""
-    offset = np.zeros(len(CHANNELS))
-    for c in range(len(CHANNELS)):
+    offset = np.zeros(len(OUTPUTS))
+    for c in range(len(OUTPUTS)):
         picked = [r.left[r.channel == c] for r in rows]
         if sum(len(p) for p in picked):
             offset[c] = float(np.mean(np.concatenate(picked)))
     return [replace(r, left=r.left - offset[r.channel]) for r in rows]
-
-
-def _spread(rows: Sequence[Rows]) -> FloatArray:
-    """Shape (4,): root mean square of each channel, 1 for one that is missing."""
-    found = np.ones(4)
-    for c in range(4):
-        picked = np.concatenate([r.left[r.channel == c] for r in rows])
-        if len(picked):
-            found[c] = max(float(np.sqrt(np.mean(picked**2))), 1e-12)
-    return found

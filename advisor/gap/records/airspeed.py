@@ -8,13 +8,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import bank_at, integrated, speed_rate
+from advisor.flight.motion import integrated, speed_rate_at
 from advisor.gap.records.grid import smooth
+from advisor.oem.airspeed import LARGEST_DISAGREEMENT
 
-_SLOWEST_M_S = 1.0
-"""Air speed at which nothing flies."""
 _LEAST_SAMPLES = 6
 """Of the instrument in a manoeuvre, from which on a parabola may be fitted to them ..."""
 _LEAST_SPARE = 10
@@ -32,7 +32,7 @@ def measures_speed(maneuver: Maneuver) -> bool:
     speed = maneuver.channels.get("airspeed")
     if speed is None or speed.provenance == "given":
         return False
-    return len(speed) > 1 and float(np.min(speed.y)) > _SLOWEST_M_S
+    return len(speed) > 1 and float(np.min(speed.y)) > SLOWEST_FLIGHT_M_S
 
 
 def airspeed_on(
@@ -47,13 +47,7 @@ def airspeed_on(
     as_read = smooth(np.interp(grid, t, y), _READ_OVER_S)
     if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
         return as_read
-
-    def at(name: str) -> FloatArray:
-        return np.interp(grid, found[name].t - start_s, found[name].y)
-
-    bank = bank_at(grid + start_s, found)
-    rate = speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"), bank)
-    shape = integrated(grid, rate) / true_over_read
+    shape = integrated(grid, speed_rate_at(grid + start_s, found)) / true_over_read
     inside = (t >= grid[0]) & (t <= grid[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return as_read
@@ -61,7 +55,7 @@ def airspeed_on(
     rebuilt = shape + np.polyval(drift, grid)
     apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
     # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
-    return rebuilt if apart < 0.03 * float(np.mean(y[inside])) else as_read
+    return rebuilt if apart < LARGEST_DISAGREEMENT * float(np.mean(y[inside])) else as_read
 
 
 def speed_doubts(

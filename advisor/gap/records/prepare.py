@@ -21,11 +21,9 @@ from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
 from advisor.gap.records.usable import outputs_of, recorded, usable_of
-from advisor.gap.simulator.layout import OUTPUTS, SPEED, THETA_FROM, THRUST
+from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
 from advisor.gravity import GRAVITY_M_S2
-
-ASSUMED_M_S = 20.0
-"""Air speed where neither log nor file nor motion has one: then only the weight's part of α̇ knows of it."""
+from advisor.oem.place import ASSUMED_M_S
 
 
 def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float = 1.0) -> Flights:
@@ -142,7 +140,8 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     # Without a yaw rate in the log a bank is a coordinated turn.
     yaw_rate = smooth(on_grid("r", 0.0), 0.1) if "r" in m.channels else GRAVITY_M_S2 / speed * np.sin(bank)
     turn = yaw_rate * np.sin(bank)
-    slow = np.vstack([speed, a_x, bank, throttle - float(np.mean(throttle[:20])), height, along, turn])
+    slow = np.vstack(SLOW._replace(speed=speed, a_x=a_x, bank=bank, height=height, thrust=along, turn=turn,
+                                   throttle=throttle - float(np.mean(throttle[:20]))))  # fmt: skip
     outputs = outputs_of(m)
     t_u, u = m.channels["elevator"].t - start, m.channels["elevator"].y
     lead = (t_u >= 0.0) & (t_u < max(first - 0.02, 0.1))

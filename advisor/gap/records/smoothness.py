@@ -10,10 +10,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.flight.robust import robust_std
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
-_MEDIAN = 0.6745
-"""Median of the size of a normal variable of unit variance."""
 _ROUGH = 1.6
 """Growth of differences over two samples up to which noise is an instrument's; ArduPilot's estimates have
 2.4 and more ..."""
@@ -21,11 +20,6 @@ _SMOOTHED = 2.0
 """... from which on something has been filtered ..."""
 _FILTERED = 6.0
 """... and from which on next to nothing is left above its edge: no estimator on board is so thorough."""
-
-
-def robust_std(departures: FloatArray) -> float:
-    """Standard deviation of normal noise from the median size of its departures, which few outliers move."""
-    return float(np.median(np.abs(departures))) / _MEDIAN
 
 
 def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:

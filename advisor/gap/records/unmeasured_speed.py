@@ -11,7 +11,7 @@ import numpy as np
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.flight.motion import bank_at, gravity_in_plane, integrated, speed_rate
+from advisor.flight.motion import bank_at, integrated, path_turning, speed_rate_at
 
 _BLOCK_S = 1.0
 """Over which errors of the motion are one and the same: an offset's remainder, a gust."""
@@ -103,11 +103,7 @@ def speed_without_instrument(
     level = np.full(len(grid), level_m_s)
     if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
         return level
-
-    def at(name: str) -> FloatArray:
-        return np.interp(grid, found[name].t - start_s, found[name].y)
-
-    rate = speed_rate(at("a_x"), at("a_z"), at("theta"), at("alpha"), bank_at(grid + start_s, found))
+    rate = speed_rate_at(grid + start_s, found)
     trimmed = grid < maneuver.span.start_s - start_s
     if not np.any(trimmed):
         return level
@@ -128,8 +124,7 @@ def _turned_and_pushed(
     t, alpha = found["alpha"].t, found["alpha"].y
     q, a_z, theta = (np.interp(t, found[name].t, found[name].y) for name in ("q", "a_z", "theta"))
     a_x = np.interp(t, found["a_x"].t, found["a_x"].y) if "a_x" in found else np.zeros(len(t))
-    up, size = gravity_in_plane(theta, bank_at(t, found))
-    force = a_z * np.cos(alpha) - a_x * np.sin(alpha) + size * np.cos(up - alpha)
+    force = path_turning(a_x, a_z, theta, alpha, bank_at(t, found))
     if level_m_s is not None:
         force = force * level_m_s / speed_without_instrument(t - t[0], maneuver, float(t[0]), level_m_s)
     line = np.linalg.qr(np.vander(t - t[0], 2))[0]

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.flight.robust import robust_std
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import KNOTS_S, Course, disturbance_courses
 from advisor.gap.noise.quiet import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
-from advisor.gap.records.smoothness import robust_std
 from advisor.gap.search.merit import LEAST_BELIEF, Judged
-from advisor.oem.innovations import CHANNELS
+from advisor.model.response import OUTPUTS
 from advisor.oem.turbulence import Turbulence, find_turbulence
 
 AIR_GAIN = 40.0
@@ -108,7 +108,7 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     if found.gain < AIR_GAIN:
         return None
     model = with_floor(problem, found.air)
-    instruments = np.hypot(model.white, model.coloured)[[CHANNELS.index(c) for c in problem.channels]]
+    instruments = np.hypot(model.white, model.coloured)[[OUTPUTS.index(c) for c in problem.channels]]
     course = disturbance_courses(problem, fitted, instruments, "air", [found.gust_angle])[0]
     joined = np.concatenate(course.knots)
     typical = robust_std(joined - np.median(joined))

@@ -5,10 +5,11 @@ lanes of a pack at once (``advisor.gap.simulator.simulate``).
 """
 
 import numpy as np
-from numba import njit
+
+from compiled import kernel
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@kernel(error_model="numpy", fastmath={"contract"})
 def cos_sin(x: float) -> tuple[float, float]:
     """Cosine and sine of an angle in rad, to the last digit but one."""
     half_turns = np.floor(x * (1.0 / np.pi) + 0.5)

@@ -5,17 +5,22 @@ trim), and one entry per parameter of every candidate effect. All effect entries
 plain model, so adding an effect means freeing its entries and nothing else.
 """
 
+from collections import namedtuple
+from collections.abc import Callable, Sequence
+from typing import Any
+from zlib import crc32
+
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.model import response
 
 DERIVATIVES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
 NUISANCES = ("alpha_start", "q_start", "Z_trim", "M_trim")
 """Free in every manoeuvre: deviation of α and q at its start, and the trim terms of Eqs. (1)-(2)
 at the trimmed α and δe instead of at zero."""
 EFFECT_ENTRIES = (
-    # input: first, for the surface's compiled code, which may be older than this list, knows them by place;
-    # the latency is the few milliseconds between a command's stamp and its effect, in every model
+    # input; the latency is the few milliseconds between a command's stamp and its effect, in every model
     "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
     "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
     "breakaway_rad", "sliding_share", "loop_s",
@@ -49,20 +54,42 @@ EFFECT_ENTRIES = (
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}
 
-OUTPUTS = ("alpha", "q", "a_z", "theta")
+OUTPUTS = response.OUTPUTS
 """What is simulated and compared, in this order."""
 SKEWS = ("alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s")
 """Entry that shifts the stamps of each output."""
 FILTER = ("filter_lag_s", "filter_shape", "filter_output")
 """Entries that filter one output."""
 
-SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST, TURN = range(7)
+
+def places(names: Sequence[str]) -> Any:
+    """Place of each name in a list of names, as compiled functions read the place: ``places(names).name``."""
+    named: Callable[..., Any] = namedtuple
+    return named("Places", names)(*range(len(names)))
+
+
+AT, READ, FILTERED = places(ENTRIES), places(OUTPUTS), places(FILTER)
+SLOW = places(("speed", "a_x", "bank", "throttle", "height", "thrust", "turn"))
+SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST, TURN = SLOW
 """Rows of the slow inputs, one value a step."""
-DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = range(4)
+DISTURBED = places(("input", "force", "moment", "air"))
+DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = DISTURBED
 """Rows of the disturbances, one value a step: added to δ, α̇, q̇ and to the angle of the air."""
-ALPHA_TRIM, THETA_FROM, REFERENCE, SCALED = range(4)
+TRIM = places(("alpha", "theta", "reference", "scaled"))
+ALPHA_TRIM, THETA_FROM, REFERENCE, SCALED = TRIM
 """Places in a manoeuvre's trim: α and θ at its start, rad, the speed that derivatives are given at, m/s, and
 1 where they scale with the speed flown."""
+
+
+def key_of(*lists: Any) -> int:
+    """Number that stands for lists of ``places``: another one where a name or its place is another."""
+    return crc32(repr(lists).encode())
+
+
+LAYOUT = key_of(AT, READ, SLOW, DISTURBED, TRIM)
+"""What compiled functions of the simulation were compiled for, and are told at every call."""
+OTHER_LAYOUT = """The simulation was compiled for another list of numbers: delete its compiled files, \
+__pycache__/*.nbi in advisor/gap/simulator, and start again."""
 
 
 def natural_frequency(derivatives: FloatArray) -> float:

@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 
 from advisor.flight.messages import FloatArray
+from advisor.gap.simulator.layout import FILTERED
+from compiled import kernel
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def read_rows(
     packs: FloatArray, h: float, stamps: FloatArray, output: np.ndarray, flown: np.ndarray, skews: FloatArray
 ) -> FloatArray:
@@ -50,7 +51,7 @@ def read_rows(
     return y
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: FloatArray) -> FloatArray:
     """Residuals and sensitivities from readings, shape (rows, k) like them.
 
@@ -75,7 +76,7 @@ def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: 
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
     """The same response, shape (4, n + 1), starting later by each of some delays, as one pack to read.
 
@@ -96,7 +97,7 @@ def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def superposed(response: FloatArray, h: float, delays: FloatArray, weights: FloatArray) -> FloatArray:
     """The sum of the responses that ``delayed`` gives, each by its weight, shape (4, n + 1)."""
     n = response.shape[1]
@@ -112,14 +113,14 @@ def superposed(response: FloatArray, h: float, delays: FloatArray, weights: Floa
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _passed(out: complex, before: complex, here: complex, steps: complex, decay: complex) -> complex:
     """What a pole passes on at the end of a step in which its input moves linearly."""
     trail = steps * (here - before)
     return here - trail + decay * (out - before + trail)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray) -> FloatArray:
     """Simulations with one output of each behind a filter 1/(1 + T p + c T² p²), as one pack to read.
 
@@ -128,8 +129,8 @@ def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray
     packs, h, flown
         As ``read_rows`` takes them.
     filters
-        Shape (k, 3): of each column T in s, by which a ramp is late, c (0: first order, 1/2: Butterworth's),
-        and the place of the output. No T: no filter.
+        Shape (k, 3), as ``layout.FILTER``: of each column T in s, by which a ramp is late, c (0: first order,
+        1/2: Butterworth's), and the place of the output. No T: no filter.
     """
     k, n = len(flown), packs.shape[1]
     out = np.empty((1, n, 4, k))
@@ -138,7 +139,8 @@ def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray
         for i in range(n):
             for c in range(4):
                 out[0, i, c, j] = packs[pack, i, c, lane_of]
-        late, shape, c = filters[j, 0], max(filters[j, 1], 1e-3), int(filters[j, 2])
+        late, shape = filters[j, FILTERED.filter_lag_s], max(filters[j, FILTERED.filter_shape], 1e-3)
+        c = int(filters[j, FILTERED.filter_output])
         if late <= 0.0:
             continue
         # Two poles, one behind the other: a pair of conjugates below critical damping.

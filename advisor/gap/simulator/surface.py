@@ -1,21 +1,17 @@
 """From stick to surface: delay, lag, rate limit, play, dead band and stops, each switched off by a zero."""
 
 import numpy as np
-from numba import njit
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.simulator.layout import INDEX
+from advisor.gap.simulator.layout import AT, LAYOUT, OTHER_LAYOUT
+from compiled import kernel
 
-# Compiled code is kept as long as this file is the same: the entries it reads stand first in the layout.
-_READ = tuple(INDEX[name] for name in (
-    "delay_s", "latency_s", "lag_s", "lag_damping", "slowness_s_rad",
-    "half_play_rad", "play_side", "half_deadband_rad", "neutral_rad", "stop_up_rad", "stop_down_rad",
-    "breakaway_rad", "sliding_share", "loop_s",
-))  # fmt: skip
-(
-    DELAY, LATENCY, LAG, LAG_DAMPING, SLOWNESS, PLAY, PLAY_SIDE, DEADBAND, NEUTRAL, STOP_UP, STOP_DOWN,
-    BREAKAWAY, SLIDING, LOOP,
-) = _READ  # fmt: skip
+_READ = (
+    AT.delay_s, AT.latency_s, AT.lag_s, AT.lag_damping, AT.slowness_s_rad,
+    AT.half_play_rad, AT.play_side, AT.half_deadband_rad, AT.neutral_rad, AT.stop_up_rad, AT.stop_down_rad,
+    AT.breakaway_rad, AT.sliding_share, AT.loop_s,
+)  # fmt: skip
+"""Entries on which a deflection depends."""
 
 _UNLIMITED = 1e6
 """Rate of a servo without a limit, rad/s: a jump takes no time."""
@@ -25,16 +21,19 @@ _PARTS = 8
 """Of a piece of the command, at most: at its limit, lagging, and at its limit the other way."""
 
 
-@njit(cache=True)
+@kernel()
 def surfaces(
-    h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray, lanes: int
-) -> tuple[FloatArray, FloatArray]:
+    layout: int, h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray,
+    lanes: int,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """Deflections for every row of ``p``, shape (k, entries), in lanes as ``simulate`` takes them.
 
     Each of shape (packs, n, lanes): the mean over each step, and what that is above the step's start. Most
     rows differ in numbers of which the surface knows nothing: those share a deflection. Lanes to spare repeat
-    the last one.
+    the last one. Raises ValueError where the surface was compiled for another ``layout`` (``layout.LAYOUT``).
     """
+    if layout != LAYOUT or p.shape[1] != len(AT):
+        raise ValueError(OTHER_LAYOUT)
     packs = (len(p) + lanes - 1) // lanes
     different = np.empty((len(p), 2, n))
     which = np.empty(packs * lanes, dtype=np.int64)
@@ -58,7 +57,7 @@ def surfaces(
     return delta, above
 
 
-@njit(cache=True)
+@kernel()
 def _differ(one: FloatArray, other: FloatArray) -> bool:
     differ = False
     for entry in _READ:
@@ -66,7 +65,7 @@ def _differ(one: FloatArray, other: FloatArray) -> bool:
     return differ
 
 
-@njit(cache=True)
+@kernel()
 def _above_start(mean: FloatArray) -> FloatArray:
     """What the mean over each step is above the value at its start.
 
@@ -84,7 +83,7 @@ def _above_start(mean: FloatArray) -> FloatArray:
     return out
 
 
-@njit(cache=True)
+@kernel()
 def _lesser(one: float, other: float) -> float:
     """The smaller of two differences of one sign; zero where they differ in sign."""
     if one * other <= 0.0:
@@ -92,7 +91,7 @@ def _lesser(one: float, other: float) -> float:
     return one if abs(one) < abs(other) else other
 
 
-@njit(cache=True)
+@kernel()
 def surface(
     h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray
 ) -> FloatArray:
@@ -104,17 +103,18 @@ def surface(
     """
     out = np.empty(n)
     k = 0
-    late = p[DELAY] + p[LATENCY]
-    tau, slow, play, dead = p[LAG], p[SLOWNESS], max(p[PLAY], 0.0), max(p[DEADBAND], 0.0)
-    up, down = p[STOP_UP], p[STOP_DOWN]
+    late = p[AT.delay_s] + p[AT.latency_s]
+    tau, slow, neutral = p[AT.lag_s], p[AT.slowness_s_rad], p[AT.neutral_rad]
+    play, dead = max(p[AT.half_play_rad], 0.0), max(p[AT.half_deadband_rad], 0.0)
+    up, down = p[AT.stop_up_rad], p[AT.stop_down_rad]
     decay = np.exp(-h / tau) if tau > 1e-6 else 0.0
     # A servo of second order that trails a ramp by τ = 2 ζ/ω, solved exactly for what it is told in a step.
-    zeta = p[LAG_DAMPING] if tau > 1e-3 else 0.0
+    zeta = p[AT.lag_damping] if tau > 1e-3 else 0.0
     omega = 2.0 * zeta / max(tau, 1e-3)
     damped = np.sqrt(max(1.0 - zeta * zeta, 1e-6))
     fade = np.exp(-zeta * omega * h)
     swing_cos, swing_sin = np.cos(omega * damped * h), np.sin(omega * damped * h) / damped
-    holds = p[BREAKAWAY]
+    holds = p[AT.breakaway_rad]
     by_pieces = (slow > 0.0 or play > 0.0 or holds > 0.0) and omega == 0.0
     most = 1.0 / slow if slow > 0.0 else _UNLIMITED
     rate = 0.0
@@ -139,9 +139,9 @@ def surface(
                 end = begin + slope * (upto - at)
             mean = 0.5 * (begin + end)
             if dead > 0.0:
-                mean = _mean_beyond(begin - p[NEUTRAL], end - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
-                begin = _beyond(begin - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
-                end = _beyond(end - p[NEUTRAL], dead) - _beyond(-p[NEUTRAL], dead)
+                mean = _mean_beyond(begin - neutral, end - neutral, dead) - _beyond(-neutral, dead)
+                begin = _beyond(begin - neutral, dead) - _beyond(-neutral, dead)
+                end = _beyond(end - neutral, dead) - _beyond(-neutral, dead)
             if up > 0.0:
                 mean -= _mean_over(begin, end, up)
                 begin, end = min(begin, up), min(end, up)
@@ -150,10 +150,10 @@ def surface(
                 begin, end = max(begin, -down), max(end, -down)
             if np.isnan(servo):
                 servo = begin
-                link = begin + p[PLAY_SIDE] * max(play, holds)
+                link = begin + p[AT.play_side] * max(play, holds)
             if holds > 0.0:
                 link, way, swept = _broken_away(
-                    link, way, begin, end, upto - at, holds, p[SLIDING] * holds, p[LOOP]
+                    link, way, begin, end, upto - at, holds, p[AT.sliding_share] * holds, p[AT.loop_s]
                 )
                 area += swept
             elif by_pieces:
@@ -188,7 +188,7 @@ def surface(
     return out
 
 
-@njit(cache=True)
+@kernel()
 def _through(
     servo: float, link: float, begin: float, end: float, dt: float, tau: float, most: float, play: float
 ) -> tuple[float, float, float]:
@@ -226,7 +226,7 @@ def _through(
     return servo, link, area
 
 
-@njit(cache=True)
+@kernel()
 def _broken_away(
     link: float, way: float, begin: float, end: float, dt: float, holds: float, drags: float, tau: float
 ) -> tuple[float, float, float]:
@@ -271,12 +271,12 @@ def _broken_away(
     return link, way, area
 
 
-@njit(cache=True)
+@kernel()
 def _beyond(x: float, dead: float) -> float:
     return float(np.sign(x) * max(abs(x) - dead, 0.0))
 
 
-@njit(cache=True)
+@kernel()
 def _mean_beyond(begin: float, end: float, dead: float) -> float:
     """Mean of what lies beyond the dead band while its argument moves linearly from begin to end."""
     if abs(end - begin) < _HERE:
@@ -285,7 +285,7 @@ def _mean_beyond(begin: float, end: float, dead: float) -> float:
     return float(0.5 * squares / (end - begin))
 
 
-@njit(cache=True)
+@kernel()
 def _mean_over(begin: float, end: float, top: float) -> float:
     """Mean of what lies above a stop while its argument moves linearly from begin to end."""
     if abs(end - begin) < _HERE:

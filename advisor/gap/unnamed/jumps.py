@@ -3,11 +3,11 @@
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.flight.robust import robust_std
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import SENSOR_CHANNELS
 from advisor.gap.records.floor import DOUBT
-from advisor.gap.records.smoothness import robust_std
 
 _FAR, _SURPRISE = 6.0, 4.0
 """Standard deviations beyond which a change between two samples, and its innovation, are a jump ..."""

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from advisor.flight.messages import FloatArray
+from advisor.flight.robust import robust_std
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.noise.probes import KNOTS_S
-from advisor.gap.records.smoothness import robust_std
 from advisor.gap.search.air import Air
 from advisor.gap.search.stage import Stage
 from advisor.gap.unnamed.leftover import LEAST_OF_GAP, Leftover

@@ -1,0 +1,85 @@
+"""Compiled functions, kept on disk for as long as all that they were compiled from is the same.
+
+Numba freezes into a kernel's machine code the functions that the kernel calls and the constants that it
+reads. The key of numba's cache is the text of the kernel's own file, so that machine code outlives a change
+of what was frozen. The key here is the text of that file and of every module of the same package that the
+file imports, directly or through other modules.
+"""
+
+import ast
+import hashlib
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def kernel(**options: Any) -> Callable[[Function], Function]:
+    """Compile a function when it is first called, and keep the machine code on disk.
+
+    Parameters
+    ----------
+    options
+        Of ``numba.njit``, such as ``error_model`` and ``fastmath``.
+
+    Returns
+    -------
+    The decorator of the function, whose own annotations stay.
+    """
+
+    def compiled(function: Function) -> Function:
+        found: Any = numba.njit(cache=True, **options)(function)
+        if found is not function:  # NUMBA_DISABLE_JIT leaves functions as they are.
+            found._cache._cache_file._source_stamp = key_of(function.__module__)
+        return cast("Function", found)
+
+    return compiled
+
+
+@cache
+def key_of(module: str) -> str:
+    """Hash of the text of an imported module and of all modules of its package that it is made of.
+
+    Parameters
+    ----------
+    module
+        Name of a module that is imported, or is being imported below its own imports.
+
+    Returns
+    -------
+    SHA-256 in hexadecimal; equal wherever the texts are, whatever their folder and their time.
+    """
+    found, ahead = set[str](), [module]
+    while ahead:
+        name = ahead.pop()
+        if name not in found:
+            found.add(name)
+            ahead += _imports_of(name)
+    whole = hashlib.sha256()
+    for name in sorted(found):
+        whole.update(name.encode() + b"\0" + _text_of(name) + b"\0")
+    return whole.hexdigest()
+
+
+@cache
+def _imports_of(module: str) -> tuple[str, ...]:
+    """Modules of the same package that the top level of a module's text imports."""
+    named = []
+    for node in ast.parse(_text_of(module)).body:
+        if isinstance(node, ast.Import):
+            named += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module is not None:
+            named += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+    package = module.partition(".")[0]
+    return tuple(name for name in named if name.partition(".")[0] == package and name in sys.modules)
+
+
+@cache
+def _text_of(module: str) -> bytes:
+    file = sys.modules[module].__file__
+    return b"" if file is None else Path(file).read_bytes()
