@@ -18,7 +18,7 @@ $(STAMP): pyproject.toml constraints.txt
 	touch $@
 
 # Compiled before a user waits for it; what was compiled from another text is compiled anew by itself.
-KERNELS := $(shell grep -rl --include='*.py' '@kernel' advisor sim) compiled/__init__.py
+KERNELS := $(shell grep -rl --include='*.py' '@kernel' advisor sim) advisor/compiled.py
 .venv/.compiled: $(STAMP) $(KERNELS)
 	$(BIN)/python -m advisor.mavlink.warm
 	$(BIN)/python -m advisor.oem.warm

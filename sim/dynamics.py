@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from compiled import kernel
+from advisor.compiled import kernel
 from sim.airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
 
 FloatArray = NDArray[np.float64]

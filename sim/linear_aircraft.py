@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from compiled import kernel
+from advisor.compiled import kernel
 from sim.airframe import GRAVITY_M_S2
 from sim.linear import ShortPeriod
 from sim.motion import Controls, Motion

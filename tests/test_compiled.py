@@ -49,7 +49,7 @@ def _write(folder: Path, *, factor: float, unit: float = 1.0) -> None:
     (package / "unit.py").write_text(f"UNIT = {unit}\n")
     (package / "factor.py").write_text(f"from flown import unit\n\nFACTOR = {factor} * unit.UNIT\n")
     (package / "motion.py").write_text(
-        "from compiled import kernel\nfrom flown.factor import FACTOR\n\n\n"
+        "from advisor.compiled import kernel\nfrom flown.factor import FACTOR\n\n\n"
         "@kernel()\ndef moved(x):\n    return FACTOR * x\n"
     )
 

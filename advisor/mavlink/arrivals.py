@@ -13,7 +13,7 @@ time stamp would count as new. When the first path falls silent, the late path's
 import numpy as np
 from numpy.typing import NDArray
 
-from compiled import kernel
+from advisor.compiled import kernel
 
 Ints = NDArray[np.int64]
 

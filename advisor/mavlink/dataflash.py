@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray, IntArray
-from compiled import kernel
 
 HEADER = b"\xa3\x95"
 _HEADER_0, _HEADER_1 = HEADER

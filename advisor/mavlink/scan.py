@@ -10,9 +10,9 @@ second path repeats is stepped over.
 import numpy as np
 from numpy.typing import NDArray
 
+from advisor.compiled import kernel
 from advisor.mavlink.arrivals import weigh
 from advisor.mavlink.checksum import AFTER, FROM_HIGH_BYTE, INITIAL, TABLE
-from compiled import kernel
 
 Bytes = NDArray[np.uint8]
 Ints = NDArray[np.int64]

@@ -9,8 +9,8 @@ below runs on scalars, to round-off, for the highest order; the others follow fr
 
 import math
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
-from compiled import kernel
 
 ORDERS = 4
 """φ₀ to φ₃."""

@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, Index, respond
-from compiled import kernel
 
 FLAT = 1e-11
 """Converged when the last step promised less than this change of log J; what is left after it is far less."""

@@ -6,8 +6,8 @@ one at a time, in order of time, so that every update is by a scalar.
 
 import numpy as np
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
-from compiled import kernel
 
 STATES = 8
 DIFFUSE = 1e3

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
 from advisor.oem.colour import Colour
-from compiled import kernel
 
 
 @dataclass(slots=True)

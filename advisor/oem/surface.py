@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
-from compiled import kernel
 
 LONGEST_STEP_S = 0.0105
 

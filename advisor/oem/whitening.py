@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
-from compiled import kernel
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ lanes of a pack at once (``advisor.gap.simulator.simulate``).
 
 import numpy as np
 
-from compiled import kernel
+from advisor.compiled import kernel
 
 
 @kernel(error_model="numpy", fastmath={"contract"})

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.layout import FILTERED
-from compiled import kernel
 
 
 @kernel(error_model="numpy")

@@ -20,11 +20,11 @@ the same inputs, so the loop advances a pack of them side by side, each in a lan
 
 import numpy as np
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.circle import cos_sin
 from advisor.gap.simulator.layout import AT, DISTURBED, LAYOUT, OTHER_LAYOUT, READ, SLOW, TRIM
 from advisor.gravity import GRAVITY_M_S2
-from compiled import kernel
 
 LANES = 8
 """Simulations in a pack: the numbers in the widest registers."""

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.layout import AT, LAYOUT, OTHER_LAYOUT
-from compiled import kernel
 
 _READ = (
     AT.delay_s, AT.latency_s, AT.lag_s, AT.lag_damping, AT.slowness_s_rad,
