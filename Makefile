@@ -94,6 +94,10 @@ study-third: .venv/.developed ## the diagnosis on 240 flights of the third gener
 	$(BIN)/python -m benchmarks.answer_sealed build/third build/third.jsonl
 	$(BIN)/python -m benchmarks.third_generator score build/third build/third.jsonl --details
 
+.PHONY: corpus
+corpus: .venv/.developed ## 160 flights whose keys are open: at most 2 % of the verdicts may flip (about ten minutes)
+	$(BIN)/python -m benchmarks.corpus
+
 FLIGHTS ?= ../shared/flights
 real: .venv/.developed ## records of real aircraft against what is known of them (FLIGHTS=folder)
 	$(BIN)/python -m benchmarks.real $(FLIGHTS) --write docs/validation.md

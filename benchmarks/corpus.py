@@ -1,0 +1,99 @@
+"""Hold the diagnosis to its verdicts on a corpus of flights whose keys are open.
+
+    python -m benchmarks.corpus            # exit code 1 where more verdicts flip than are allowed
+    python -m benchmarks.corpus --write    # the verdicts of today become the expected ones
+
+Flights are drawn from their seeds into ``build/corpus``. ``benchmarks/corpus.json`` has what is expected of
+each: the verdict, and the first cause or the block. Whoever changed the diagnosis looks at the verdicts that
+flip, and stores them with ``--write`` where they are right.
+"""
+
+import json
+import multiprocessing
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from benchmarks.answer_sealed import PROCESSES, answer
+from benchmarks.second_generator import case_files as second
+from benchmarks.third_generator import files as third
+from sim.blind.generate import generate
+
+EXPECTED = Path(__file__).with_suffix(".json")
+FOLDER = Path("build") / "corpus"
+ALLOWED = 0.02
+"""Share of the verdicts that may flip: an optimiser's last digits decide that many (other processors)."""
+
+Verdict = list[str | None]
+"""The verdict, and the first cause or the block."""
+
+
+def _own(folder: Path) -> None:
+    generate(60, 530271946, folder)
+
+
+def _second(folder: Path) -> None:
+    second.draw_set(folder, 60, 360127)
+
+
+def _third(folder: Path) -> None:
+    third.draw_set(folder, 40, 4545)
+
+
+SETS: Mapping[str, Callable[[Path], None]] = {"own": _own, "second": _second, "third": _third}
+"""Each with the draw of its flights, from a seed whose key is open."""
+
+
+def verdict_of(document: Mapping[str, Any]) -> Verdict:
+    """What is compared of a document of ``advisor gap --json``; empty where the log cannot serve."""
+    if not document:
+        return []
+    verdict = document["verdict"]
+    if verdict == "effect":
+        return [verdict, document["causes"][0]["effect"]]
+    return [verdict, document["where"]["block"] if verdict == "unknown" else None]
+
+
+def answered() -> Iterator[tuple[str, Verdict]]:
+    """Every flight of the corpus, drawn where it is not there yet, with its verdict."""
+    import advisor.diagnosis  # noqa: F401 - imported before the fork, so that every process finds it ready
+
+    cases = []
+    for name, draw in SETS.items():
+        folder = FOLDER / name
+        if not folder.with_suffix(".key.json").exists():
+            draw(folder)
+        cases += sorted(path for path in folder.iterdir() if path.is_dir())
+    with multiprocessing.get_context("fork").Pool(PROCESSES, maxtasksperchild=1) as pool:
+        for case, (_, document, _) in zip(cases, pool.imap(answer, cases), strict=True):
+            yield f"{case.parent.name}/{case.name}", verdict_of(document)
+
+
+def flips_in(found: Mapping[str, Verdict], expected: Mapping[str, Verdict]) -> list[str]:
+    """A line for each flight whose verdict is not the expected one."""
+    return [
+        f"{case}: {expected.get(case)} became {verdict}"
+        for case, verdict in found.items()
+        if expected.get(case) != verdict
+    ]
+
+
+def main() -> int:
+    """Exit code 1 where more verdicts flip than are allowed."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    found: dict[str, Verdict] = {}
+    for case, verdict in answered():
+        found[case] = verdict
+        print(f"{len(found)} {case} {verdict}", file=sys.stderr)
+    if "--write" in sys.argv[1:]:
+        EXPECTED.write_text(json.dumps(found, indent=0, sort_keys=True) + "\n", encoding="utf-8")
+        return 0
+    flips = flips_in(found, json.loads(EXPECTED.read_text(encoding="utf-8")))
+    print(*flips, f"{len(flips)} of {len(found)} verdicts flipped; {ALLOWED:.0%} may.", sep="\n")
+    return int(len(flips) > ALLOWED * len(found))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
