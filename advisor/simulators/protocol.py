@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from advisor.aircraft import Aircraft
 from advisor.flight.messages import FloatArray
 
 
@@ -31,10 +32,10 @@ class Inputs:
     """The recorded inputs of one manoeuvre, as departures from where they rested before the first step."""
 
     t: FloatArray
-    """Shape (n,). Seconds since the start of the record, ascending, evenly spaced."""
+    """Shape (n,). Seconds since the start of the record: the middles of even steps."""
     elevator: FloatArray
-    """Shape (n,), rad, positive trailing edge down, at the surface: what lies between command and surface in
-    the aircraft file is in it already."""
+    """Shape (n,), rad, positive trailing edge down, the mean over each step, at the surface: what lies
+    between command and surface in the aircraft file is in it already."""
     others: Mapping[str, FloatArray] = field(default_factory=dict)
     """``aileron`` and ``rudder`` in rad, ``throttle`` from 0 to 1: shape (n,), those that were logged."""
 
@@ -57,7 +58,10 @@ class State:
 
 
 class Increments(Protocol):
-    """Force and moment that are added to a simulator in every step. An instance can be pickled."""
+    """Force and moment that are added to a simulator in every step. An instance can be pickled.
+
+    A simulator calls an instance with rising times. An effect with a memory begins anew when time goes back.
+    """
 
     def __call__(self, state: State) -> tuple[float, float]:
         """Increments of α̇ by a force across the path, rad/s, and of q̇, rad/s²."""
@@ -76,6 +80,8 @@ class Replay:
     """Specific force along body z at the centre of gravity, m/s², about -9.81 in level flight."""
     airspeed_m_s: FloatArray
     height_m: FloatArray
+    a_x: FloatArray | None = None
+    """Specific force along body x, m/s²; None: worked out of the motion."""
 
 
 class Simulator(Protocol):
@@ -107,8 +113,8 @@ class Simulator(Protocol):
         """End whatever process the simulator runs in."""
 
 
-Factory = Callable[[str], Simulator]
-"""Makes a simulator of what follows the colon in a specification.
+Factory = Callable[[str, Aircraft], Simulator]
+"""Makes a simulator of what follows the colon in a specification, and of the aircraft file.
 
 Raises ``advisor.problems.ConfigurationError`` where that names nothing which can be loaded.
 """

@@ -1,0 +1,235 @@
+"""A simulator in a process of its own: foreign code crashes or hangs only there."""
+
+import importlib
+import multiprocessing
+import os
+import signal
+import sys
+import tempfile
+from collections.abc import Mapping
+from dataclasses import fields
+from multiprocessing.connection import Connection
+from typing import Any, NoReturn
+
+import numpy as np
+
+from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator
+
+_SPAWN = multiprocessing.get_context("spawn")
+_GOODBYE_S = 1.0
+"""Time that a process has to end by itself once its connection is closed."""
+
+
+class Isolated:
+    """A simulator that is built and flown in another process.
+
+    The parent imports nothing of the simulator, and receives numbers and text only. The folder in which the
+    parent was started stands last on the child's path of modules. What the child prints goes nowhere.
+
+    Parameters
+    ----------
+    make : str
+        ``module:name`` of the callable that builds the simulator.
+    *arguments
+        Its arguments; each can be pickled.
+    description : str
+        The simulator's name in every sentence.
+    speed_limit_s : float
+        Wall time that one replay or one linearisation may take.
+    start_limit_s : float
+        Wall time that building the simulator may take.
+
+    Raises
+    ------
+    ConfigurationError
+        The simulator cannot be built.
+    UnusableInputError
+        From each method: the simulator refuses, raises, crashes, answers no numbers, or takes too long.
+    """
+
+    def __init__(
+        self,
+        make: str,
+        *arguments: Any,
+        description: str,
+        speed_limit_s: float = 20.0,
+        start_limit_s: float = 60.0,
+    ) -> None:
+        self.description = description
+        self.speed_limit_s = speed_limit_s
+        self._start_limit_s = start_limit_s
+        self._call = (make, arguments)
+        self._folder = tempfile.TemporaryDirectory(prefix="advisor-simulator-", ignore_cleanup_errors=True)
+        self._process: Any = None
+        self._connection: Connection
+        try:
+            self.takes_increments = self._start()
+        except UnusableInputError as error:
+            self.close()
+            raise ConfigurationError(str(error)) from None
+        except BaseException:
+            self.close()
+            raise
+
+    def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
+        """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
+        columns = self._ask("replay", condition, inputs, increments)
+        return Replay(**{name: None if row is None else np.array(row) for name, row in columns.items()})
+
+    def linearise(self, condition: Condition) -> Mapping[str, float] | None:
+        """Dimensional short-period derivatives at the condition, or None where the simulator has none."""
+        derivatives: Mapping[str, float] | None = self._ask("linearise", condition)
+        return derivatives
+
+    def close(self) -> None:
+        """End the process, and remove the files that the simulator left in its temporary folder."""
+        self._end()
+        self._folder.cleanup()
+
+    def _start(self) -> bool:
+        self._connection, theirs = _SPAWN.Pipe()
+        make, arguments = self._call
+        self._process = _SPAWN.Process(
+            target=_serve, args=(theirs, self._folder.name, make, arguments), daemon=True
+        )
+        self._process.start()
+        theirs.close()
+        return bool(self._answer("its start", self._start_limit_s))
+
+    def _ask(self, method: str, *arguments: Any) -> Any:
+        if self._process is None:
+            self._start()
+        try:
+            self._connection.send((method, arguments))
+        except (BrokenPipeError, ConnectionResetError):
+            self._fallen(f"before a {method}")
+        return self._answer(f"a {method}", self.speed_limit_s)
+
+    def _answer(self, task: str, limit_s: float) -> Any:
+        try:
+            if not self._connection.poll(limit_s):
+                self._end(at_once=True)
+                raise UnusableInputError(
+                    "simulator_slow",
+                    f"{self.description} does not finish {task} within {limit_s:g} s.",
+                    "Look in the simulator for a loop without an end, or make its step longer.",
+                )
+            kind, value = self._connection.recv()
+        except (EOFError, ConnectionResetError):
+            self._fallen(f"during {task}")
+        except KeyboardInterrupt:
+            self._end(at_once=True)
+            raise
+        if kind == "problem":
+            raise value
+        if kind == "raised":
+            raise UnusableInputError(
+                "simulator_failed",
+                f"{self.description} fails in {task}: {value}.",
+                "Run the simulator by itself with the same input, and mend what it says there.",
+            )
+        return value
+
+    def _fallen(self, when: str) -> NoReturn:
+        self._process.join(_GOODBYE_S)
+        code = self._process.exitcode or 0
+        self._end(at_once=True)
+        how = f"by signal {signal.Signals(-code).name}" if code < 0 else f"with exit code {code}"
+        raise UnusableInputError(
+            "simulator_crash",
+            f"The process of {self.description} ended {when} {how}.",
+            "The simulator's own code is at fault: run the simulator by itself, or ask its maker.",
+        ) from None
+
+    def _end(self, at_once: bool = False) -> None:
+        if self._process is None:
+            return
+        self._connection.close()
+        if not at_once:
+            self._process.join(_GOODBYE_S)
+        if self._process.is_alive():
+            self._process.kill()
+        self._process.join()
+        self._process.close()
+        self._process = None
+
+
+def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any, ...]) -> None:
+    """Build the simulator and answer the parent until the parent hangs up."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for descriptor in (0, 1, 2):
+        os.dup2(nowhere, descriptor)
+    tempfile.tempdir = folder
+    sys.path.append(os.getcwd())
+
+    def build() -> tuple[Simulator, bool]:
+        module, name = make.split(":", 1)
+        simulator = getattr(importlib.import_module(module), name)(*arguments)
+        return simulator, bool(simulator.takes_increments)
+
+    kind, built = _outcome(build)
+    if kind != "done":
+        connection.send((kind, built))
+        return
+    simulator, takes_increments = built
+    connection.send(("done", takes_increments))
+    tasks = {
+        "replay": lambda *given: _columns(simulator.replay(*given)),
+        "linearise": lambda *given: _numbers(simulator.linearise(*given)),
+    }
+    while True:
+        try:
+            method, given = connection.recv()
+        except (EOFError, OSError):
+            break
+        connection.send(_outcome(tasks[method], *given))
+    simulator.close()
+
+
+class _NoReplayError(Exception):
+    """What the simulator returned is no replay."""
+
+
+def _outcome(task: Any, *given: Any) -> tuple[str, Any]:
+    try:
+        return "done", task(*given)
+    except (UnusableInputError, ConfigurationError) as error:
+        return "problem", error
+    except _NoReplayError as error:
+        return "raised", str(error)
+    except (Exception, SystemExit) as error:
+        # Whatever foreign code raises becomes text: its classes do not exist in the parent.
+        return "raised", " ".join(f"{type(error).__name__}: {error}".split())[:300].rstrip(".: ")
+
+
+def _columns(replay: Any) -> dict[str, list[float] | None]:
+    """The replay as plain numbers, checked."""
+    rows: dict[str, list[float] | None] = {}
+    for one in fields(Replay):
+        row = getattr(replay, one.name, None)
+        if row is None and one.name != "a_x":
+            raise _NoReplayError(f"its replay has no {one.name}")
+        rows[one.name] = None if row is None else _finite(row, one.name)
+    lengths = {len(row) for row in rows.values() if row is not None}
+    if len(lengths) != 1 or min(lengths) < 2:
+        raise _NoReplayError(f"its replay's channels have {sorted(lengths)} samples, not one number above 1")
+    if not np.all(np.diff(np.array(rows["t"])) > 0.0):
+        raise ValueError("its replay's t does not ascend")
+    return rows
+
+
+def _finite(row: Any, name: str) -> list[float]:
+    values = np.asarray(row, dtype=float)
+    if values.ndim != 1:
+        raise _NoReplayError(f"its replay's {name} has {values.ndim} dimensions, not 1")
+    if not np.all(np.isfinite(values)):
+        raise _NoReplayError(
+            f"its replay's {name} is not finite from sample {int(np.argmin(np.isfinite(values)))}"
+        )
+    return [float(value) for value in values]
+
+
+def _numbers(derivatives: Mapping[str, float] | None) -> dict[str, float] | None:
+    return None if derivatives is None else {str(name): float(v) for name, v in derivatives.items()}
