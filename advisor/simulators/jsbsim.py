@@ -1,0 +1,185 @@
+"""``jsbsim:MODEL`` or ``jsbsim:PATH/model.xml``: a flight compared with a JSBSim aircraft."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.simulators.isolated import Isolated
+from advisor.simulators.jsbsim_flight import FOOT_M, STEP_S, Flight, State
+from advisor.simulators.jsbsim_model import FORCE, MOMENT, find_model
+from advisor.simulators.jsbsim_trim import trim
+from advisor.simulators.protocol import Condition, Increments, Inputs, Replay
+from advisor.simulators.protocol import State as Motion
+
+_PROBE = 1e-3
+"""Departure in central differences: rad of α and of elevator, rad/s of q."""
+
+
+def make_jsbsim(model: str, aircraft: Aircraft) -> Isolated:
+    """The simulator of ``jsbsim:MODEL``, in a process of its own.
+
+    Raises
+    ------
+    ConfigurationError
+        JSBSim is not installed, or the model cannot be found or loaded.
+    """
+    path = find_model(model)
+    return Isolated("advisor.simulators.jsbsim:Jsbsim", path, description=f"JSBSim {path.stem}")
+
+
+class Jsbsim:
+    """A JSBSim aircraft that flies recorded inputs (the protocol's simulator).
+
+    The recorded elevator is a departure from the trimmed surface. The departure enters at the pilot's
+    command, by the inverse of the model's own curve from command to surface. An actuator in the model's
+    flight control stays in the path: its lag, its hysteresis and its stops are the simulator's own. A flight
+    control that feeds motion back is bypassed: there the surface itself is written. Aileron, rudder and
+    throttle enter at the pilot's commands. A positive aileron rolls, and a positive rudder yaws, to the left.
+
+    Parameters
+    ----------
+    path : Path
+        The model's XML.
+    """
+
+    takes_increments = True
+    speed_limit_s = 20.0
+
+    def __init__(self, path: Path) -> None:
+        self.description = f"JSBSim {path.stem}"
+        self._flight = Flight(path)
+        self._trims: dict[Condition, State] = {}
+
+    def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
+        """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
+        flight, start = self._flight, self._trimmed(condition)
+        t = STEP_S * np.arange(math.ceil(inputs.t[-1] / STEP_S) + 1)
+        elevator = np.interp(t, inputs.t, inputs.elevator)
+        others = {name: np.interp(t, inputs.t, values) for name, values in inputs.others.items()}
+        lateral = {name: self._throw(name) for name in ("aileron", "rudder") if name in others}
+        throttle = others.get("throttle", np.zeros(t.size))
+        flight.release()
+        rows = np.empty((t.size, 7))
+        rows[0] = self._motion()
+        for k in range(1, t.size):
+            flight.elevator(start.elevator + elevator[k])
+            if "throttle" in others:
+                flight.throttle(start.throttle + throttle[k])
+            for name, per_rad in lateral.items():
+                command = getattr(start, name) + per_rad * others[name][k]
+                flight.fdm[f"fcs/{name}-cmd-norm"] = min(max(command, -1.0), 1.0)
+            if increments is not None:
+                self._add(increments, t[k], elevator[k], throttle[k])
+            flight.fdm.run()
+            rows[k] = self._motion()
+        self._release_increments()
+        alpha, q, theta, a_z, speed, height, a_x = rows.T
+        return Replay(t, alpha, q, theta, a_z, speed, height, a_x)
+
+    def linearise(self, condition: Condition) -> Mapping[str, float] | None:
+        """Central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
+
+        A moment by the rate of α is part of the derivatives, as in the short-period model.
+        """
+        start = self._trimmed(condition)
+        by_alpha = self._slopes(condition, start, alpha=_PROBE)
+        by_q = self._slopes(condition, start, q=_PROBE)
+        by_elevator = self._slopes(condition, start, elevator=_PROBE)
+        return {
+            "Z_alpha": by_alpha[0],
+            "Z_q": by_q[0] - 1.0,
+            "Z_delta_e": by_elevator[0],
+            "M_alpha": by_alpha[1],
+            "M_q": by_q[1],
+            "M_delta_e": by_elevator[1],
+        }
+
+    def close(self) -> None:
+        """Nothing to end: JSBSim lives in this process."""
+
+    def _trimmed(self, condition: Condition) -> State:
+        state = trim(self._flight, condition, self._trims.get(condition))
+        self._trims[condition] = state
+        return state
+
+    def _slopes(
+        self, condition: Condition, start: State, alpha: float = 0.0, q: float = 0.0, elevator: float = 0.0
+    ) -> tuple[float, float]:
+        rates = []
+        for sign in (1.0, -1.0):
+            moved = start._replace(
+                alpha=start.alpha + sign * alpha, elevator=start.elevator + sign * elevator
+            )
+            self._flight.put(moved, condition.flight_path_rad, sign * q)
+            rates.append(self._rates())
+        width = 2.0 * (alpha + q + elevator)
+        return (rates[0][0] - rates[1][0]) / width, (rates[0][1] - rates[1][1]) / width
+
+    def _rates(self) -> tuple[float, float]:
+        """Rates of α, rad/s, and of q, rad/s²."""
+        fdm = self._flight.fdm
+        u, w = fdm["velocities/u-fps"], fdm["velocities/w-fps"]
+        u_dot, w_dot = fdm["accelerations/udot-ft_sec2"], fdm["accelerations/wdot-ft_sec2"]
+        return (u * w_dot - w * u_dot) / (u * u + w * w), fdm["accelerations/qdot-rad_sec2"]
+
+    def _throw(self, name: str) -> float:
+        """Command per radian of surface, positive where a positive surface turns to the left."""
+        fdm = self._flight.fdm
+        surface, rate = {
+            "aileron": ("fcs/left-aileron-pos-rad", "accelerations/pdot-rad_sec2"),
+            "rudder": ("fcs/rudder-pos-rad", "accelerations/rdot-rad_sec2"),
+        }[name]
+        command = f"fcs/{name}-cmd-norm"
+        before, seen = fdm[command], {}
+        fdm.suspend_integration()
+        for sign in (-1.0, 1.0):
+            fdm[command] = sign
+            fdm.run()
+            seen[sign] = (fdm[surface], fdm[rate])
+        fdm[command] = before
+        fdm.run()
+        fdm.resume_integration()
+        throw, turn = (abs(seen[1.0][i] - seen[-1.0][i]) / 2.0 for i in (0, 1))
+        if throw == 0.0 or turn == 0.0:
+            return 0.0
+        return math.copysign(1.0 / throw, seen[-1.0][1] - seen[1.0][1])
+
+    def _motion(self) -> tuple[float, float, float, float, float, float, float]:
+        fdm = self._flight.fdm
+        acceleration = FOOT_M / fdm["inertia/mass-slugs"]
+        return (
+            fdm["aero/alpha-rad"],
+            fdm["velocities/q-rad_sec"],
+            fdm["attitude/theta-rad"],
+            acceleration * fdm["forces/fbz-total-lbs"],
+            FOOT_M * fdm["velocities/vt-fps"],
+            FOOT_M * fdm["position/h-sl-ft"],
+            acceleration * fdm["forces/fbx-total-lbs"],
+        )
+
+    def _add(self, increments: Increments, t: float, elevator: float, throttle: float) -> None:
+        """Add the increments of the state in which this step's forces are evaluated, one step on."""
+        fdm = self._flight.fdm
+        alpha_dot, q_dot = self._rates()
+        speed = fdm["velocities/vt-fps"]
+        motion = Motion(
+            t,
+            fdm["aero/alpha-rad"] + STEP_S * alpha_dot,
+            alpha_dot,
+            fdm["velocities/q-rad_sec"] + STEP_S * q_dot,
+            elevator,
+            FOOT_M * speed,
+            FOOT_M * fdm["position/h-sl-ft"],
+            throttle,
+        )
+        force, moment = increments(motion)
+        fdm[f"{FORCE}/magnitude"] = force * fdm["inertia/mass-slugs"] * speed
+        fdm[MOMENT] = moment * fdm["inertia/iyy-slugs_ft2"]
+
+    def _release_increments(self) -> None:
+        self._flight.freeze()
+        self._flight.fdm[f"{FORCE}/magnitude"] = 0.0
+        self._flight.fdm[MOMENT] = 0.0

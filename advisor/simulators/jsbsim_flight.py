@@ -1,0 +1,203 @@
+"""One JSBSim aircraft in SI units: put into a steady state, commanded, and read.
+
+The flight stands still while a state is looked for (:meth:`Flight.freeze`): position and velocity keep
+their values, and engines and propellers settle. Lags of the flight control are passed meanwhile.
+"""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.problems import UnusableInputError
+from advisor.simulators.jsbsim_model import AXIAL, FORCE, LOAD, LOAD_PLACE, WRITES, WRITTEN, load
+from advisor.simulators.protocol import Condition
+
+FOOT_M = 0.3048
+POUND_KG = 0.45359237
+STEP_S = 0.005
+
+_LATITUDE_DEG = 45.0
+"""Where gravity is the standard's."""
+_CLEARANCE_M = 3000.0
+"""Height above the terrain, which is moved out of the way of gear and ground effect."""
+_ADAMS_BASHFORTH_2, _NONE = 3, 0
+_INTEGRATORS = {
+    "simulation/integrator/rate/rotational": _ADAMS_BASHFORTH_2,
+    "simulation/integrator/rate/translational": _ADAMS_BASHFORTH_2,
+    "simulation/integrator/position/rotational": _ADAMS_BASHFORTH_2,
+    "simulation/integrator/position/translational": _ADAMS_BASHFORTH_2,
+}
+_COMMANDS = np.linspace(-1.0, 1.0, 81)
+_PROBE = 0.02
+"""Departure of α, rad, and of q, rad/s, that shows whether the flight control feeds motion back."""
+_ROUNDING = 1e-9
+_SETTLE_STEPS = 3
+"""Forces trail the state, and the rate of α trails the forces, by a call each."""
+
+
+class State(NamedTuple):
+    """The steady state of one condition."""
+
+    alpha: float = 0.0
+    elevator: float = 0.0
+    """At the surface, rad."""
+    aileron: float = 0.0
+    """Command from -1 to 1."""
+    rudder: float = 0.0
+    """Command from -1 to 1."""
+    phi: float = 0.0
+    throttle: float = 0.6
+    axial: float = 0.0
+    """Force along the path that balances what thrust does not, lb."""
+
+
+class Flight:
+    """A loaded model; the elevator is commanded in radians of surface.
+
+    The elevator takes the model's own way from command to surface, with the model's own actuator, where that
+    way is one curve. Where the flight control feeds motion back, the surface itself is written, and actuator
+    and flight control are bypassed.
+
+    Raises
+    ------
+    UnusableInputError
+        The model does not load; from :meth:`begin`: its command moves no ``fcs/elevator-pos-rad``.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.fdm: Any = load(path, STEP_S)
+        self.name = path.stem
+        self.engines = int(self.fdm.get_propulsion().get_num_engines())
+        self._curve: tuple[FloatArray, FloatArray] | None = None
+        self.fdm["propulsion/fuel_freeze"] = 1.0
+        self.fdm["gear/gear-cmd-norm"] = 0.0
+        self._started = False
+
+    def begin(self, condition: Condition) -> None:
+        """Set speed, height and mass, start the engines, and hold the flight still."""
+        fdm = self.fdm
+        fdm["ic/lat-geod-deg"] = _LATITUDE_DEG
+        fdm["ic/terrain-elevation-ft"] = (condition.height_m - _CLEARANCE_M) / FOOT_M
+        fdm["ic/h-sl-ft"] = condition.height_m / FOOT_M
+        fdm["ic/vt-fps"] = condition.airspeed_m_s / FOOT_M
+        self.freeze()
+        fdm.run_ic()
+        if not self._started:
+            fdm["propulsion/set-running"] = -1
+            self._started = True
+        self._weigh(condition.mass_kg)
+        self._curve = self._elevator_curve(condition)
+
+    def freeze(self) -> None:
+        """Hold position and velocity."""
+        self.fdm.set_trim_status(True)
+        for integrator in _INTEGRATORS:
+            self.fdm[integrator] = _NONE
+
+    def release(self) -> None:
+        """Let the aircraft fly from the state that it was put into."""
+        for integrator, method in _INTEGRATORS.items():
+            self.fdm[integrator] = method
+        self.fdm.set_trim_status(False)
+        self.fdm["simulation/sim-time-sec"] = 0.0
+
+    @property
+    def writes_surface(self) -> bool:
+        """Whether the elevator bypasses the model's flight control."""
+        return self._curve is None
+
+    def elevator(self, surface: float) -> None:
+        """Move the elevator to ``surface``, rad."""
+        if self._curve is None:
+            self.fdm[WRITTEN] = surface
+        else:
+            surfaces, commands = self._curve
+            self.fdm["fcs/elevator-cmd-norm"] = float(np.interp(surface, surfaces, commands))
+
+    def throttle(self, setting: float) -> None:
+        """Set all engines to ``setting``, 0 to 1."""
+        for i in range(self.engines):
+            self.fdm[f"fcs/throttle-cmd-norm[{i}]"] = min(max(setting, 0.0), 1.0)
+
+    def put(self, state: State, gamma: float, q: float = 0.0) -> None:
+        """Put the aircraft into a state on a path of angle ``gamma``, with a pitch rate."""
+        fdm = self.fdm
+        fdm["ic/alpha-rad"] = state.alpha
+        fdm["ic/beta-rad"] = 0.0
+        fdm["ic/phi-rad"] = state.phi
+        fdm["ic/theta-rad"] = state.alpha + gamma
+        fdm["ic/q-rad_sec"] = q
+        fdm["fcs/aileron-cmd-norm"] = state.aileron
+        fdm["fcs/rudder-cmd-norm"] = state.rudder
+        fdm[f"{AXIAL}/magnitude"] = state.axial
+        self.elevator(state.elevator)
+        self.throttle(state.throttle)
+        fdm.run_ic()
+        fdm.suspend_integration()
+        for _ in range(_SETTLE_STEPS):
+            fdm.run()
+        fdm.resume_integration()
+
+    def run_engines(self) -> None:
+        """Let engines and propellers run for a second of held flight."""
+        for _ in range(round(1.0 / STEP_S)):
+            self.fdm.run()
+
+    def accelerations(self) -> FloatArray:
+        """Shape (6,): u̇, v̇, ẇ in m/s², ṗ, q̇, ṙ in rad/s²."""
+        fdm = self.fdm
+        linear = [FOOT_M * fdm[f"accelerations/{one}dot-ft_sec2"] for one in "uvw"]
+        return np.array(linear + [fdm[f"accelerations/{one}dot-rad_sec2"] for one in "pqr"])
+
+    @property
+    def mass_slug(self) -> float:
+        """Mass of the aircraft with its fuel."""
+        return float(self.fdm["inertia/mass-slugs"])
+
+    def _weigh(self, mass_kg: float | None) -> None:
+        fdm = self.fdm
+        fdm[LOAD] = 0.0
+        fdm.run_ic()
+        for axis in "xyz":
+            place = fdm[f"inertia/cg-{axis}-in"]
+            fdm[LOAD_PLACE.format(axis.upper())] = place
+            fdm[f"{FORCE}/location-{axis}-in"] = place
+            fdm[f"{AXIAL}/location-{axis}-in"] = place
+        if mass_kg is not None:
+            fdm[LOAD] = mass_kg / POUND_KG - fdm["inertia/weight-lbs"]
+            fdm.run_ic()
+
+    def _elevator_curve(self, condition: Condition) -> tuple[FloatArray, FloatArray] | None:
+        """Surfaces in ascending order and their commands; None: the surface is written."""
+        fdm = self.fdm
+        fdm[WRITES] = 0.0
+        fdm["fcs/pitch-trim-cmd-norm"] = 0.0
+        surfaces = np.array([self._surface_at(condition, command) for command in _COMMANDS])
+        still = self._surface_at(condition, 0.0)
+        fed_back = max(
+            abs(self._surface_at(condition, 0.0, alpha=_PROBE) - still),
+            abs(self._surface_at(condition, 0.0, q=_PROBE) - still),
+        )
+        turns = np.diff(surfaces)
+        if not np.any(turns):
+            raise UnusableInputError(
+                "simulator_elevator",
+                f"No elevator command moves the surface fcs/elevator-pos-rad of JSBSim {self.name}.",
+                "Let the model's flight control and its aerodynamics use fcs/elevator-pos-rad.",
+            )
+        if fed_back > _ROUNDING or turns.min() < 0.0 < turns.max():
+            fdm[WRITES] = 1.0
+            return None
+        ascending, first = np.unique(surfaces, return_index=True)
+        return ascending, _COMMANDS[first]
+
+    def _surface_at(self, condition: Condition, command: float, alpha: float = 0.0, q: float = 0.0) -> float:
+        fdm = self.fdm
+        fdm["ic/alpha-rad"] = alpha
+        fdm["ic/theta-rad"] = alpha + condition.flight_path_rad
+        fdm["ic/q-rad_sec"] = q
+        fdm["fcs/elevator-cmd-norm"] = command
+        fdm.run_ic()
+        return float(fdm["fcs/elevator-pos-rad"])

@@ -1,0 +1,142 @@
+"""A JSBSim aircraft loaded from a copy of its own XML that also takes increments and a written surface.
+
+The copy lies in a temporary folder; nothing is written next to the model. The copy has external forces and an
+external moment for increments, a point mass for the flown mass, and a last channel of the flight control that
+can write the elevator. The copy has no <output> and no <input>: the model opens neither files nor sockets.
+"""
+
+import importlib.util
+import os
+import tempfile
+import xml.etree.ElementTree as ET
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from advisor.problems import ConfigurationError, UnusableInputError
+
+FORCE = "external_reactions/advisor-force"
+AXIAL = "external_reactions/advisor-axial"
+MOMENT = "external_reactions/advisor-moment/magnitude-lbsft"
+WRITES = "advisor/elevator-writes"
+"""1: the surface is written, and the model's flight control is bypassed."""
+WRITTEN = "advisor/elevator-written-rad"
+LOAD = "inertia/pointmass-weight-lbs"
+LOAD_PLACE = "inertia/pointmass-location-{}-inches"
+
+
+def find_model(name: str) -> Path:
+    """The XML file of a model that JSBSim ships, or of a user's own path.
+
+    Raises
+    ------
+    ConfigurationError
+        JSBSim is not installed, ships no such model, or the path is no file.
+    """
+    if name.endswith(".xml") or os.sep in name or "/" in name:
+        path = Path(name)
+        if not path.is_file():
+            raise ConfigurationError(f"jsbsim: {name} is no file: give the path of the model's XML.")
+        return path.resolve()
+    found = importlib.util.find_spec("jsbsim")
+    if found is None or found.origin is None:
+        raise ConfigurationError("jsbsim is not installed: pip install 'inflight-advisor[jsbsim]'.")
+    shipped = Path(found.origin).parent / "aircraft"
+    path = shipped / name / f"{name}.xml"
+    if not name or not path.is_file():
+        names = sorted(one.name for one in shipped.iterdir() if (one / f"{one.name}.xml").is_file())
+        near = get_close_matches(name, names, 1)
+        hint = f"did you mean {near[0]}" if near else "c172p and 737 are two that it has"
+        raise ConfigurationError(f"jsbsim: JSBSim has no model {name!r}; {hint}, or a path to model.xml.")
+    return path
+
+
+def load(path: Path, dt: float) -> Any:
+    """JSBSim with the model, and its step set to ``dt`` seconds.
+
+    Raises
+    ------
+    UnusableInputError
+        The file is no JSBSim model, or JSBSim does not load the model.
+    """
+    os.environ["JSBSIM_DEBUG"] = "0"
+    import jsbsim
+
+    root = Path(jsbsim.get_default_root_dir())
+    # An aircraft of a whole JSBSim tree brings its engines and systems two folders up.
+    own = path.parent.parent.parent
+    engines, systems = (
+        str(folder if folder.is_dir() else root / folder.name) for folder in (own / "engine", own / "systems")
+    )
+    copy = Path(tempfile.mkdtemp()) / f"{path.stem}.xml"
+    _equipped(path).write(copy)
+    fdm = jsbsim.FGFDMExec(str(root))
+    fdm.set_debug_level(0)
+    relative = os.path.relpath(copy.with_suffix(""), path.parent)
+    try:
+        loaded = fdm.load_model_with_paths(relative, str(path.parent), engines, systems, False)
+    except jsbsim.BaseError as error:
+        raise _unloadable(path, " ".join(str(error).split())) from error
+    if not loaded:
+        raise _unloadable(path, "JSBSim does not load the file")
+    fdm.set_dt(dt)
+    return fdm
+
+
+def _unloadable(path: Path, why: str) -> UnusableInputError:
+    return UnusableInputError(
+        "simulator_model",
+        f"{path.name} does not load as a JSBSim aircraft: {why[:300].rstrip('. ')}.",
+        "Load the file in JSBSim itself, and mend what JSBSim prints.",
+    )
+
+
+def _equipped(path: Path) -> "ET.ElementTree[ET.Element]":
+    try:
+        tree = ET.parse(path)
+    except (ET.ParseError, OSError, UnicodeError) as error:
+        raise _unloadable(path, str(error)) from error
+    root = tree.getroot()
+    if root is None or root.tag != "fdm_config":
+        raise _unloadable(path, "its outermost element is not <fdm_config>")
+    for tag in ("output", "input"):
+        for element in root.findall(tag):
+            root.remove(element)
+    # The first point mass keeps the index 0 whatever the model's own are.
+    _section(root, "mass_balance").insert(0, ET.fromstring(_POINT_MASS))
+    _section(root, "flight_control", path.parent).extend(ET.fromstring(_CHANNEL))
+    _section(root, "external_reactions").extend(ET.fromstring(_REACTIONS))
+    return tree
+
+
+def _section(root: ET.Element, tag: str, folder: Path | None = None) -> ET.Element:
+    """The section, with what its own ``file`` holds, and made where there is none."""
+    section = root.find(tag)
+    if section is None:
+        section = ET.SubElement(root, tag, {"name": "advisor"})
+    elsewhere = section.get("file")
+    if elsewhere and folder is not None:
+        file = folder / (elsewhere if elsewhere.endswith(".xml") else f"{elsewhere}.xml")
+        if file.is_file():
+            section.attrib.pop("file")
+            section.extend(ET.parse(file).getroot())
+    return section
+
+
+_POINT_MASS = """<pointmass name="advisor"><weight unit="LBS">0</weight>
+<location unit="IN"><x>0</x><y>0</y><z>0</z></location></pointmass>"""
+
+_CHANNEL = f"""<channels>
+<property value="0">{WRITES}</property>
+<property value="0">{WRITTEN}</property>
+<channel name="advisor"><switch name="advisor/elevator">
+<default value="fcs/elevator-pos-rad"/><test value="{WRITTEN}">{WRITES} == 1</test>
+<output>fcs/elevator-pos-rad</output></switch></channel></channels>"""
+
+_REACTIONS = """<reactions>
+<force name="advisor-force" frame="WIND"><location unit="IN"><x>0</x><y>0</y><z>0</z></location>
+<direction><x>0</x><y>0</y><z>1</z></direction></force>
+<force name="advisor-axial" frame="WIND"><location unit="IN"><x>0</x><y>0</y><z>0</z></location>
+<direction><x>1</x><y>0</y><z>0</z></direction></force>
+<moment name="advisor-moment" frame="BODY"><direction><x>0</x><y>1</y><z>0</z></direction></moment>
+</reactions>"""

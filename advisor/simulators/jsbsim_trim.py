@@ -1,0 +1,141 @@
+"""Steady, straight flight of a JSBSim aircraft, by Newton's method on the model's own accelerations.
+
+JSBSim's own trim steps engines by half a second, which a constant-speed propeller does not survive. Here
+engines run in their own time while the flight stands still. Angle of attack, elevator, bank, aileron and
+rudder solve the normal, lateral and rotational accelerations; the throttle solves the axial one. Thrust that
+no throttle gives (a glider, a flight path that is not quite level) is balanced by a force along the path.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.problems import UnusableInputError
+from advisor.simulators.jsbsim_flight import FOOT_M, Flight, State
+from advisor.simulators.protocol import Condition
+
+_UNKNOWNS = ("alpha", "elevator", "phi", "aileron", "rudder")
+_LONGITUDINAL = (1, 3)
+"""Places of ẇ and q̇ among the accelerations after u̇."""
+_DIFFERENCE = 1e-4
+_LONGEST_STEP = 0.1
+"""Longest Newton step of an angle, rad, or a command."""
+_NEWTON_STEPS = 40
+_STEADY = 1e-6
+"""Acceleration below which flight is steady, m/s² and rad/s²."""
+_THROTTLES = 12
+_BALANCED_M_S2 = 1e-3
+"""Axial acceleration that the throttle need not solve: the force along the path takes that."""
+_ENGINE_SECONDS = 30
+_ENGINES_STEADY = 1e-4
+"""Change of the axial acceleration in a second below which engines run steadily, m/s²."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Tried:
+    """Steady flight at one throttle, and the axial acceleration that remained, m/s²."""
+
+    state: State
+    excess: float
+
+
+def trim(flight: Flight, condition: Condition, known: State | None = None) -> State:
+    """Put the aircraft into steady flight, held still, and return its state.
+
+    Parameters
+    ----------
+    known : State
+        An earlier trim of the same condition: its throttle is kept, and only engines settle anew.
+
+    Raises
+    ------
+    UnusableInputError
+        No angle of attack and no elevator carry the aircraft at the condition.
+    """
+    flight.begin(condition)
+    tried = [_steady(flight, condition, known or State())]
+    while known is None and flight.engines and (setting := _next_throttle(tried)) is not None:
+        tried.append(_steady(flight, condition, tried[-1].state._replace(throttle=setting)))
+    best = tried[-1]
+    state = best.state._replace(axial=-best.excess / FOOT_M * flight.mass_slug)
+    flight.put(state, condition.flight_path_rad)
+    return state
+
+
+def _next_throttle(tried: list[_Tried]) -> float | None:
+    """The next throttle between those that slow and those that accelerate; None: the last one serves."""
+    last = tried[-1]
+    if abs(last.excess) < _BALANCED_M_S2 or len(tried) >= _THROTTLES:
+        return None
+    slow = [(one.state.throttle, one.excess) for one in tried if one.excess < 0.0]
+    fast = [(one.state.throttle, one.excess) for one in tried if one.excess >= 0.0]
+    if not slow or not fast:
+        end = 1.0 if slow else 0.0
+        return None if last.state.throttle == end else end
+    (low, lacking), (high, exceeding) = max(slow), min(fast)
+    # Halves help a secant that creeps along one side.
+    share = lacking / (lacking - exceeding) if len(tried) % 3 else 0.5
+    return low + share * (high - low)
+
+
+def _steady(flight: Flight, condition: Condition, guess: State) -> _Tried:
+    """Steady flight at the guess's throttle, but for the axial acceleration."""
+    state = guess._replace(axial=0.0)
+    flight.put(state, condition.flight_path_rad)
+    _settle_engines(flight)
+    state = _newton(flight, condition, state)
+    # Engines see another angle of attack now.
+    _settle_engines(flight)
+    state = _newton(flight, condition, state)
+    return _Tried(state, float(flight.accelerations()[0]))
+
+
+def _settle_engines(flight: Flight) -> None:
+    before = np.inf
+    for _ in range(_ENGINE_SECONDS if flight.engines else 0):
+        flight.run_engines()
+        now = float(flight.accelerations()[0])
+        if abs(now - before) < _ENGINES_STEADY:
+            return
+        before = now
+
+
+def _newton(flight: Flight, condition: Condition, state: State) -> State:
+    """Solve all accelerations but the axial one; least squares where an axis has no control."""
+    gamma = condition.flight_path_rad
+
+    def accelerations(at: State) -> FloatArray:
+        flight.put(at, gamma)
+        return flight.accelerations()[1:]
+
+    for _ in range(_NEWTON_STEPS):
+        now = accelerations(state)
+        if not np.all(np.isfinite(now)):
+            break
+        slopes = np.column_stack(
+            [
+                (accelerations(_moved(state, name, h)) - accelerations(_moved(state, name, -h))) / (2.0 * h)
+                for name, h in ((name, _DIFFERENCE) for name in _UNKNOWNS)
+            ]
+        )
+        change, *_ = np.linalg.lstsq(slopes, -now, rcond=1e-9)
+        if np.max(np.abs(now[list(_LONGITUDINAL)])) < _STEADY and np.max(np.abs(change)) < _STEADY:
+            if slopes[1, 0] < 0.0:
+                flight.put(state, gamma)
+                return state
+            # Beyond the stall lift falls with the angle of attack.
+            break
+        change *= min(1.0, _LONGEST_STEP / np.max(np.abs(change)))
+        for name, by in zip(_UNKNOWNS, change, strict=True):
+            state = _moved(state, name, float(by))
+    raise UnusableInputError(
+        "simulator_trim",
+        f"JSBSim {flight.name} finds no steady flight at {condition.airspeed_m_s:.4g} m/s"
+        f" and {condition.height_m:.4g} m.",
+        "Check the air speed, the height and the mass of the flight against the model's own range.",
+    )
+
+
+def _moved(state: State, name: str, by: float) -> State:
+    return state._replace(**{name: getattr(state, name) + by})

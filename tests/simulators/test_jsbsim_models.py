@@ -1,0 +1,106 @@
+"""Single models of JSBSim: their own actuators, a flight control that feeds back, wrong files."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.simulators.jsbsim import Jsbsim, make_jsbsim
+from advisor.simulators.jsbsim_model import find_model
+from advisor.simulators.protocol import Condition, Inputs
+
+T = 0.005 * (np.arange(400) + 0.5)
+LEVEL = Condition(50.0, 1000.0)
+
+
+def step(size_rad: float) -> Inputs:
+    return Inputs(T, np.where(T > 0.5, size_rad, 0.0))
+
+
+def test_a_hysteresis_of_the_models_own_actuator_stays_in_the_path() -> None:
+    c172x = Jsbsim(find_model("c172x"))  # its elevator rests within 0.025 rad of where it stands
+    assert np.max(np.abs(c172x.replay(LEVEL, step(0.02)).q)) < 1e-4
+    assert np.min(c172x.replay(LEVEL, step(0.06)).q) < -0.05
+
+
+def test_a_lag_written_into_a_users_model_delays_its_answer(tmp_path: Path) -> None:
+    plain = find_model("c172p")
+    slow = re.sub(
+        r"<output>fcs/elevator-pos-rad</output>\s*</aerosurface_scale>",
+        "<output>fcs/elevator-asked-rad</output></aerosurface_scale>"
+        '<actuator name="slow"><input>fcs/elevator-asked-rad</input><lag>3</lag>'
+        "<output>fcs/elevator-pos-rad</output></actuator>",
+        plain.read_text(),
+    )
+    path = tmp_path / "slow.xml"
+    path.write_text(slow)
+    quick_q = Jsbsim(plain).replay(LEVEL, step(-0.02)).q
+    slow_q = Jsbsim(path).replay(LEVEL, step(-0.02)).q
+    assert slow_q[120] < 0.5 * quick_q[120]
+    assert slow_q[-1] > 0.0
+
+
+def test_a_flight_control_that_feeds_back_is_bypassed_at_the_surface() -> None:
+    f16 = Jsbsim(find_model("f16"))
+    f16.replay(Condition(160.0, 3000.0), step(0.01))
+    start = f16._trims[Condition(160.0, 3000.0)].elevator
+    assert f16._flight.fdm["fcs/elevator-pos-rad"] == pytest.approx(start + 0.01, abs=1e-9)
+
+
+def test_a_command_that_moves_no_surface_is_one_sentence() -> None:
+    with pytest.raises(
+        UnusableInputError, match="No elevator command moves the surface fcs/elevator-pos-rad of JSBSim T38"
+    ):
+        Jsbsim(find_model("T38")).replay(Condition(160.0, 4000.0), step(0.01))
+
+
+def test_a_glider_keeps_its_speed_on_a_level_path() -> None:
+    glider = Jsbsim(find_model("minisgs")).replay(Condition(12.0, 300.0), step(0.0))
+    assert np.ptp(glider.airspeed_m_s) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "no element found"),
+        (b"<aircraft/>", "not <fdm_config>"),
+        (b"<fdm_config", "unclosed token"),
+        (b"\xff\xfe\x00", "plane.xml does not load as a JSBSim aircraft"),
+        (b"<fdm_config name='x'/>", "plane.xml does not load as a JSBSim aircraft"),
+    ],
+)
+def test_a_file_that_is_no_model_is_one_sentence(tmp_path: Path, content: bytes, words: str) -> None:
+    path = tmp_path / "plane.xml"
+    path.write_bytes(content)
+    with pytest.raises(ConfigurationError, match=words) as caught:
+        make_jsbsim(str(path), Aircraft())
+    assert "\n" not in str(caught.value)
+
+
+def test_a_path_that_is_no_file_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match="is no file: give the path of the model's XML"):
+        make_jsbsim(str(tmp_path / "none.xml"), Aircraft())
+
+
+def test_a_models_own_output_writes_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = find_model("c172p").read_text()
+    path = tmp_path / "talker.xml"
+    path.write_text(
+        text.replace("</fdm_config>", '<output name="talk.csv" type="CSV" rate="10"/></fdm_config>')
+    )
+    Jsbsim(path).replay(LEVEL, step(0.0))
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["talker.xml"]
+
+
+def test_a_model_on_which_jsbsim_crashes_is_one_sentence(tmp_path: Path) -> None:
+    text = find_model("c172p").read_text()
+    no_range = '<aerosurface_scale name="bare"><input>fcs/none</input></aerosurface_scale>'
+    bare = f'<channel name="x">{no_range}</channel></flight_control>'
+    path = tmp_path / "bare.xml"
+    path.write_text(text.replace("</flight_control>", bare))
+    with pytest.raises(ConfigurationError, match="JSBSim bare ended during its start by signal SIGSEGV"):
+        make_jsbsim(str(path), Aircraft())
