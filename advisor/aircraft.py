@@ -108,6 +108,55 @@ class Reference:
 
 
 @dataclass(frozen=True)
+class FmuTrim:
+    """Names of an FMU's parameters that are set before a replay begins; None: not set."""
+
+    airspeed: str | None = None
+    """True air speed of the flight condition, m/s."""
+    height: str | None = None
+    """Pressure altitude of the flight condition, m."""
+    flight_path: str | None = None
+    """Flight-path angle of the flight condition."""
+    mass: str | None = None
+    """Mass of the flight condition, kg."""
+    alpha: str | None = None
+    """Angle of attack at the start: found, with the elevator, such that flight is steady."""
+    theta: str | None = None
+    """Pitch angle at the start: the flight-path angle plus the angle of attack; needs ``alpha``."""
+
+
+@dataclass(frozen=True)
+class FmuVariables:
+    """What an FMU calls the variables of the short period (``simulator: fmu:FILE.fmu``)."""
+
+    elevator: str
+    """Input: the elevator. The recorded departure is added to the start value."""
+    alpha: str
+    q: str
+    theta: str
+    a_z: str
+    """Specific force along body z, -9.81 m/s² in level flight; see ``scale`` for a load factor."""
+    airspeed: str | None = None
+    """True air speed, m/s; None: that of the flight condition all the time."""
+    height: str | None = None
+    """Height, m; None: that of the flight condition all the time."""
+    aileron: str | None = None
+    rudder: str | None = None
+    throttle: str | None = None
+    force_increment: str | None = None
+    """Input that the FMU adds to the rate of α, per second in ``units``; needs ``moment_increment``."""
+    moment_increment: str | None = None
+    """Input that the FMU adds to the pitch acceleration, per second squared in ``units``."""
+    units: Literal["rad", "deg"] = "rad"
+    """Of every angle and every angular rate."""
+    scale: Mapping[str, float] = field(default_factory=dict)
+    """Factor from the FMU's variable to the one named here: ``a_z: -9.80665`` for a load factor."""
+    step_s: float | None = None
+    """Communication step; None: the FMU's own default, or 0.01 s."""
+    trim: FmuTrim = field(default_factory=FmuTrim)
+
+
+@dataclass(frozen=True)
 class CampaignPlan:
     """The stop criterion the crew chose."""
 
@@ -155,6 +204,8 @@ class Aircraft:
     campaign: CampaignPlan = field(default_factory=CampaignPlan)
     limits: Limits = field(default_factory=Limits)
     markers: Markers = field(default_factory=Markers)
+    fmu: FmuVariables | None = None
+    """Names in the FMU that the simulator is; None: the simulator is no FMU."""
 
     @property
     def stated_airspeed_m_s(self) -> float | None:

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
-from dataclasses import replace
+from dataclasses import fields, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
-from advisor.aircraft import PARAMETERS, Aircraft, Elevator, Markers, Pairs
+from advisor.aircraft import PARAMETERS, Aircraft, Elevator, FmuVariables, Markers, Pairs
 from advisor.effects import mistakes_in
 from advisor.printable import printable
 from advisor.problems import ConfigurationError
@@ -95,6 +95,8 @@ def _reader() -> TypeAdapter[Aircraft]:
         aircraft.Alpha,
         aircraft.Accelerometer,
         aircraft.Reference,
+        aircraft.FmuTrim,
+        aircraft.FmuVariables,
         aircraft.CampaignPlan,
         aircraft.Limits,
         aircraft.Markers,
@@ -130,6 +132,8 @@ _LONGEST_WINDOW = 50
 """Manoeuvres in Eq. (12): more than any flight has."""
 _OUTPUTS = 32
 """Servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
+_LONGEST_STEP_S = 0.1
+"""Communication step of an FMU: a short period of a second still has ten of these."""
 _UNION_TAGS = frozenset({"int", "str", "float", "none"})
 
 
@@ -176,6 +180,8 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
         elif value <= 0.0:
             yield f"campaign.tolerance.{name}: must be above 0, is {value}"
     yield from _mistakes_in_markers(aircraft.markers)
+    if aircraft.fmu is not None:
+        yield from _mistakes_in_fmu(aircraft.fmu)
 
 
 def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
@@ -231,3 +237,22 @@ def _mistakes_in_markers(markers: Markers) -> Iterator[str]:
         begins, ends = markers.text
         if not begins.strip() or not ends.strip() or begins == ends:
             yield "markers.text: needs two different texts, [begins, ends]"
+
+
+_FMU_VARIABLES = tuple(
+    one.name for one in fields(FmuVariables) if one.name not in ("units", "scale", "step_s", "trim")
+)
+
+
+def _mistakes_in_fmu(fmu: FmuVariables) -> Iterator[str]:
+    for name, factor in fmu.scale.items():
+        if name not in _FMU_VARIABLES:
+            yield f"fmu.scale.{name}: unknown key, the variables are {' '.join(_FMU_VARIABLES)}"
+        elif factor == 0.0:
+            yield f"fmu.scale.{name}: must not be 0"
+    if fmu.step_s is not None and not 0.0 < fmu.step_s <= _LONGEST_STEP_S:
+        yield f"fmu.step_s: {fmu.step_s} s is outside 0..{_LONGEST_STEP_S}"
+    if (fmu.force_increment is None) != (fmu.moment_increment is None):
+        yield "fmu.force_increment: goes with fmu.moment_increment; give both, or none"
+    if fmu.trim.theta is not None and fmu.trim.alpha is None:
+        yield "fmu.trim.theta: needs fmu.trim.alpha"

@@ -74,8 +74,8 @@ class Isolated:
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
-        columns = self._ask("replay", condition, inputs, increments)
-        return Replay(**{name: None if row is None else np.array(row) for name, row in columns.items()})
+        columns: dict[str, Any] = self._ask("replay", condition, inputs, increments)
+        return Replay(**{name: row and np.array(row) for name, row in columns.items()})
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Dimensional short-period derivatives at the condition, or None where the simulator has none."""

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft import Aircraft
+from advisor.problems import UnusableInputError
 from advisor.simulators.isolated import Isolated
 from advisor.simulators.jsbsim_flight import FOOT_M, STEP_S, Flight, State
 from advisor.simulators.jsbsim_model import FORCE, MOMENT, find_model
@@ -50,11 +51,20 @@ class Jsbsim:
 
     def __init__(self, path: Path) -> None:
         self.description = f"JSBSim {path.stem}"
+        self._path = path
         self._flight = Flight(path)
         self._trims: dict[Condition, State] = {}
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
+        try:
+            return self._fly(condition, inputs, increments)
+        except Exception:
+            # Engines and filters of a flight that failed keep what made it fail.
+            self._flight = Flight(self._path)
+            raise
+
+    def _fly(self, condition: Condition, inputs: Inputs, increments: Increments | None) -> Replay:
         flight, start = self._flight, self._trimmed(condition)
         t = STEP_S * np.arange(math.ceil(inputs.t[-1] / STEP_S) + 1)
         elevator = np.interp(t, inputs.t, inputs.elevator)
@@ -76,6 +86,12 @@ class Jsbsim:
             flight.fdm.run()
             rows[k] = self._motion()
         self._release_increments()
+        if not np.all(np.isfinite(rows)):
+            raise UnusableInputError(
+                "simulator_diverges",
+                f"{self.description} leaves all bounds in a replay of {t[-1]:.3g} s.",
+                "Shorten the manoeuvre, or check the model at the flown condition.",
+            )
         alpha, q, theta, a_z, speed, height, a_x = rows.T
         return Replay(t, alpha, q, theta, a_z, speed, height, a_x)
 

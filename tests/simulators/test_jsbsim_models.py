@@ -11,6 +11,7 @@ from advisor.problems import ConfigurationError, UnusableInputError
 from advisor.simulators.jsbsim import Jsbsim, make_jsbsim
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs
+from tests.simulators.makeshift import Damping
 
 T = 0.005 * (np.arange(400) + 0.5)
 LEVEL = Condition(50.0, 1000.0)
@@ -104,3 +105,12 @@ def test_a_model_on_which_jsbsim_crashes_is_one_sentence(tmp_path: Path) -> None
     path.write_text(text.replace("</flight_control>", bare))
     with pytest.raises(ConfigurationError, match="JSBSim bare ended during its start by signal SIGSEGV"):
         make_jsbsim(str(path), Aircraft())
+
+
+def test_a_replay_that_diverges_is_one_sentence_and_the_next_flies() -> None:
+    c172p = Jsbsim(find_model("c172p"))
+    before = c172p.replay(LEVEL, step(0.01))
+    with pytest.raises(UnusableInputError) as caught:
+        c172p.replay(LEVEL, step(0.01), Damping(1e6))
+    assert caught.value.problem.code == "simulator_diverges"
+    assert c172p.replay(LEVEL, step(0.01)).q == pytest.approx(before.q, abs=1e-4)

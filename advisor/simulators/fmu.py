@@ -1,0 +1,241 @@
+"""``fmu:FILE.fmu``: a flight compared with a functional mock-up unit (FMI 2 or 3, co-simulation).
+
+An FMU is a program. The FMU runs in a process of its own, with a time limit and with the user's rights.
+"""
+
+import importlib.util
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from advisor.aircraft import Aircraft, FmuVariables
+from advisor.flight.messages import FloatArray
+from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.simulators.fmu_instance import Fmu, Use
+from advisor.simulators.isolated import Isolated
+from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
+
+_STEP_S = 0.01
+_ANGULAR = ("elevator", "aileron", "rudder", "alpha", "q", "theta", "force_increment", "moment_increment")
+_OUTPUTS = ("alpha", "q", "theta", "a_z", "airspeed", "height")
+_INPUTS = ("elevator", "aileron", "rudder", "throttle", "force_increment", "moment_increment")
+_DIFFERENCE_RAD = 1e-3
+_NEWTON_STEPS = 30
+_STEADY = 1e-4
+"""Rate of α, rad/s, and of q, rad/s², below which flight is steady: a solver may leave as much."""
+_LONGEST_NEWTON_STEP_RAD = 0.1
+
+
+def make_fmu(file: str, aircraft: Aircraft) -> Isolated:
+    """The simulator of ``fmu:FILE.fmu``, in a process of its own.
+
+    Raises
+    ------
+    ConfigurationError
+        FMPy is not installed, the file or a variable is not there, or the FMU cannot run on this platform.
+    """
+    path = Path(file)
+    if not path.is_file():
+        raise ConfigurationError(f"fmu: {file or 'nothing'} is no file: give the path of an .fmu.")
+    if aircraft.fmu is None:
+        raise ConfigurationError(
+            f"fmu: the aircraft file does not say what {path.name} calls its variables: add a section fmu:"
+            " with elevator, alpha, q, theta and a_z."
+        )
+    if importlib.util.find_spec("fmpy") is None:
+        raise ConfigurationError("FMPy is not installed: pip install 'inflight-advisor[fmu]'.")
+    return Isolated(
+        "advisor.simulators.fmu:FmuSimulator",
+        path.resolve(),
+        aircraft.fmu,
+        aircraft.limits.airspeed_change_percent,
+        description=f"FMU {path.name}",
+    )
+
+
+class FmuSimulator:
+    """An FMU that flies recorded inputs (the protocol's simulator).
+
+    Inputs are held over each communication step at their mean. Increments are those of the state in the
+    middle of the step, extrapolated by the last step's rates.
+
+    Parameters
+    ----------
+    path : Path
+        The FMU.
+    variables : FmuVariables
+        What the FMU calls its variables.
+    speed_tolerance_percent : float
+        Largest difference between the air speed at which the FMU begins and the flown one.
+    """
+
+    speed_limit_s = 20.0
+
+    def __init__(self, path: Path, variables: FmuVariables, speed_tolerance_percent: float) -> None:
+        self.description = f"FMU {path.name}"
+        self._tolerance = speed_tolerance_percent / 100.0
+        self._fmu = Fmu(path)
+        self._inputs = self._references(variables, _INPUTS, "input")
+        self._outputs = self._references(variables, _OUTPUTS, "output")
+        self._trim = {
+            name: self._fmu.reference(f"fmu.trim.{name}", variable, "start")
+            for name in ("airspeed", "height", "flight_path", "mass", "alpha", "theta")
+            if (variable := getattr(variables.trim, name)) is not None
+        }
+        angle = math.radians(1.0) if variables.units == "deg" else 1.0
+        self._factor = {
+            name: variables.scale.get(name, 1.0) * (angle if name in _ANGULAR else 1.0)
+            for name in (*_INPUTS, *_OUTPUTS)
+        }
+        self._angle = angle
+        self._step_s = variables.step_s or self._fmu.default_step_s or _STEP_S
+        self.takes_increments = variables.force_increment is not None
+
+    def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
+        """Begin at the condition, and fly the inputs as departures from their start values."""
+        step = self._step_s
+        t = step * np.arange(math.ceil(inputs.t[-1] / step) + 1)
+        middles = t[:-1] + 0.5 * step
+        given = {"elevator": inputs.elevator, **inputs.others}
+        held = {
+            name: np.interp(middles, inputs.t, values)
+            for name, values in given.items()
+            if name in self._inputs
+        }
+        rest = self._begin(condition, held)
+        still = np.zeros(middles.size)
+        rows = [self._motion(condition)]
+        self._check_speed(condition, rows[0])
+        for k, now in enumerate(middles):
+            commands = {name: rest[name] + values[k] for name, values in held.items()}
+            if increments is not None and self.takes_increments:
+                state = self._state(rows, now, held["elevator"][k], held.get("throttle", still)[k])
+                commands["force_increment"], commands["moment_increment"] = increments(state)
+            self._command(commands)
+            self._fmu.step(float(t[k]), step)
+            rows.append(self._motion(condition))
+        self._fmu.end()
+        return Replay(t, *np.array(rows).T)
+
+    def linearise(self, condition: Condition) -> Mapping[str, float] | None:
+        """None: an FMU for co-simulation has no linearisation that all FMUs share."""
+        return None
+
+    def close(self) -> None:
+        """Free the FMU."""
+        self._fmu.end()
+
+    def _references(self, variables: FmuVariables, names: tuple[str, ...], use: Use) -> dict[str, int]:
+        return {
+            name: self._fmu.reference(f"fmu.{name}", variable, use)
+            for name in names
+            if (variable := getattr(variables, name)) is not None
+        }
+
+    def _begin(self, condition: Condition, held: Mapping[str, FloatArray]) -> dict[str, float]:
+        """Begin in steady flight; the inputs' values there."""
+        start = self._start_values(condition)
+        if "alpha" not in self._trim:
+            self._fmu.begin(start)
+            return self._at_rest(held)
+        alpha, elevator = self._steady(condition, start)
+        self._start_at(condition, start, alpha, elevator)
+        return {**self._at_rest(held), "elevator": elevator}
+
+    def _at_rest(self, held: Mapping[str, FloatArray]) -> dict[str, float]:
+        values = self._fmu.read([self._inputs[name] for name in held])
+        return {name: self._factor[name] * value for name, value in zip(held, values, strict=True)}
+
+    def _start_values(self, condition: Condition) -> dict[int, float]:
+        flown = {
+            "airspeed": condition.airspeed_m_s / self._factor["airspeed"],
+            "height": condition.height_m / self._factor["height"],
+            "flight_path": condition.flight_path_rad / self._angle,
+            "mass": condition.mass_kg,
+        }
+        return {
+            self._trim[name]: value
+            for name, value in flown.items()
+            if name in self._trim and value is not None
+        }
+
+    def _start_at(
+        self, condition: Condition, start: Mapping[int, float], alpha: float, elevator: float
+    ) -> None:
+        values = {
+            **start,
+            self._trim["alpha"]: alpha / self._factor["alpha"],
+            self._inputs["elevator"]: elevator / self._factor["elevator"],
+        }
+        if "theta" in self._trim:
+            values[self._trim["theta"]] = (condition.flight_path_rad + alpha) / self._factor["theta"]
+        self._fmu.begin(values)
+
+    def _steady(self, condition: Condition, start: Mapping[int, float]) -> tuple[float, float]:
+        """Angle of attack and elevator for which neither α nor q changes in the first step (Newton)."""
+
+        def change(at: FloatArray) -> FloatArray:
+            self._start_at(condition, start, float(at[0]), float(at[1]))
+            before = self._motion(condition)
+            self._fmu.step(0.0, self._step_s)
+            after = self._motion(condition)
+            return np.array([after[0] - before[0], after[1] - before[1]]) / self._step_s
+
+        at = np.zeros(2)
+        for _ in range(_NEWTON_STEPS):
+            now = change(at)
+            if np.max(np.abs(now)) < _STEADY:
+                return float(at[0]), float(at[1])
+            slopes = np.column_stack(
+                [
+                    (change(at + h) - change(at - h)) / (2.0 * _DIFFERENCE_RAD)
+                    for h in _DIFFERENCE_RAD * np.eye(2)
+                ]
+            )
+            if not np.all(np.isfinite(slopes)) or np.linalg.matrix_rank(slopes) < 2:
+                break
+            move = np.linalg.solve(slopes, -now)
+            at = at + move * min(1.0, _LONGEST_NEWTON_STEP_RAD / np.max(np.abs(move)))
+        raise UnusableInputError(
+            "simulator_trim",
+            f"{self.description} finds no steady flight at {condition.airspeed_m_s:.4g} m/s"
+            f" and {condition.height_m:.4g} m.",
+            "Check fmu.trim of the aircraft file, or leave fmu.trim.alpha out where the FMU begins trimmed.",
+        )
+
+    def _command(self, values: Mapping[str, float]) -> None:
+        self._fmu.write({self._inputs[name]: value / self._factor[name] for name, value in values.items()})
+
+    def _motion(self, condition: Condition) -> list[float]:
+        """The outputs in the order of ``_OUTPUTS``; what is not mapped stays at the condition's."""
+        values = dict(zip(self._outputs, self._fmu.read(self._outputs.values()), strict=True))
+        kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
+        return [self._factor[name] * values[name] if name in values else kept[name] for name in _OUTPUTS]
+
+    def _state(self, rows: list[list[float]], t: float, elevator: float, throttle: float) -> State:
+        alpha, q, _, _, airspeed, height = rows[-1]
+        before = rows[-2] if len(rows) > 1 else rows[-1]
+        alpha_dot, q_dot = ((rows[-1][i] - before[i]) / self._step_s for i in (0, 1))
+        half = 0.5 * self._step_s
+        return State(
+            float(t),
+            alpha + half * alpha_dot,
+            alpha_dot,
+            q + half * q_dot,
+            float(elevator),
+            airspeed,
+            height,
+            float(throttle),
+        )
+
+    def _check_speed(self, condition: Condition, row: list[float]) -> None:
+        began = row[_OUTPUTS.index("airspeed")]
+        if abs(began / condition.airspeed_m_s - 1.0) > self._tolerance:
+            raise UnusableInputError(
+                "simulator_trim",
+                f"{self.description} begins at {began:.4g} m/s, but the flight was flown at"
+                f" {condition.airspeed_m_s:.4g} m/s.",
+                "Name the parameter of its initial air speed in fmu.trim.airspeed of the aircraft file.",
+            )

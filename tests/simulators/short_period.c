@@ -1,0 +1,122 @@
+/* An aircraft in pitch as a functional mock-up unit of FMI 2 or, with FMI3 defined, of FMI 3.
+
+   alpha' = q + g/V - L V (alpha + c delta) + force
+   q'     = V^2 (m0 + ma alpha + md delta) + mq V q + moment
+   With FAULT defined a step crashes (1), hangs (2) or is refused (3) after 0.05 s. */
+#include <stdlib.h>
+#ifdef FMI3
+#include "fmi3Functions.h"
+typedef fmi3Instance Handle;
+typedef fmi3Float64 Real;
+typedef fmi3ValueReference Reference;
+#define STATUS fmi3Status
+#define OK fmi3OK
+#define REFUSED fmi3Error
+#else
+#include "fmi2Functions.h"
+typedef fmi2Component Handle;
+typedef fmi2Real Real;
+typedef fmi2ValueReference Reference;
+#define STATUS fmi2Status
+#define OK fmi2OK
+#define REFUSED fmi2Error
+#endif
+
+enum { DELTA, FORCE, MOMENT, V, HEIGHT, ALPHA_START, THETA_START, ALPHA, Q, THETA, LOAD_FACTOR, COUNT };
+static const double G = 9.80665, L = 0.04, C = 0.1, M0 = 0.0004, MA = -0.01, MD = -0.02, MQ = -0.08;
+
+typedef struct {
+    double value[COUNT];
+} Model;
+
+static Model *make(void) {
+    Model *model = calloc(1, sizeof(Model));
+    model->value[V] = 30.0;
+    model->value[HEIGHT] = 500.0;
+    model->value[DELTA] = -0.11;
+    return model;
+}
+
+static void outputs(Model *m) {
+    double *v = m->value;
+    v[LOAD_FACTOR] = L * v[V] * v[V] * (v[ALPHA] + C * v[DELTA]) / G;
+}
+
+static void start(Model *m) {
+    m->value[ALPHA] = m->value[ALPHA_START];
+    m->value[THETA] = m->value[THETA_START];
+    outputs(m);
+}
+
+static STATUS fly(Model *m, double t, double width) {
+    double *v = m->value;
+    int n = (int)(width / 1e-4 + 0.5), i;
+#ifdef FAULT
+    if (t > 0.05) {
+        if (FAULT == 1) abort();
+        while (FAULT == 2) { volatile int spin = 0; (void)spin; }
+        return REFUSED;
+    }
+#endif
+    (void)t;
+    for (i = 0; i < n; i++) {
+        double dt = width / n;
+        double alpha_dot = v[Q] + G / v[V] - L * v[V] * (v[ALPHA] + C * v[DELTA]) + v[FORCE];
+        double q_dot = v[V] * v[V] * (M0 + MA * v[ALPHA] + MD * v[DELTA]) + MQ * v[V] * v[Q] + v[MOMENT];
+        v[THETA] += dt * v[Q];
+        v[ALPHA] += dt * alpha_dot;
+        v[Q] += dt * q_dot;
+    }
+    outputs(m);
+    return OK;
+}
+
+static STATUS set(Model *m, const Reference *which, size_t n, const Real *values) {
+    size_t i;
+    for (i = 0; i < n; i++) m->value[which[i]] = values[i];
+    return OK;
+}
+
+static STATUS get(Model *m, const Reference *which, size_t n, Real *values) {
+    size_t i;
+    for (i = 0; i < n; i++) values[i] = m->value[which[i]];
+    return OK;
+}
+
+#ifdef FMI3
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
+    fmi3Boolean visible, fmi3Boolean logging, fmi3Boolean events, fmi3Boolean early,
+    const fmi3ValueReference required[], size_t nRequired, fmi3InstanceEnvironment environment,
+    fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update) { return make(); }
+void fmi3FreeInstance(fmi3Instance m) { free(m); }
+fmi3Status fmi3EnterInitializationMode(fmi3Instance m, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
+    fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime) { return OK; }
+fmi3Status fmi3ExitInitializationMode(fmi3Instance m) { start(m); return OK; }
+fmi3Status fmi3Terminate(fmi3Instance m) { return OK; }
+fmi3Status fmi3SetFloat64(fmi3Instance m, const fmi3ValueReference which[], size_t n, const fmi3Float64 values[],
+    size_t nValues) { return set(m, which, n, values); }
+fmi3Status fmi3GetFloat64(fmi3Instance m, const fmi3ValueReference which[], size_t n, fmi3Float64 values[],
+    size_t nValues) { return get(m, which, n, values); }
+fmi3Status fmi3DoStep(fmi3Instance m, fmi3Float64 t, fmi3Float64 width, fmi3Boolean keep, fmi3Boolean *event,
+    fmi3Boolean *terminate, fmi3Boolean *early, fmi3Float64 *last) {
+    *event = *terminate = *early = fmi3False;
+    *last = t + width;
+    return fly(m, t, width);
+}
+#else
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+    const fmi2CallbackFunctions *functions, fmi2Boolean visible, fmi2Boolean logging) { return make(); }
+void fmi2FreeInstance(fmi2Component m) { free(m); }
+fmi2Status fmi2SetupExperiment(fmi2Component m, fmi2Boolean toleranceDefined, fmi2Real tolerance,
+    fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime) { return OK; }
+fmi2Status fmi2EnterInitializationMode(fmi2Component m) { return OK; }
+fmi2Status fmi2ExitInitializationMode(fmi2Component m) { start(m); return OK; }
+fmi2Status fmi2Terminate(fmi2Component m) { return OK; }
+fmi2Status fmi2SetReal(fmi2Component m, const fmi2ValueReference which[], size_t n, const fmi2Real values[]) {
+    return set(m, which, n, values);
+}
+fmi2Status fmi2GetReal(fmi2Component m, const fmi2ValueReference which[], size_t n, fmi2Real values[]) {
+    return get(m, which, n, values);
+}
+fmi2Status fmi2DoStep(fmi2Component m, fmi2Real t, fmi2Real width, fmi2Boolean keep) { return fly(m, t, width); }
+#endif
