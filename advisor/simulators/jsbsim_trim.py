@@ -60,6 +60,8 @@ def trim(flight: Flight, condition: Condition, known: State | None = None) -> St
     best = tried[-1]
     state = best.state._replace(axial=-best.excess / FOOT_M * flight.mass_slug)
     flight.put(state, condition.flight_path_rad)
+    # A turboprop forgets its power while a state is put.
+    _settle_engines(flight)
     return state
 
 

@@ -58,6 +58,12 @@ def test_a_command_that_moves_no_surface_is_one_sentence() -> None:
         Jsbsim(find_model("T38")).replay(Condition(160.0, 4000.0), step(0.01))
 
 
+def test_a_turboprop_begins_with_its_power() -> None:
+    twin = Jsbsim(find_model("DHC6")).replay(Condition(70.0, 1000.0), step(0.0))
+    assert np.ptp(twin.airspeed_m_s) < 0.05
+    assert np.ptp(twin.alpha) < 1e-3
+
+
 def test_a_glider_keeps_its_speed_on_a_level_path() -> None:
     glider = Jsbsim(find_model("minisgs")).replay(Condition(12.0, 300.0), step(0.0))
     assert np.ptp(glider.airspeed_m_s) < 0.05
