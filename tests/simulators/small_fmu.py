@@ -22,7 +22,7 @@ def build(folder: Path, fmi: int, fault: int | None = None, platform: str | None
     rest.write_text(_rest(fmi, source.read_text()))
     flags = [*(["-DFMI3"] if fmi == 3 else []), *([] if fault is None else [f"-DFAULT={fault}"])]
     subprocess.run(
-        ["gcc", "-shared", "-fPIC", "-O1", *flags, f"-I{HEADERS}", source, rest, "-o", library], check=True
+        ["cc", "-shared", "-fPIC", "-O1", *flags, f"-I{HEADERS}", source, rest, "-o", library], check=True
     )
     file = folder / "short_period.fmu"
     place = platform or (fmpy.platform if fmi == 2 else fmpy.platform_tuple)

@@ -1,6 +1,7 @@
 """Single models of JSBSim: their own actuators, a flight control that feeds back, wrong files."""
 
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from advisor.problems import ConfigurationError, UnusableInputError
 from advisor.simulators.jsbsim import Jsbsim, make_jsbsim
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs
+from sim.jsbsim_aircraft import JsbsimAircraft
 from tests.simulators.makeshift import Damping
 
 T = 0.005 * (np.arange(400) + 0.5)
@@ -19,6 +21,38 @@ LEVEL = Condition(50.0, 1000.0)
 
 def step(size_rad: float) -> Inputs:
     return Inputs(T, np.where(T > 0.5, size_rad, 0.0))
+
+
+@pytest.mark.parametrize(("model", "condition"), [("c172p", LEVEL), ("A320", Condition(150.0, 3000.0))])
+def test_the_bundled_simulators_coding_of_jsbsim_flies_the_same(model: str, condition: Condition) -> None:
+    dt, seconds = 0.0025, 4.0
+    other = JsbsimAircraft(model, condition.airspeed_m_s, condition.height_m, dt)
+    trim = other.trim._replace(aileron=other._fdm["fcs/aileron-cmd-norm"])
+    t = dt * np.arange(round(seconds / dt) + 1)
+    moved = np.where((t > 0.5) & (t < 1.5), 0.02, 0.0)
+    flown = [other.motion()]
+    flown += [other.step(trim._replace(elevator=trim.elevator + now), dt) for now in moved[1:]]
+    middles = 0.005 * (np.arange(round(seconds / 0.005)) + 0.5)
+    ours = Jsbsim(find_model(model)).replay(condition, Inputs(middles, np.interp(middles, t, moved)))
+    q = np.interp(t, ours.t, ours.q) - np.array([one.q for one in flown])
+    alpha = np.interp(t, ours.t, ours.alpha) - np.array([one.alpha for one in flown])
+    assert np.std(q) < 0.02 * np.std(ours.q)
+    assert np.std(alpha) < 0.02 * np.std(ours.alpha)
+
+
+def test_engines_are_found_two_folders_above_a_users_model(tmp_path: Path) -> None:
+    shipped = find_model("c172p")
+    engines = shipped.parents[2] / "engine"
+    (tmp_path / "aircraft" / "mine").mkdir(parents=True)
+    (tmp_path / "engine").mkdir()
+    text = shipped.read_text()
+    for name in re.findall(r'<(?:engine|thruster) file="(\w+)"', text):
+        shutil.copy(engines / f"{name}.xml", tmp_path / "engine" / f"my_{name}.xml")
+        text = text.replace(f'file="{name}"', f'file="my_{name}"')
+    path = tmp_path / "aircraft" / "mine" / "mine.xml"
+    path.write_text(text)
+    mine = Jsbsim(path).replay(LEVEL, step(-0.02))
+    assert mine.q.tolist() == Jsbsim(shipped).replay(LEVEL, step(-0.02)).q.tolist()
 
 
 def test_a_hysteresis_of_the_models_own_actuator_stays_in_the_path() -> None:
