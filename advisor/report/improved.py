@@ -32,7 +32,7 @@ def _beyond(content: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, A
     """What a file must say because it is not what is taken without it, section by section."""
     found = {}
     for key, value in content.items():
-        if isinstance(value, Mapping) and (inside := _beyond(value, usual.get(key, {}))):
+        if isinstance(value, Mapping) and (inside := _beyond(value, usual.get(key) or {})):
             found[key] = inside
         elif not isinstance(value, Mapping) and value != usual.get(key):
             found[key] = value

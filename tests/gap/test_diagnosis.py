@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yaml
 
-from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan, Limits
+from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan, FmuTrim, FmuVariables, Limits
 from advisor.config import parse_aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.document import gap_document
@@ -254,9 +254,11 @@ def test_the_improved_simulators_file_keeps_what_else_the_crew_wrote_about_its_a
         airspeed_m_s=22.0,
         limits=Limits(bank_deg=20.0),
         campaign=CampaignPlan(rule="information", tolerance={"M_0": 0.1}),
+        fmu=FmuVariables("delta_e", "alpha", "q", "theta", "n_z", trim=FmuTrim(airspeed="V")),
     )
     written = parse_aircraft(improved_file(delayed, crews))
     assert (written.limits, written.campaign, written.airspeed_m_s) == (crews.limits, crews.campaign, 22.0)
+    assert written.fmu == crews.fmu
     assert written.name == "ours, improved"
 
 
