@@ -206,6 +206,8 @@ class Aircraft:
     markers: Markers = field(default_factory=Markers)
     fmu: FmuVariables | None = None
     """Names in the FMU that the simulator is; None: the simulator is no FMU."""
+    simulator: str | None = None
+    """The user's own simulator: linear | jsbsim:MODEL | fmu:FILE | python:module:factory | log:FILE."""
 
     @property
     def stated_airspeed_m_s(self) -> float | None:

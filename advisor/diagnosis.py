@@ -121,9 +121,16 @@ def diagnose_logs(
     found = diagnose(flown.maneuvers, aircraft, holdout, progress)
     if believed_derivatives(aircraft) is None:
         found = without_simulator(found)
+    found = replace(found, height_m=_height_of(flown.maneuvers))
     notes = list(flown.notes)
     if flown.again:
         every = len(flown.maneuvers) + flown.again
         twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
         notes.insert(0, f"{twice}: they count once.")
     return replace(found, notes=(*notes, *found.notes)) if notes else found
+
+
+def _height_of(maneuvers: Sequence[Maneuver]) -> float | None:
+    """Mean height of all manoeuvres that have one, m."""
+    heights = [m.channels["height"].y.mean() for m in maneuvers if "height" in m.channels]
+    return float(sum(heights) / len(heights)) if heights else None

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
+from advisor.commands.exporting import export_option, listed, orders_of, write_exports
 from advisor.commands.options import (
     UNUSABLE,
+    USAGE,
     aircraft_option,
     decided_on,
     json_option,
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
 
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
-    "no_marks": "--no-marks", "why": "--why",
+    "no_marks": "--no-marks", "why": "--why", "exports": "--export",
 }  # fmt: skip
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
@@ -49,6 +51,7 @@ _OF_A_PLAN = {
     help="Measure on so many manoeuvres, the last ones, with numbers fitted without them.",
 )
 @click.option("--out", type=click.Path(path_type=Path), help="Where to write the improved simulator.")
+@export_option
 @click.option("--why", is_flag=True, help="Say every decision on the way: a number, its limit, the margin.")
 @click.option("--foresee", is_flag=True, help="No flight: what would this plan show? Needs an aircraft file.")
 @click.option(
@@ -66,6 +69,7 @@ def command(
     no_marks: bool,
     holdout: int | None,
     out: Path | None,
+    exports: tuple[str, ...],
     why: bool,
     foresee: bool,
     plan: str,
@@ -81,6 +85,7 @@ def command(
       advisor gap flight.tlog --aircraft my-aircraft.yaml
       advisor gap flight-1.tlog flight-2.tlog --holdout 3 --json
       advisor gap flight.tlog --maneuver +12:+24
+      advisor gap flight.tlog --aircraft my-aircraft.yaml --export matlab:short-period.m
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
     _refuse_foreign(foresee)
@@ -105,6 +110,7 @@ def command(
             raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
     elif not os.access(Path(), os.W_OK):
         raise ConfigurationError("This folder cannot be written to: name a file in another with --out.")
+    orders = orders_of(exports, aircraft, [*logs, aircraft_file, out])
     from advisor.diagnosis import diagnose_logs
     from advisor.gap.document import gap_document
     from advisor.report.improved import improved_name, write_improved
@@ -129,14 +135,16 @@ def command(
         click.echo(
             f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
         )
+    outcomes = write_exports(orders, found, aircraft)
     if as_json:
-        click.echo(json.dumps(gap_document(found, (), improved), allow_nan=False, indent=1))
+        document = gap_document(found, (), improved) | {"exports": listed(outcomes)}
+        click.echo(json.dumps(document, allow_nan=False, indent=1))
     else:
         from advisor.report.console import PlainConsole
         from advisor.report.gap_screen import GapScreen
 
         PlainConsole().print(GapScreen(found, improved and printable(improved), why))
-    return 0
+    return USAGE if any(one.problem for one in outcomes) else 0
 
 
 def _refuse_foreign(foresee: bool) -> None:

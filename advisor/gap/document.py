@@ -26,6 +26,7 @@ def gap_document(
         "schema": SCHEMA,
         "usable": diagnosis is not None and not problems,
         "problems": [{"code": p.code, "text": p.text, "fix": p.fix} for p in problems],
+        "exports": [],
     }
     if diagnosis is None:
         return {**document, **_NOTHING}

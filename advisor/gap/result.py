@@ -161,6 +161,8 @@ class Diagnosis:
     traces: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
     maneuvers: tuple[int, ...] = field(default=())
+    height_m: float | None = None
+    """Mean height of the manoeuvres, as recorded; None: not recorded."""
 
 
 def spelled(effect: str) -> str:

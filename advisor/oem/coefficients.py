@@ -43,29 +43,41 @@ def coefficients(
         Of the air flown in.
     """
     speed = estimate.airspeed_m_s
+    if speed is None:
+        return {}
+    return {
+        name: Coefficient(
+            factor * estimate.value(parameter), abs(factor) * float(estimate.std[PARAMETERS.index(parameter)])
+        )
+        for name, (parameter, factor) in scales(speed, reference, density_kg_m3).items()
+        if parameter not in estimate.not_identifiable
+    }
+
+
+def scales(
+    airspeed_m_s: float, reference: Reference, density_kg_m3: float = SEA_LEVEL_DENSITY_KG_M3
+) -> Mapping[str, tuple[str, float]]:
+    """Coefficient name to the derivative it comes from and the factor between them, from Table 4.4.
+
+    A coefficient whose reference data are missing is not among them.
+    """
     area, chord, mass, inertia = (
         reference.wing_area_m2,
         reference.chord_m,
         reference.mass_kg,
         reference.iyy_kg_m2,
     )
-    if speed is None or area is None:
+    if area is None:
         return {}
-    pressure = 0.5 * density_kg_m3 * speed**2
+    pressure = 0.5 * density_kg_m3 * airspeed_m_s**2
     scale: dict[str, tuple[str, float]] = {}
     if mass is not None:
-        force = -mass * speed / (pressure * area)
+        force = -mass * airspeed_m_s / (pressure * area)
         scale |= {"C_L_alpha": ("Z_alpha", force), "C_L_delta_e": ("Z_delta_e", force)}
         if chord is not None:
-            scale["C_L_q"] = ("Z_q", force * 2.0 * speed / chord)
+            scale["C_L_q"] = ("Z_q", force * 2.0 * airspeed_m_s / chord)
     if inertia is not None and chord is not None:
         moment = inertia / (pressure * area * chord)
         scale |= {"C_m_alpha": ("M_alpha", moment), "C_m_delta_e": ("M_delta_e", moment)}
-        scale["C_m_q"] = ("M_q", moment * 2.0 * speed / chord)
-    return {
-        name: Coefficient(
-            factor * estimate.value(parameter), abs(factor) * float(estimate.std[PARAMETERS.index(parameter)])
-        )
-        for name, (parameter, factor) in scale.items()
-        if parameter not in estimate.not_identifiable
-    }
+        scale["C_m_q"] = ("M_q", moment * 2.0 * airspeed_m_s / chord)
+    return scale

@@ -1,0 +1,1 @@
+"""The improvement that a diagnosis found, in the formats of other simulators."""

@@ -1,0 +1,25 @@
+"""A file's text, and what of the improvement its format cannot say."""
+
+from dataclasses import dataclass
+
+from advisor.gap.result import spelled
+from advisor.report.exports.improvement import Improvement
+
+
+@dataclass(frozen=True)
+class Exported:
+    """One file before it is written."""
+
+    text: str
+    left_out: tuple[str, ...] = ()
+    """Names of effects, as people write them, that the text does not carry."""
+
+
+def effects_beside(improvement: Improvement, *carried: str) -> tuple[str, ...]:
+    """Effects other than those of the servo and those that a format carries."""
+    return tuple(spelled(effect) for effect in improvement.effects if effect not in carried)
+
+
+def commented(lines: list[str], mark: str) -> str:
+    """Lines of a comment, each behind the mark of a language."""
+    return "".join(f"{mark} {line}".rstrip() + "\n" for line in lines)

@@ -1,0 +1,127 @@
+"""What every format is made from: the model found, what was believed before, the servo, other effects."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from advisor.aircraft import Aircraft, Elevator, Reference
+from advisor.gap.candidates.known import less_of_the_servo, together
+from advisor.gap.result import Diagnosis, Value
+from advisor.gravity import GRAVITY_M_S2
+from advisor.oem.coefficients import SEA_LEVEL_DENSITY_KG_M3, Coefficient, scales
+from advisor.problems import ConfigurationError
+from advisor.report.exports.servo import OF_THE_SERVO, Servo, servo_of
+
+NORMAL_95 = 1.96
+"""Half a 95 % interval of a normal distribution, in standard deviations."""
+SLOPES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
+"""The derivatives among the eight parameters."""
+REFERENCE_KEYS = ("mass_kg", "wing_area_m2", "chord_m", "iyy_kg_m2")
+
+
+@dataclass(frozen=True)
+class Improvement:
+    """The improved simulator, independent of any format."""
+
+    name: str
+    model: Mapping[str, Value]
+    """The eight parameters at ``airspeed_m_s``, SI."""
+    believed: Mapping[str, float]
+    """What the simulator believed before: any of the eight, none where it is not known."""
+    airspeed_m_s: float
+    servo: Servo
+    """All that lies between command and surface."""
+    effects: Mapping[str, Mapping[str, float]]
+    """Effects other than those of the servo, as the aircraft file has them."""
+    reference: Reference = field(default_factory=Reference)
+    elevator: Elevator = field(default_factory=Elevator)
+    height_m: float | None = None
+    """Height of the manoeuvres, as recorded; None: not known."""
+
+    @property
+    def density_note(self) -> str:
+        """Which density the coefficients are given for, as a sentence."""
+        unknown = "sea level, as the log has no height"
+        where = unknown if self.height_m is None else f"{self.height_m:.0f} m, the height recorded"
+        return f"Air density {self.density_kg_m3:.4f} kg/m3, of the standard atmosphere at {where}."
+
+    @property
+    def density_kg_m3(self) -> float:
+        """Of the International Standard Atmosphere's troposphere."""
+        warmth = 1.0 - 0.0065 * (self.height_m or 0.0) / 288.15
+        return SEA_LEVEL_DENSITY_KG_M3 * warmth**4.2559
+
+    def interval95(self, parameter: str) -> tuple[float, float]:
+        """The 95 % interval of one of the eight parameters."""
+        found = self.model[parameter]
+        return found.value - NORMAL_95 * found.std, found.value + NORMAL_95 * found.std
+
+    def differs(self, parameter: str, believed: float) -> bool:
+        """Whether the flight contradicts a believed value: it lies outside the 95 % interval."""
+        low, high = self.interval95(parameter)
+        return not low <= believed <= high
+
+    def coefficients(self) -> Mapping[str, Coefficient]:
+        """The eight non-dimensional coefficients, per radian: C_L_0 and C_m_0 are those at zero angles.
+
+        C_L_0 follows from Z_0 = g/V - q̄·S·C_L0/(m·V), without the part of the thrust in the lift direction.
+
+        Raises
+        ------
+        ConfigurationError
+            A quantity of ``reference`` is missing; the message says which.
+        """
+        require_reference(self.reference, REFERENCE_KEYS)
+        scale = scales(self.airspeed_m_s, self.reference, self.density_kg_m3)
+        weight = GRAVITY_M_S2 / self.airspeed_m_s
+        force, moment = scale["C_L_alpha"][1], scale["C_m_alpha"][1]
+        lift, pitch = self.model["Z_0"], self.model["M_0"]
+        found = {
+            "C_L_0": Coefficient(force * (lift.value - weight), abs(force) * lift.std),
+            "C_m_0": Coefficient(moment * pitch.value, abs(moment) * pitch.std),
+        }
+        for name, (parameter, factor) in scale.items():
+            value = self.model[parameter]
+            found[name] = Coefficient(factor * value.value, abs(factor) * value.std)
+        return found
+
+
+def improvement_of(diagnosis: Diagnosis, aircraft: Aircraft) -> Improvement:
+    """Gather what a diagnosis says of the simulator.
+
+    Raises
+    ------
+    ConfigurationError
+        The diagnosis has no air speed: no derivative can be given to another program.
+    """
+    if diagnosis.reference_airspeed_m_s is None:
+        raise ConfigurationError(
+            "--export needs the air speed flown: log it, or give airspeed_m_s in the aircraft file."
+        )
+    flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, diagnosis.effects))
+    return Improvement(
+        name=aircraft.name,
+        model=diagnosis.model,
+        believed=aircraft.model,
+        airspeed_m_s=diagnosis.reference_airspeed_m_s,
+        servo=servo_of(flown.elevator, effects),
+        effects={name: values for name, values in effects.items() if name not in OF_THE_SERVO},
+        reference=aircraft.reference,
+        elevator=aircraft.elevator,
+        height_m=diagnosis.height_m,
+    )
+
+
+def require_reference(reference: Reference, keys: tuple[str, ...]) -> None:
+    """Refuse an aircraft file without the quantities that coefficients need.
+
+    Raises
+    ------
+    ConfigurationError
+        Names the missing keys of ``reference``.
+    """
+    missing = [key for key in keys if getattr(reference, key) is None]
+    if missing:
+        raise ConfigurationError(
+            f"--export: non-dimensional coefficients need {', '.join(missing)}; "
+            f"give {'them' if len(missing) > 1 else 'it'} under reference: in the aircraft file."
+        )

@@ -1,0 +1,208 @@
+"""A JSBSim aircraft as text in, and with corrected coefficients and a servo as text out.
+
+The terms of the axes LIFT and PITCH are told apart by the properties that they depend on. A term with a pitch
+rate belongs to the pitch rate, then one with the rate of α, then one with the elevator, then one with α.
+"""
+
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from advisor.problems import ConfigurationError
+from advisor.report.exports.servo import Servo
+
+VARIABLES = {
+    "q": re.compile(r"velocities/q(-aero)?-rad_sec"),
+    "alpha_dot": re.compile(r"aero/alphadot-(rad|deg)_sec"),
+    "delta_e": re.compile(r"fcs/elevator-pos-(rad|deg|norm)"),
+    "alpha": re.compile(r"aero/alpha-(rad|deg)"),
+}
+"""Variable of the short period to the properties that stand for it, in the order of asking."""
+AXES = {"Z": "LIFT", "M": "PITCH"}
+SURFACES = {"fcs/elevator-pos-rad": 1.0, "fcs/elevator-pos-deg": 57.29577951308232}
+"""Properties of the surface to their units in a radian; the position from -1 to 1 has none."""
+PLAIN = {"alpha": "aero/alpha-rad", "q": "velocities/q-aero-rad_sec", "delta_e": "fcs/elevator-pos-rad"}
+
+
+@dataclass(frozen=True)
+class Knob:
+    """One number in the corrected model that moves one derivative."""
+
+    parameter: str
+    """``M_alpha``, for instance."""
+    terms: tuple[str, ...]
+    """Functions of the model that ``value`` multiplies; none: a function is added."""
+    value: float
+    """A factor, or the slope of the added force or moment, lbs or lbs·ft, at ``pressure_psf``."""
+    pressure_psf: float
+    about: float
+    """Value of the variable at which an added function is zero: that of the trim."""
+
+    @property
+    def axis(self) -> str:
+        """JSBSim's axis on which the derivative acts."""
+        return AXES[self.parameter[0]]
+
+    @property
+    def variable(self) -> str:
+        """``alpha``, ``q`` or ``delta_e``."""
+        return self.parameter[2:]
+
+
+def parse(content: bytes, name: str) -> ET.Element:
+    """Read a JSBSim aircraft with its comments.
+
+    Raises
+    ------
+    ConfigurationError
+        The content is no XML, or another XML than an aircraft of JSBSim with LIFT and PITCH.
+    """
+    try:
+        root = ET.fromstring(content, ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
+    except ET.ParseError as error:
+        raise ConfigurationError(
+            f"--export jsbsim: {name} is no XML ({error}); name a JSBSim aircraft."
+        ) from (error)
+    axes = {axis.get("name") for axis in root.iterfind("aerodynamics/axis")}
+    if root.tag != "fdm_config" or not set(AXES.values()) <= axes:
+        raise ConfigurationError(
+            f"--export jsbsim: {name} has no aerodynamics with the axes LIFT and PITCH; "
+            "use --export matlab or aircraft."
+        )
+    return root
+
+
+def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
+    """Derivative to the names of the model's functions that make it, in the order of the file."""
+    found: dict[str, tuple[str, ...]] = {}
+    for letter, axis in AXES.items():
+        for function in _functions(root, axis):
+            variable = _variable(function)
+            name = function.get("name")
+            if variable is not None and name is not None:
+                parameter = f"{letter}_{variable}"
+                found[parameter] = (*found.get(parameter, ()), name)
+    return found
+
+
+def surface_of(root: ET.Element) -> str:
+    """The property of the elevator's position that the pitching moment depends on."""
+    for function in _functions(root, "PITCH"):
+        for text in _properties(function):
+            if VARIABLES["delta_e"].fullmatch(text):
+                return text
+    return "fcs/elevator-pos-rad"
+
+
+def corrected(content: bytes, name: str, knobs: tuple[Knob, ...], servo: Servo, note: str) -> str:
+    """The aircraft's text with all knobs set and the servo behind the elevator's command.
+
+    Raises
+    ------
+    ConfigurationError
+        As from ``parse``; or the model gives the elevator's position without an angle.
+    """
+    root = parse(content, name)
+    for knob in knobs:
+        axis = next(a for a in root.iterfind("aerodynamics/axis") if a.get("name") == knob.axis)
+        if not knob.terms:
+            axis.append(_added(knob, surface_of(root)))
+        for function in axis.iterfind("function"):
+            if function.get("name") in knob.terms:
+                _multiply(function, knob)
+    if not servo.is_quick:
+        _insert(servo, root)
+    prolog = content.split(b"<fdm_config")[0].decode("utf-8", "replace")
+    comments = re.findall(r"<!--.*?-->", prolog, re.DOTALL)
+    head = ['<?xml version="1.0" encoding="utf-8"?>', *comments, f"<!-- {note.replace('--', '- -')} -->"]
+    return "\n".join([*head, ET.tostring(root, encoding="unicode")]) + "\n"
+
+
+def _functions(root: ET.Element, axis: str) -> Iterator[ET.Element]:
+    for one in root.iterfind("aerodynamics/axis"):
+        if one.get("name") == axis:
+            yield from one.iterfind("function")
+
+
+def _properties(function: ET.Element) -> list[str]:
+    tags = ("property", "p", "independentVar")
+    return [(e.text or "").strip().removeprefix("-") for e in function.iter() if e.tag in tags]
+
+
+def _variable(function: ET.Element) -> str | None:
+    properties = _properties(function)
+    for variable, pattern in VARIABLES.items():
+        if any(pattern.fullmatch(text) for text in properties):
+            return variable
+    return None
+
+
+def _multiply(function: ET.Element, knob: Knob) -> None:
+    """Wrap what a function computes into a product with the factor."""
+    said = ("description", "documentation", "notes")
+    computed = [e for e in function if e.tag not in said and isinstance(e.tag, str)]
+    product = ET.Element("product")
+    product.append(ET.Comment(f" advisor gap: {knob.parameter} as flown "))
+    product.append(_element("value", f"{knob.value:.8g}"))
+    for element in computed:
+        function.remove(element)
+        product.append(element)
+    function.append(product)
+
+
+def _added(knob: Knob, surface: str) -> ET.Element:
+    """A force or moment in proportion to dynamic pressure and to the variable's departure from trim."""
+    function = ET.Element("function", {"name": f"aero/advisor/{knob.parameter}"})
+    function.append(_element("description", f"advisor gap: added to {knob.parameter} as flown"))
+    product = ET.SubElement(function, "product")
+    product.append(_element("value", f"{knob.value / knob.pressure_psf:.8g}"))
+    product.append(_element("property", "aero/qbar-psf"))
+    departure = ET.SubElement(product, "difference")
+    departure.append(_element("property", surface if knob.variable == "delta_e" else PLAIN[knob.variable]))
+    departure.append(_element("value", f"{knob.about:.8g}"))
+    return function
+
+
+def _insert(servo: Servo, root: ET.Element) -> None:
+    """A channel of its own, last of all that moves the elevator: JSBSim's actuator, in and out the same."""
+    surface = surface_of(root)
+    unit = SURFACES.get(surface)
+    bounded = servo.rate_rad_s or servo.play_rad or servo.deadband_rad
+    if unit is None and bounded:
+        raise ConfigurationError(
+            f"--export jsbsim: the model moves by {surface}, which is no angle: rate limit, backlash and "
+            "dead band cannot be given; let its moment depend on fcs/elevator-pos-rad."
+        )
+    control = root.find("flight_control")
+    if control is None:
+        control = ET.SubElement(root, "flight_control", {"name": "FCS"})
+    channel = ET.SubElement(control, "channel", {"name": "Elevator as flown"})
+    scale, commanded = unit or 1.0, surface
+    lag_s = servo.lag_s
+    if servo.damping and lag_s > 0.0:
+        # JSBSim's trim passes through actuators but not through filters of second order: two lags in a row.
+        lag_s *= 0.5
+        commanded = "fcs/advisor/elevator-lagged"
+        first = ET.SubElement(channel, "actuator", {"name": commanded})
+        first.append(_element("input", surface))
+        first.append(_element("lag", f"{1.0 / lag_s:.8g}"))
+    actuator = ET.SubElement(channel, "actuator", {"name": "fcs/advisor/elevator-servo"})
+    actuator.append(_element("input", commanded))
+    numbers = {
+        "lag": 1.0 / lag_s if lag_s > 0.0 else 0.0,
+        "rate_limit": scale * (servo.rate_rad_s or 0.0),
+        "deadband_width": scale * servo.deadband_rad,
+        "hysteresis_width": scale * servo.play_rad,
+        "delay": servo.delay_s,
+    }
+    for tag, number in numbers.items():
+        if number > 0.0:
+            actuator.append(_element(tag, f"{number:.8g}"))
+    actuator.append(_element("output", surface))
+
+
+def _element(tag: str, text: str) -> ET.Element:
+    element = ET.Element(tag)
+    element.text = text
+    return element

@@ -1,0 +1,121 @@
+"""The derivatives of a JSBSim aircraft, and the share of each of its terms, by small perturbations.
+
+Runs in a process of its own (``python -m``), for JSBSim writes on stdout, and may end its process. The states
+are held while the forces settle, so no derivative is mixed with motion. α̇ and q̇ respond to α, q and elevator
+with all that hangs on them: the terms of α̇ count into the derivatives of α and q, as in a flight.
+"""
+
+import json
+import os
+import sys
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+FOOT_M = 0.3048
+SEA_FLOOR_FT = -10000.0
+"""Height of the ground: far from ground effect."""
+STEPS = 300
+"""Calls in which forces, and a servo that the model has, come to rest."""
+SIZES = (0.004, 0.01, 0.02)
+"""Perturbations of α (rad), q (rad/s) and the elevator's command (-1 to 1)."""
+_ROUNDS, _AT_REST = 30, 1e-7
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """What a JSBSim aircraft does at one condition."""
+
+    derivatives: dict[str, float]
+    """The six derivatives, SI, the elevator's by the unit of its property."""
+    shares: dict[str, list[float]]
+    """Function of the model to its slopes by α, q and elevator, lbs or lbs·ft."""
+    trim: dict[str, float]
+    """``alpha``, ``q`` and ``delta_e`` of the trim."""
+    pressure_psf: float
+    momentum: float
+    """Mass times speed, slug·ft/s."""
+    inertia: float
+    """I_yy, slug·ft²."""
+
+
+def measured(fdm: Any, names: list[str], surface: str, airspeed_m_s: float, height_m: float) -> Slopes:
+    """Trim the lift and the moment of a loaded aircraft, and perturb it there.
+
+    Raises
+    ------
+    ArithmeticError
+        No angle of attack and no elevator hold the aircraft in this condition.
+    """
+    fdm["ic/terrain-elevation-ft"] = SEA_FLOOR_FT
+    fdm["ic/h-sl-ft"] = height_m / FOOT_M
+    fdm["ic/vt-fps"] = airspeed_m_s / FOOT_M
+    fdm["ic/gamma-deg"] = 0.0
+    fdm["fcs/throttle-cmd-norm"], fdm["fcs/mixture-cmd-norm"] = 0.6, 0.9
+    fdm.run_ic()
+    fdm["propulsion/set-running"] = -1
+    fdm.suspend_integration()
+
+    def respond(alpha: float, q: float, command: float) -> tuple[Any, Any]:
+        """The variables as they came out, and α̇, q̇ and every term."""
+        fdm["ic/alpha-rad"], fdm["ic/q-rad_sec"] = alpha, q
+        fdm["fcs/elevator-cmd-norm"] = command
+        fdm.run_ic()
+        for _ in range(STEPS):
+            fdm.run()
+        variables = [fdm["aero/alpha-rad"], fdm["velocities/q-rad_sec"], fdm[surface]]
+        rates = [fdm["aero/alphadot-rad_sec"], fdm["accelerations/qdot-rad_sec2"]]
+        return np.array(variables), np.array(rates + [fdm[name] for name in names])
+
+    trim = np.array([0.05, 0.0])
+    for _ in range(_ROUNDS):
+        _, here = respond(trim[0], 0.0, trim[1])
+        if np.max(np.abs(here[:2])) < _AT_REST:
+            break
+        columns = [
+            (respond(trim[0] + a, 0.0, trim[1] + c)[1][:2] - here[:2]) / (a + c)
+            for a, c in ((SIZES[0], 0.0), (0.0, SIZES[2]))
+        ]
+        step = np.linalg.solve(np.column_stack(columns), here[:2])
+        trim = trim - np.clip(step, -0.1, 0.1)
+    else:
+        raise ArithmeticError("no trim")
+    if abs(trim[1]) > 1.0:
+        raise ArithmeticError("the elevator's travel ends before the trim")
+    at_trim, _ = respond(trim[0], 0.0, trim[1])
+    moved, responses = [], []
+    for k, size in enumerate(SIZES):
+        change = [0.0, 0.0, 0.0]
+        change[k] = size
+        ends = [respond(trim[0] + s * change[0], s * change[1], trim[1] + s * change[2]) for s in (1.0, -1.0)]
+        moved.append(ends[0][0] - ends[1][0])
+        responses.append(ends[0][1] - ends[1][1])
+    slopes = np.linalg.solve(np.array(moved), np.array(responses))
+    z, m = slopes[:, 0] - [0.0, 1.0, 0.0], slopes[:, 1]
+    found = dict(zip(("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e"), [*z, *m], strict=True))
+    return Slopes(
+        {name: float(value) for name, value in found.items()},
+        {name: slopes[:, 2 + i].tolist() for i, name in enumerate(names)},
+        {"alpha": float(at_trim[0]), "q": 0.0, "delta_e": float(at_trim[2])},
+        float(fdm["aero/qbar-psf"]),
+        float(fdm["inertia/mass-slugs"] * fdm["velocities/vt-fps"]),
+        float(fdm["inertia/iyy-slugs_ft2"]),
+    )
+
+
+def main() -> None:
+    """Read one request as JSON from stdin, and answer with one line of JSON, the last on stdout."""
+    asked = json.load(sys.stdin)
+    os.environ["JSBSIM_DEBUG"] = "0"
+    import jsbsim
+
+    fdm = jsbsim.FGFDMExec(None)
+    fdm.set_debug_level(0)
+    fdm.load_model_with_paths(asked["model"], asked["aircraft"], asked["engine"], asked["systems"], True)
+    found = measured(fdm, asked["names"], asked["surface"], asked["airspeed_m_s"], asked["height_m"])
+    print("\n" + json.dumps(asdict(found), allow_nan=False))
+
+
+if __name__ == "__main__":
+    main()
