@@ -68,3 +68,9 @@ def test_an_unstable_aircraft_has_no_such_tail():
 
 def test_the_lag_is_listed_as_left_out():
     assert block_text(improvement()).left_out == ("lag 0.08 s",)
+
+
+def test_a_tail_that_lifts_more_than_the_aircraft_is_no_tail():
+    model = improvement().model | {"M_q": Value(-0.05, 0.01)}
+    with pytest.raises(ConfigurationError, match="would lift more than the whole aircraft"):
+        block_text(improvement(model=model))

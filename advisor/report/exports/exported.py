@@ -1,5 +1,6 @@
 """A file's text, and what of the improvement its format cannot say."""
 
+import re
 from dataclasses import dataclass
 
 from advisor.gap.result import spelled
@@ -23,3 +24,8 @@ def effects_beside(improvement: Improvement, *carried: str) -> tuple[str, ...]:
 def commented(lines: list[str], mark: str) -> str:
     """Lines of a comment, each behind the mark of a language."""
     return "".join(f"{mark} {line}".rstrip() + "\n" for line in lines)
+
+
+def xml_comment(text: str) -> str:
+    """A comment of XML, in which no two hyphens may meet."""
+    return f"<!-- {re.sub('-(?=-)', '- ', text)} -->"

@@ -1,5 +1,6 @@
 """What every format is made from: the model found, what was believed before, the servo, other effects."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -48,7 +49,7 @@ class Improvement:
     def density_kg_m3(self) -> float:
         """Of the International Standard Atmosphere's troposphere."""
         warmth = 1.0 - 0.0065 * (self.height_m or 0.0) / 288.15
-        return SEA_LEVEL_DENSITY_KG_M3 * warmth**4.2559
+        return SEA_LEVEL_DENSITY_KG_M3 * math.pow(warmth, 4.2559)
 
     def interval95(self, parameter: str) -> tuple[float, float]:
         """The 95 % interval of one of the eight parameters."""

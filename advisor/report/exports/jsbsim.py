@@ -176,8 +176,8 @@ def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float])
     changed = [f"{p} {first.derivatives[p]:.4g} becomes {target:.4g}" for p, target in targets.items()]
     servo = improvement.servo.lines() or ["as it was"]
     return (
-        f" Corrected by advisor gap for {improvement.name} at {improvement.airspeed_m_s:.4g} m/s. "
-        f"Derivatives (SI): {', '.join(changed) or 'as they were'}. Servo: {', '.join(servo)}. "
+        f"Corrected by advisor gap for {improvement.name} at {improvement.airspeed_m_s:.4g} m/s. "
+        f"Derivatives (SI): {', '.join(changed) or 'as they were'}. Servo: {', '.join(servo)}."
     )
 
 

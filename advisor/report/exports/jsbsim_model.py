@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from advisor.problems import ConfigurationError
+from advisor.report.exports.exported import xml_comment
 from advisor.report.exports.servo import Servo
 
 VARIABLES = {
@@ -115,7 +116,7 @@ def corrected(content: bytes, name: str, knobs: tuple[Knob, ...], servo: Servo, 
         _insert(servo, root)
     prolog = content.split(b"<fdm_config")[0].decode("utf-8", "replace")
     comments = re.findall(r"<!--.*?-->", prolog, re.DOTALL)
-    head = ['<?xml version="1.0" encoding="utf-8"?>', *comments, f"<!-- {note.replace('--', '- -')} -->"]
+    head = ['<?xml version="1.0" encoding="utf-8"?>', *comments, xml_comment(note)]
     return "\n".join([*head, ET.tostring(root, encoding="unicode")]) + "\n"
 
 

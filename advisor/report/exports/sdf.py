@@ -1,9 +1,9 @@
 """Gazebo: two ``gz::sim::systems::LiftDrag`` plugins, a wing and a tail, that have the derivatives found.
 
 A LiftDrag surface has lift C = cla·(a0 + α) + control_joint_rad_to_cl·δ at its centre of pressure, where it
-meets the air that the rotation moves, and no damping of its own. Released versions set its moment ``cma`` to
-zero. Two surfaces of the wing's area S do without: the wing (w) at the centre of gravity, the tail (t) at the
-distance x ahead of it (x is below zero).
+meets the air that the rotation moves. A surface has no damping of its own, and Gazebo's source resets the
+moment of ``cma`` to zero. Two surfaces of the wing's area S need neither: the wing (w) lies at the centre of
+gravity, the tail (t) at the distance x ahead of the centre of gravity (x is below zero).
 
     C_Lα = a_w + a_t        C_mα = a_t·x/c        C_mq = -2·a_t·x²/c²        C_mδe = e·x/c
 
@@ -11,10 +11,8 @@ So x = -c·C_mq/(2·C_mα), a_t = C_mα·c/x, a_w = C_Lα - a_t and e = C_mδe·
 C_L0 = a_w·a0_w + a_t·a0_t and C_m0 = a_t·a0_t·x/c. C_Lδe = e and C_Lq = -2·C_mα are what this leaves of both.
 """
 
-from xml.sax.saxutils import escape
-
 from advisor.problems import ConfigurationError
-from advisor.report.exports.exported import Exported, effects_beside
+from advisor.report.exports.exported import Exported, effects_beside, xml_comment
 from advisor.report.exports.improvement import Improvement
 
 
@@ -57,7 +55,7 @@ def block_text(improvement: Improvement) -> Exported:
         f"C_L_q {-2.0 * c['C_m_alpha']:.6g}.",
         f"Before the joint's command, and no part of LiftDrag: {servo}.",
     ]
-    text = "".join(f"<!-- {escape(note.replace('--', '- -'))} -->\n" for note in notes)
+    text = "".join(xml_comment(note) + "\n" for note in notes)
     common = {"area": area, "air_density": improvement.density_kg_m3}
     joint = {"control_joint_name": "elevator_joint", "control_joint_rad_to_cl": f"{control:.8g}"}
     text += _plugin({"a0": wing_zero, "cla": wing, **common}, 0.0, {})
