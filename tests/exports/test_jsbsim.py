@@ -10,8 +10,9 @@ import pytest
 from advisor.gap.result import Value
 from advisor.problems import ConfigurationError
 from advisor.report.exports.improvement import SLOPES
-from advisor.report.exports.jsbsim import aircraft_text, find_model
-from advisor.report.exports.jsbsim_model import parse, surface_of, terms_of
+from advisor.report.exports.jsbsim.aircraft import aircraft_text
+from advisor.report.exports.jsbsim.run import find_model
+from advisor.report.exports.jsbsim.source import parse, surface_of, terms_of
 from advisor.report.exports.servo import Servo
 from tests.exports.cases import improvement
 
@@ -243,3 +244,42 @@ def test_an_elevator_without_an_angle_is_compared_only_by_ratio():
     assert made.left_out == (
         "Z_delta_e: the elevator's position is no angle", "M_delta_e: the elevator's position is no angle"
     )  # fmt: skip
+
+
+def pushed(fdm, alpha_step: float) -> None:
+    """Hold the trimmed aircraft at another angle of attack until the forces rest."""
+    fdm.suspend_integration()
+    fdm["ic/alpha-rad"] = fdm["aero/alpha-rad"] + alpha_step
+    fdm.run_ic()
+    for _ in range(10):
+        fdm.run()
+
+
+def test_a_bent_moment_is_a_square_and_a_cube_about_the_trim(cessna, tmp_path):
+    effects = {"nonlinear_pitching_moment": {"M_alpha2": 120.0, "M_alpha3": -900.0}}
+    made = aircraft_text(wanted(cessna, AS_BELIEVED, 53.0, effects=effects), find_model("c172p"))
+    assert made.left_out == ()
+    bent = trimmed(placed(made.text, tmp_path, "c172p"), 53.0)
+    plain = trimmed(find_model("c172p").file, 53.0)
+    at_rest = [fdm["accelerations/qdot-rad_sec2"] for fdm in (bent, plain)]
+    assert at_rest == pytest.approx([0.0, 0.0], abs=1e-3)
+    for fdm in (bent, plain):
+        pushed(fdm, 0.05)
+    more = bent["accelerations/qdot-rad_sec2"] - plain["accelerations/qdot-rad_sec2"]
+    assert more == pytest.approx(120.0 * 0.05**2 - 900.0 * 0.05**3, rel=0.03)
+
+
+def test_a_moment_by_the_rate_of_alpha_is_carried(cessna, tmp_path):
+    made = aircraft_text(
+        wanted(cessna, AS_BELIEVED, 53.0, effects={"alpha_dot": {"M_alpha_dot": -3.0}}), find_model("c172p")
+    )
+    fdm = trimmed(placed(made.text, tmp_path, "c172p"), 53.0)
+    pushed(fdm, 0.02)
+    moment = fdm["aero/advisor/alpha_dot"] / fdm["inertia/iyy-slugs_ft2"]
+    assert moment == pytest.approx(-3.0 * fdm["aero/alphadot-rad_sec"], rel=0.02)
+
+
+def test_a_separated_flow_is_listed_as_left_out(cessna):
+    effects = {"nonlinear_lift": {"stall_rad": 0.25, "sharpness": 20.0}, "turbulence": {}}
+    made = aircraft_text(wanted(cessna, AS_BELIEVED, 53.0, effects=effects), find_model("c172p"))
+    assert made.left_out == ("nonlinear lift", "turbulence")

@@ -15,7 +15,8 @@ from advisor.report.exports.improvement import (
     improvement_of,
     require_reference,
 )
-from advisor.report.exports.jsbsim import Model, aircraft_text, find_model
+from advisor.report.exports.jsbsim.aircraft import aircraft_text
+from advisor.report.exports.jsbsim.run import Model, find_model
 from advisor.report.improved import write_improved
 from advisor.whole_file import write_whole
 

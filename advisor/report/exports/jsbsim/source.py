@@ -6,7 +6,7 @@ rate belongs to the pitch rate, then one with the rate of α, then one with the 
 
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from advisor.problems import ConfigurationError
@@ -27,28 +27,29 @@ PLAIN = {"alpha": "aero/alpha-rad", "q": "velocities/q-aero-rad_sec", "delta_e":
 
 
 @dataclass(frozen=True)
-class Knob:
-    """One number in the corrected model that moves one derivative."""
+class Added:
+    """A function that is added to an axis: dynamic pressure times a power of one variable."""
+
+    name: str
+    axis: str
+    value: float
+    """lbs or lbs·ft for the dynamic pressure of 1 psf and the variable's power of 1."""
+    property: str
+    about: float = 0.0
+    """Value of the property from which the variable counts."""
+    power: int = 1
+    further: str = ""
+    """A property that multiplies as well."""
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A number that terms of an axis are multiplied by."""
 
     parameter: str
-    """``M_alpha``, for instance."""
+    axis: str
     terms: tuple[str, ...]
-    """Functions of the model that ``value`` multiplies; none: a function is added."""
     value: float
-    """A factor, or the slope of the added force or moment, lbs or lbs·ft, at ``pressure_psf``."""
-    pressure_psf: float
-    about: float
-    """Value of the variable at which an added function is zero: that of the trim."""
-
-    @property
-    def axis(self) -> str:
-        """JSBSim's axis on which the derivative acts."""
-        return AXES[self.parameter[0]]
-
-    @property
-    def variable(self) -> str:
-        """``alpha``, ``q`` or ``delta_e``."""
-        return self.parameter[2:]
 
 
 def parse(content: bytes, name: str) -> ET.Element:
@@ -96,8 +97,8 @@ def surface_of(root: ET.Element) -> str:
     return "fcs/elevator-pos-rad"
 
 
-def corrected(content: bytes, name: str, knobs: tuple[Knob, ...], servo: Servo, note: str) -> str:
-    """The aircraft's text with all knobs set and the servo behind the elevator's command.
+def corrected(content: bytes, name: str, changes: Sequence[Factor | Added], servo: Servo, note: str) -> str:
+    """The aircraft's text with all changes made and the servo behind the elevator's command.
 
     Raises
     ------
@@ -105,13 +106,14 @@ def corrected(content: bytes, name: str, knobs: tuple[Knob, ...], servo: Servo, 
         As from ``parse``; or the model gives the elevator's position without an angle.
     """
     root = parse(content, name)
-    for knob in knobs:
-        axis = next(a for a in root.iterfind("aerodynamics/axis") if a.get("name") == knob.axis)
-        if not knob.terms:
-            axis.append(_added(knob, surface_of(root)))
+    for change in changes:
+        axis = next(a for a in root.iterfind("aerodynamics/axis") if a.get("name") == change.axis)
+        if isinstance(change, Added):
+            axis.append(_function(change))
+            continue
         for function in axis.iterfind("function"):
-            if function.get("name") in knob.terms:
-                _multiply(function, knob)
+            if function.get("name") in change.terms:
+                _multiply(function, change)
     if not servo.is_quick:
         _insert(servo, root)
     prolog = content.split(b"<fdm_config")[0].decode("utf-8", "replace")
@@ -139,29 +141,32 @@ def _variable(function: ET.Element) -> str | None:
     return None
 
 
-def _multiply(function: ET.Element, knob: Knob) -> None:
+def _multiply(function: ET.Element, factor: Factor) -> None:
     """Wrap what a function computes into a product with the factor."""
     said = ("description", "documentation", "notes")
     computed = [e for e in function if e.tag not in said and isinstance(e.tag, str)]
     product = ET.Element("product")
-    product.append(ET.Comment(f" advisor gap: {knob.parameter} as flown "))
-    product.append(_element("value", f"{knob.value:.8g}"))
+    product.append(ET.Comment(f" advisor gap: {factor.parameter} as flown "))
+    product.append(_element("value", f"{factor.value:.8g}"))
     for element in computed:
         function.remove(element)
         product.append(element)
     function.append(product)
 
 
-def _added(knob: Knob, surface: str) -> ET.Element:
-    """A force or moment in proportion to dynamic pressure and to the variable's departure from trim."""
-    function = ET.Element("function", {"name": f"aero/advisor/{knob.parameter}"})
-    function.append(_element("description", f"advisor gap: added to {knob.parameter} as flown"))
+def _function(added: Added) -> ET.Element:
+    function = ET.Element("function", {"name": f"aero/advisor/{added.name}"})
+    function.append(_element("description", f"advisor gap: {added.name} as flown"))
     product = ET.SubElement(function, "product")
-    product.append(_element("value", f"{knob.value / knob.pressure_psf:.8g}"))
-    product.append(_element("property", "aero/qbar-psf"))
-    departure = ET.SubElement(product, "difference")
-    departure.append(_element("property", surface if knob.variable == "delta_e" else PLAIN[knob.variable]))
-    departure.append(_element("value", f"{knob.about:.8g}"))
+    product.append(_element("value", f"{added.value:.8g}"))
+    for name in ("aero/qbar-psf", added.further):
+        if name:
+            product.append(_element("property", name))
+    raised = ET.SubElement(product, "pow")
+    departure = ET.SubElement(raised, "difference")
+    departure.append(_element("property", added.property))
+    departure.append(_element("value", f"{added.about:.8g}"))
+    raised.append(_element("value", str(added.power)))
     return function
 
 

@@ -16,11 +16,33 @@ import numpy as np
 FOOT_M = 0.3048
 SEA_FLOOR_FT = -10000.0
 """Height of the ground: far from ground effect."""
+GUESS = 0.6
+"""Throttle from which JSBSim's trim begins."""
+FULL_TRIM = 1
+"""JSBSim's number for trimming all axes in straight flight."""
 STEPS = 300
 """Calls in which forces, and a servo that the model has, come to rest."""
 SIZES = (0.004, 0.01, 0.02)
 """Perturbations of α (rad), q (rad/s) and the elevator's command (-1 to 1)."""
 _ROUNDS, _AT_REST = 30, 1e-7
+
+
+COLUMNS = ("alpha", "q", "delta_e")
+"""Variables of the short period, in the order of ``SIZES`` and of every share."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked of a JSBSim aircraft."""
+
+    names: list[str]
+    """Functions whose shares are asked for."""
+    surface: str
+    """Property of the elevator's position."""
+    airspeed_m_s: float
+    height_m: float
+    powered: bool = True
+    """Whether JSBSim's trim finds the throttle; False: the throttle is shut."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +60,17 @@ class Slopes:
     """Mass times speed, slug·ft/s."""
     inertia: float
     """I_yy, slug·ft²."""
+    chord_time_s: float
+    """c/(2·V), by which rates become dimensionless."""
+    powered: bool
+    """Whether JSBSim's trim found a throttle that holds the speed."""
+
+    def per_force(self, letter: str) -> float:
+        """Change of α̇ (``Z``) by a lift of 1 lb, or of q̇ (``M``) by a moment of 1 lb·ft."""
+        return -1.0 / self.momentum if letter == "Z" else 1.0 / self.inertia
 
 
-def measured(fdm: Any, names: list[str], surface: str, airspeed_m_s: float, height_m: float) -> Slopes:
+def measured(fdm: Any, asked: Request) -> Slopes:
     """Trim the lift and the moment of a loaded aircraft, and perturb it there.
 
     Raises
@@ -49,12 +79,14 @@ def measured(fdm: Any, names: list[str], surface: str, airspeed_m_s: float, heig
         No angle of attack and no elevator hold the aircraft in this condition.
     """
     fdm["ic/terrain-elevation-ft"] = SEA_FLOOR_FT
-    fdm["ic/h-sl-ft"] = height_m / FOOT_M
-    fdm["ic/vt-fps"] = airspeed_m_s / FOOT_M
+    fdm["ic/h-sl-ft"] = asked.height_m / FOOT_M
+    fdm["ic/vt-fps"] = asked.airspeed_m_s / FOOT_M
     fdm["ic/gamma-deg"] = 0.0
-    fdm["fcs/throttle-cmd-norm"], fdm["fcs/mixture-cmd-norm"] = 0.6, 0.9
+    fdm["fcs/throttle-cmd-norm"] = GUESS if asked.powered else 0.0
+    fdm["fcs/mixture-cmd-norm"] = 0.9
     fdm.run_ic()
     fdm["propulsion/set-running"] = -1
+    powered = asked.powered and _finds_its_throttle(fdm)
     fdm.suspend_integration()
 
     def respond(alpha: float, q: float, command: float) -> tuple[Any, Any]:
@@ -64,9 +96,9 @@ def measured(fdm: Any, names: list[str], surface: str, airspeed_m_s: float, heig
         fdm.run_ic()
         for _ in range(STEPS):
             fdm.run()
-        variables = [fdm["aero/alpha-rad"], fdm["velocities/q-rad_sec"], fdm[surface]]
+        variables = [fdm["aero/alpha-rad"], fdm["velocities/q-rad_sec"], fdm[asked.surface]]
         rates = [fdm["aero/alphadot-rad_sec"], fdm["accelerations/qdot-rad_sec2"]]
-        return np.array(variables), np.array(rates + [fdm[name] for name in names])
+        return np.array(variables), np.array(rates + [fdm[name] for name in asked.names])
 
     trim = np.array([0.05, 0.0])
     for _ in range(_ROUNDS):
@@ -96,25 +128,39 @@ def measured(fdm: Any, names: list[str], surface: str, airspeed_m_s: float, heig
     found = dict(zip(("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e"), [*z, *m], strict=True))
     return Slopes(
         {name: float(value) for name, value in found.items()},
-        {name: slopes[:, 2 + i].tolist() for i, name in enumerate(names)},
+        {name: slopes[:, 2 + i].tolist() for i, name in enumerate(asked.names)},
         {"alpha": float(at_trim[0]), "q": 0.0, "delta_e": float(at_trim[2])},
         float(fdm["aero/qbar-psf"]),
         float(fdm["inertia/mass-slugs"] * fdm["velocities/vt-fps"]),
         float(fdm["inertia/iyy-slugs_ft2"]),
+        float(fdm["aero/ci2vel"]),
+        powered,
     )
+
+
+def _finds_its_throttle(fdm: Any) -> bool:
+    """Trim by JSBSim for the throttle's sake; a glider, and an engine that is too weak, has none."""
+    try:
+        fdm["simulation/do_simple_trim"] = FULL_TRIM
+    except RuntimeError:
+        return False
+    finally:
+        fdm["fcs/pitch-trim-cmd-norm"] = 0.0
+    return True
 
 
 def main() -> None:
     """Read one request as JSON from stdin, and answer with one line of JSON, the last on stdout."""
-    asked = json.load(sys.stdin)
+    told = json.load(sys.stdin)
+    model, *places = (told.pop(key) for key in ("model", "aircraft", "engine", "systems"))
     os.environ["JSBSIM_DEBUG"] = "0"
     import jsbsim
 
     fdm = jsbsim.FGFDMExec(None)
     fdm.set_debug_level(0)
-    fdm.load_model_with_paths(asked["model"], asked["aircraft"], asked["engine"], asked["systems"], True)
-    found = measured(fdm, asked["names"], asked["surface"], asked["airspeed_m_s"], asked["height_m"])
-    print("\n" + json.dumps(asdict(found), allow_nan=False))
+    aircraft, engine, systems = places
+    fdm.load_model_with_paths(model, aircraft, engine, systems, True)
+    print("\n" + json.dumps(asdict(measured(fdm, Request(**told))), allow_nan=False))
 
 
 if __name__ == "__main__":

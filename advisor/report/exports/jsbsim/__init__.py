@@ -1,0 +1,1 @@
+"""A corrected copy of the user's JSBSim aircraft."""

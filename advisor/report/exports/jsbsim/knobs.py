@@ -1,0 +1,90 @@
+"""The numbers in a corrected aircraft that give a derivative its value, and how they are found.
+
+Lift acts on the pitching moment by its arm, and a term moves the trim. So the aircraft is corrected and
+measured in turn until each derivative is the one asked for.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from advisor.report.exports.jsbsim.slopes import COLUMNS, Slopes
+from advisor.report.exports.jsbsim.source import AXES, PLAIN, Added, Factor
+
+ROUNDS = 8
+"""In which the numbers settle; each divides what is left by ten or more."""
+WITHIN = 1e-3
+"""Relative error of a derivative at which the corrected aircraft is as asked for."""
+
+
+@dataclass(frozen=True)
+class Knob:
+    """One number in the corrected aircraft that moves one derivative."""
+
+    parameter: str
+    change: Factor | Added
+    gain: float
+    """Of the derivative by the number."""
+
+    def turned(self, missing: float) -> "Knob":
+        """The knob with the number that makes up for what is missing of the derivative."""
+        return replace(self, change=replace(self.change, value=self.change.value + missing / self.gain))
+
+
+def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) -> Knob:
+    """A knob that changes nothing yet."""
+    axis, variable = AXES[parameter[0]], parameter[2:]
+    per_force = first.per_force(parameter[0])
+    share = per_force * sum(first.shares[name][COLUMNS.index(variable)] for name in terms)
+    if share != 0.0:
+        return Knob(parameter, Factor(parameter, axis, tuple(terms), 1.0), share)
+    property_ = surface if variable == "delta_e" else PLAIN[variable]
+    added = Added(parameter, axis, 0.0, property_, first.trim[variable])
+    return Knob(parameter, added, per_force * first.pressure_psf)
+
+
+def _turned(knob: Knob, missing: float, first: Slopes, surface: str) -> Knob:
+    """The knob turned by what is missing; a factor below zero becomes an added function."""
+    turned = knob.turned(missing)
+    if isinstance(turned.change, Added) or turned.change.value > 0.0:
+        return turned
+    instead = knob_for(knob.parameter, (), first, surface)
+    return instead.turned(missing + (knob.change.value - 1.0) * knob.gain)
+
+
+def settled(
+    knobs: Sequence[Knob],
+    first: Slopes,
+    targets: Mapping[str, float],
+    surface: str,
+    measured: Callable[[Sequence[Knob]], Slopes],
+) -> tuple[list[Knob], Slopes]:
+    """Turn the knobs until the aircraft has the derivatives asked for, or ``ROUNDS`` are over.
+
+    Parameters
+    ----------
+    first
+        The aircraft before any correction, as it is with the knobs given.
+    targets
+        Derivative to its value, one for each knob.
+    surface
+        Property of the elevator's position.
+    measured
+        Measures the aircraft with the knobs as they stand.
+    """
+    now, turned = first, list(knobs)
+    for _ in range(ROUNDS):
+        if not missed(now, targets):
+            break
+        missing = {p: target - now.derivatives[p] for p, target in targets.items()}
+        turned = [_turned(knob, missing[knob.parameter], first, surface) for knob in turned]
+        now = measured(turned)
+    return turned, now
+
+
+def missed(now: Slopes, targets: Mapping[str, float]) -> list[str]:
+    """Derivatives that are not as asked for."""
+    return [
+        p for p, target in targets.items()
+        if not math.isclose(now.derivatives[p], target, rel_tol=WITHIN, abs_tol=1e-6)
+    ]  # fmt: skip

@@ -1,0 +1,96 @@
+"""Where a JSBSim aircraft lies, and measuring it in a process of its own."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ET
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from advisor.problems import ConfigurationError
+from advisor.report.exports.jsbsim.slopes import Request, Slopes
+from advisor.report.exports.jsbsim.source import parse
+
+TIME_LIMIT_S = 60.0
+"""For loading and measuring one aircraft once, which takes less than a second."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """Where a JSBSim aircraft and what it needs lie."""
+
+    file: Path
+    engine: Path
+    systems: Path
+
+    @property
+    def name(self) -> str:
+        """JSBSim's name of the aircraft: that of its file."""
+        return self.file.stem
+
+
+def find_model(what: str) -> Model:
+    """The aircraft that ``jsbsim:`` names: a file, or one of the installed package.
+
+    Raises
+    ------
+    ConfigurationError
+        JSBSim is not installed, or has no such aircraft.
+    """
+    try:
+        import jsbsim
+    except ImportError as error:
+        raise ConfigurationError(
+            "--export jsbsim needs JSBSim: pip install 'inflight-advisor[jsbsim]'."
+        ) from error
+    root = Path(jsbsim.get_default_root_dir())
+    given = Path(what)
+    file = given if given.suffix.lower() == ".xml" else root / "aircraft" / what / f"{what}.xml"
+    if not file.is_file():
+        raise ConfigurationError(
+            f"--export jsbsim: there is no aircraft {what}; name one of JSBSim's (c172p) or the path of an "
+            ".xml file."
+        )
+    own = file.resolve().parents[:3]
+    engine, systems = (
+        next((up / name for up in own if (up / name).is_dir()), root / name) for name in ("engine", "systems")
+    )
+    return Model(file.resolve(), engine, systems)
+
+
+def measure(content: bytes, model: Model, asked: Request) -> Slopes:
+    """Load a content as the aircraft of that name, with the files that it includes, and measure it.
+
+    Raises
+    ------
+    ConfigurationError
+        JSBSim does not load the aircraft, or the aircraft has no trim in the condition asked for.
+    """
+    root = parse(content, model.file.name)
+    for tag in ("input", "output"):
+        # What the aircraft would open: sockets and files.
+        for element in root.findall(tag):
+            root.remove(element)
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder) / model.name
+        place.mkdir()
+        for entry in model.file.parent.iterdir():
+            if entry.name != f"{model.name}.xml":
+                (place / entry.name).symlink_to(entry)
+        ET.ElementTree(root).write(place / f"{model.name}.xml", encoding="utf-8")
+        places = {"aircraft": folder, "engine": str(model.engine), "systems": str(model.systems)}
+        request = asdict(asked) | places | {"model": model.name}
+        try:
+            done = subprocess.run(
+                [sys.executable, "-m", "advisor.report.exports.jsbsim.slopes"],
+                input=json.dumps(request), capture_output=True, text=True, timeout=TIME_LIMIT_S, check=True,
+                cwd=folder, env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            )  # fmt: skip
+            return Slopes(**json.loads(done.stdout.splitlines()[-1]))
+        except (subprocess.SubprocessError, ValueError, IndexError, TypeError) as error:
+            raise ConfigurationError(
+                f"--export jsbsim: JSBSim does not load and trim {model.file.name} at "
+                f"{asked.airspeed_m_s:.4g} m/s; check the aircraft, and the air speed of the log."
+            ) from error
