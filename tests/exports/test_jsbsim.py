@@ -283,3 +283,8 @@ def test_a_separated_flow_is_listed_as_left_out(cessna):
     effects = {"nonlinear_lift": {"stall_rad": 0.25, "sharpness": 20.0}, "turbulence": {}}
     made = aircraft_text(wanted(cessna, AS_BELIEVED, 53.0, effects=effects), find_model("c172p"))
     assert made.left_out == ("nonlinear lift", "turbulence")
+
+
+def test_a_trim_beyond_the_tables_of_the_lift_is_no_condition(cessna):
+    with pytest.raises(ConfigurationError, match=r"does not load and trim minisgs\.xml at 20 m/s"):
+        aircraft_text(wanted(cessna, AS_BELIEVED, 20.0), find_model("minisgs"))

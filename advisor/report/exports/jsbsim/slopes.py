@@ -25,6 +25,8 @@ STEPS = 300
 SIZES = (0.004, 0.01, 0.02)
 """Perturbations of α (rad), q (rad/s) and the elevator's command (-1 to 1)."""
 _ROUNDS, _AT_REST = 30, 1e-7
+_FLAT = 1e-6
+"""Z_alpha of no lift at all, which comes out as rounding, 1/s."""
 
 
 COLUMNS = ("alpha", "q", "delta_e")
@@ -76,7 +78,7 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     Raises
     ------
     ArithmeticError
-        No angle of attack and no elevator hold the aircraft in this condition.
+        No angle of attack and no elevator hold the aircraft in this condition, or its lift does not grow.
     """
     fdm["ic/terrain-elevation-ft"] = SEA_FLOOR_FT
     fdm["ic/h-sl-ft"] = asked.height_m / FOOT_M
@@ -126,6 +128,8 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     slopes = np.linalg.solve(np.array(moved), np.array(responses))
     z, m = slopes[:, 0] - [0.0, 1.0, 0.0], slopes[:, 1]
     found = dict(zip(("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e"), [*z, *m], strict=True))
+    if found["Z_alpha"] > -_FLAT:
+        raise ArithmeticError("the lift does not grow at the trim: the wing is stalled, or its tables end")
     return Slopes(
         {name: float(value) for name, value in found.items()},
         {name: slopes[:, 2 + i].tolist() for i, name in enumerate(asked.names)},
