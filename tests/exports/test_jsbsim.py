@@ -11,7 +11,7 @@ from advisor.gap.result import Value
 from advisor.problems import ConfigurationError
 from advisor.report.exports.improvement import SLOPES
 from advisor.report.exports.jsbsim.aircraft import aircraft_text
-from advisor.report.exports.jsbsim.run import find_model
+from advisor.report.exports.jsbsim.run import model_of
 from advisor.report.exports.jsbsim.source import parse, surface_of, terms_of
 from advisor.report.exports.servo import Servo
 from tests.exports.cases import improvement
@@ -91,12 +91,12 @@ def wanted(before: dict[str, float], factors: dict[str, float], airspeed_m_s: fl
 @pytest.fixture(scope="module")
 def cessna() -> dict[str, float]:
     """What the unchanged Cessna does at 53 m/s."""
-    return flown(find_model("c172p").file, 53.0)
+    return flown(model_of("c172p").file, 53.0)
 
 
 def test_flown_again_each_derivative_has_changed_by_the_factor_asked_for(cessna, tmp_path):
     factors = AS_BELIEVED | {"M_alpha": 0.5, "M_q": 1.4, "M_delta_e": 0.8}
-    made = aircraft_text(wanted(cessna, factors, 53.0), find_model("c172p"))
+    made = aircraft_text(wanted(cessna, factors, 53.0), model_of("c172p"))
     again = flown(placed(made.text, tmp_path, "c172p"), 53.0)
     for parameter, factor in factors.items():
         if parameter not in ("Z_q", "Z_delta_e"):
@@ -107,14 +107,14 @@ def test_flown_again_each_derivative_has_changed_by_the_factor_asked_for(cessna,
 
 def test_a_corrected_lift_leaves_the_pitch_stiffness_as_the_flight_has_it(cessna, tmp_path):
     factors = AS_BELIEVED | {"Z_alpha": 1.25}
-    made = aircraft_text(wanted(cessna, factors, 53.0), find_model("c172p"))
+    made = aircraft_text(wanted(cessna, factors, 53.0), model_of("c172p"))
     again = flown(placed(made.text, tmp_path, "c172p"), 53.0)
     assert again["Z_alpha"] / cessna["Z_alpha"] == pytest.approx(1.25, rel=0.03)
     assert again["M_alpha"] / cessna["M_alpha"] == pytest.approx(1.0, rel=0.03)
 
 
 def test_a_derivative_without_a_term_of_its_own_gets_a_function(tmp_path):
-    model = find_model("737")
+    model = model_of("737")
     before = flown(model.file, 150.0)
     assert "Z_q" not in terms_of(parse(model.file.read_bytes(), "737"))
     found = {p: Value(value, 1e-3 * abs(value) + 1e-6) for p, value in before.items()}
@@ -129,13 +129,13 @@ def test_a_derivative_without_a_term_of_its_own_gets_a_function(tmp_path):
 
 def test_a_factor_that_would_turn_a_sign_becomes_a_function(cessna, tmp_path):
     factors = AS_BELIEVED | {"M_alpha": -0.2}
-    made = aircraft_text(wanted(cessna, factors, 53.0), find_model("c172p"))
+    made = aircraft_text(wanted(cessna, factors, 53.0), model_of("c172p"))
     assert 'name="aero/advisor/M_alpha"' in made.text
 
 
 def test_what_the_interval_holds_is_left_as_the_model_has_it(cessna):
-    made = aircraft_text(wanted(cessna, AS_BELIEVED, 53.0), find_model("c172p"))
-    plain = parse(find_model("c172p").file.read_bytes(), "c172p")
+    made = aircraft_text(wanted(cessna, AS_BELIEVED, 53.0), model_of("c172p"))
+    plain = parse(model_of("c172p").file.read_bytes(), "c172p")
     again = parse(made.text.encode(), "c172p")
     assert ET.tostring(again) == ET.tostring(plain)
     assert "Derivatives (SI): as they were" in made.text
@@ -158,7 +158,7 @@ def step_response(file: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def flown_with(servo: Servo, before: dict[str, float], folder: Path) -> tuple[np.ndarray, np.ndarray]:
-    made = aircraft_text(wanted(before, AS_BELIEVED, 53.0, servo=servo), find_model("c172p"))
+    made = aircraft_text(wanted(before, AS_BELIEVED, 53.0, servo=servo), model_of("c172p"))
     return step_response(placed(made.text, folder, "c172p"))
 
 
@@ -194,15 +194,15 @@ def test_a_lag_of_second_order_begins_gently_and_trails_a_ramp_by_its_time(cessn
 
 
 def test_what_the_user_wrote_around_the_terms_stays(cessna):
-    made = aircraft_text(wanted(cessna, AS_BELIEVED | {"M_q": 1.3}, 53.0), find_model("c172p"))
-    plain = find_model("c172p").file.read_text()
+    made = aircraft_text(wanted(cessna, AS_BELIEVED | {"M_q": 1.3}, 53.0), model_of("c172p"))
+    plain = model_of("c172p").file.read_text()
     assert made.text.count("<!--") == plain.count("<!--") + 2
     assert made.text.count("<function") == plain.count("<function")
 
 
 def test_an_aircraft_that_does_not_trim_at_the_speed_flown_is_refused(cessna):
     with pytest.raises(ConfigurationError, match=r"does not load and trim c172p\.xml at 5 m/s"):
-        aircraft_text(wanted(cessna, AS_BELIEVED, 5.0), find_model("c172p"))
+        aircraft_text(wanted(cessna, AS_BELIEVED, 5.0), model_of("c172p"))
 
 
 @pytest.mark.parametrize(
@@ -217,16 +217,16 @@ def test_a_file_that_is_no_aircraft_is_refused_by_name(tmp_path, content, senten
     file = tmp_path / "mine.xml"
     file.write_bytes(content)
     with pytest.raises(ConfigurationError, match=rf"mine\.xml {sentence}"):
-        aircraft_text(improvement(), find_model(str(file)))
+        aircraft_text(improvement(), model_of(str(file)))
 
 
 def test_an_aircraft_that_jsbsim_lacks_is_refused_by_name():
-    with pytest.raises(ConfigurationError, match="there is no aircraft sopwith"):
-        find_model("sopwith")
+    with pytest.raises(ConfigurationError, match="JSBSim has no model 'sopwith'"):
+        model_of("sopwith")
 
 
 def test_terms_are_told_apart_by_the_properties_they_depend_on():
-    root = parse(find_model("c172p").file.read_bytes(), "c172p")
+    root = parse(model_of("c172p").file.read_bytes(), "c172p")
     terms = terms_of(root)
     assert terms["M_alpha"] == ("aero/coefficient/Cmalpha",)
     assert terms["M_alpha_dot"] == ("aero/coefficient/Cmadot",)
@@ -235,7 +235,7 @@ def test_terms_are_told_apart_by_the_properties_they_depend_on():
 
 
 def test_an_elevator_without_an_angle_is_compared_only_by_ratio():
-    model = find_model("T38")
+    model = model_of("T38")
     before = {"Z_alpha": -0.7, "Z_q": 0.0, "M_alpha": -1.8, "M_q": -1.4}
     found = {p: Value(v, 1.0) for p, v in before.items()} | {
         "Z_delta_e": Value(-0.1, 1e-4), "M_delta_e": Value(-9.0, 1e-3)
@@ -257,10 +257,10 @@ def pushed(fdm, alpha_step: float) -> None:
 
 def test_a_bent_moment_is_a_square_and_a_cube_about_the_trim(cessna, tmp_path):
     effects = {"nonlinear_pitching_moment": {"M_alpha2": 120.0, "M_alpha3": -900.0}}
-    made = aircraft_text(wanted(cessna, AS_BELIEVED, 53.0, effects=effects), find_model("c172p"))
+    made = aircraft_text(wanted(cessna, AS_BELIEVED, 53.0, effects=effects), model_of("c172p"))
     assert made.left_out == ()
     bent = trimmed(placed(made.text, tmp_path, "c172p"), 53.0)
-    plain = trimmed(find_model("c172p").file, 53.0)
+    plain = trimmed(model_of("c172p").file, 53.0)
     at_rest = [fdm["accelerations/qdot-rad_sec2"] for fdm in (bent, plain)]
     assert at_rest == pytest.approx([0.0, 0.0], abs=1e-3)
     for fdm in (bent, plain):
@@ -271,7 +271,7 @@ def test_a_bent_moment_is_a_square_and_a_cube_about_the_trim(cessna, tmp_path):
 
 def test_a_moment_by_the_rate_of_alpha_is_carried(cessna, tmp_path):
     made = aircraft_text(
-        wanted(cessna, AS_BELIEVED, 53.0, effects={"alpha_dot": {"M_alpha_dot": -3.0}}), find_model("c172p")
+        wanted(cessna, AS_BELIEVED, 53.0, effects={"alpha_dot": {"M_alpha_dot": -3.0}}), model_of("c172p")
     )
     fdm = trimmed(placed(made.text, tmp_path, "c172p"), 53.0)
     pushed(fdm, 0.02)
@@ -281,10 +281,10 @@ def test_a_moment_by_the_rate_of_alpha_is_carried(cessna, tmp_path):
 
 def test_a_separated_flow_is_listed_as_left_out(cessna):
     effects = {"nonlinear_lift": {"stall_rad": 0.25, "sharpness": 20.0}, "turbulence": {}}
-    made = aircraft_text(wanted(cessna, AS_BELIEVED, 53.0, effects=effects), find_model("c172p"))
+    made = aircraft_text(wanted(cessna, AS_BELIEVED, 53.0, effects=effects), model_of("c172p"))
     assert made.left_out == ("nonlinear lift", "turbulence")
 
 
 def test_a_trim_beyond_the_tables_of_the_lift_is_no_condition(cessna):
     with pytest.raises(ConfigurationError, match=r"does not load and trim minisgs\.xml at 20 m/s"):
-        aircraft_text(wanted(cessna, AS_BELIEVED, 20.0), find_model("minisgs"))
+        aircraft_text(wanted(cessna, AS_BELIEVED, 20.0), model_of("minisgs"))

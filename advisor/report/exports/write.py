@@ -16,7 +16,7 @@ from advisor.report.exports.improvement import (
     require_reference,
 )
 from advisor.report.exports.jsbsim.aircraft import aircraft_text
-from advisor.report.exports.jsbsim.run import Model, find_model
+from advisor.report.exports.jsbsim.run import Model, model_of
 from advisor.report.improved import write_improved
 from advisor.whole_file import write_whole
 
@@ -132,4 +132,4 @@ def _model(aircraft: Aircraft) -> Model:
             "--export jsbsim corrects a JSBSim aircraft: give yours with simulator: jsbsim:MODEL in the "
             "aircraft file."
         )
-    return find_model(what)
+    return model_of(what)

@@ -12,6 +12,7 @@ from pathlib import Path
 from advisor.problems import ConfigurationError
 from advisor.report.exports.jsbsim.slopes import Request, Slopes
 from advisor.report.exports.jsbsim.source import parse
+from advisor.simulators.jsbsim_model import find_model
 
 TIME_LIMIT_S = 60.0
 """For loading and measuring one aircraft once, which takes less than a second."""
@@ -31,33 +32,24 @@ class Model:
         return self.file.stem
 
 
-def find_model(what: str) -> Model:
-    """The aircraft that ``jsbsim:`` names: a file, or one of the installed package.
+def model_of(what: str) -> Model:
+    """The aircraft that ``jsbsim:`` names, with the engines and systems of its own JSBSim tree, if any.
 
     Raises
     ------
     ConfigurationError
         JSBSim is not installed, or has no such aircraft.
     """
-    try:
-        import jsbsim
-    except ImportError as error:
-        raise ConfigurationError(
-            "--export jsbsim needs JSBSim: pip install 'inflight-advisor[jsbsim]'."
-        ) from error
-    root = Path(jsbsim.get_default_root_dir())
-    given = Path(what)
-    file = given if given.suffix.lower() == ".xml" else root / "aircraft" / what / f"{what}.xml"
-    if not file.is_file():
-        raise ConfigurationError(
-            f"--export jsbsim: there is no aircraft {what}; name one of JSBSim's (c172p) or the path of an "
-            ".xml file."
-        )
-    own = file.resolve().parents[:3]
+    file = find_model(what)
+    import jsbsim
+
+    shipped = Path(jsbsim.get_default_root_dir())
+    own = file.parents[:3]
     engine, systems = (
-        next((up / name for up in own if (up / name).is_dir()), root / name) for name in ("engine", "systems")
+        next((up / name for up in own if (up / name).is_dir()), shipped / name)
+        for name in ("engine", "systems")
     )
-    return Model(file.resolve(), engine, systems)
+    return Model(file, engine, systems)
 
 
 def measure(content: bytes, model: Model, asked: Request) -> Slopes:
