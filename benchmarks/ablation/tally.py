@@ -55,7 +55,12 @@ class Tally:
                 self._count(json.loads(line))
 
     def _count(self, line: dict[str, Any]) -> None:
-        """Children write before their parent: a case is counted when its whole answer is there."""
+        """Children write before their parent: a case is counted when its whole answer is there.
+
+        A case of another folder is not.
+        """
+        if line["case"] not in self.keys:
+            return
         waiting = self._pending.setdefault(line["case"], [])
         if line["without"] is not None:
             waiting.append(line)
