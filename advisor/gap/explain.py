@@ -17,20 +17,11 @@ from advisor.gap.fitting.uncertainty import file_is_off, worth
 from advisor.gap.records.floor import stated_floor
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.air import Air, moving_air, one_stands_out
-from advisor.gap.search.command import (
-    is_likelier_held,
-    is_plainer,
-    may_be_held,
-    may_be_linear,
-    may_pay,
-    read_otherwise,
-)
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage, added_in
 from advisor.gap.search.waterfall import (
     Progress,
     as_measured,
-    build_up,
     one_after_another,
     reconsidered,
     reduced_to,
@@ -62,7 +53,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     variants = beyond_servo(aircraft, variants_for(problem.flights))
     variants = beyond_known(aircraft.effects, variants)
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
-    problem, stages, law = _named(problem, baseline, variants, progress)
+    stages, law = _named(problem, baseline, variants, progress)
     progress("looking at the air", 0.7)
     law, stages, air = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
@@ -116,27 +107,18 @@ def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> 
 
 def _named(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
-) -> tuple[Problem, list[Stage], Law | None]:
-    """The model built up, with the command read the other way where that names the likelier effects.
+) -> tuple[list[Stage], Law | None]:
+    """The model built up, and the law without a name that explains more than all of its names.
 
-    Also returned is the law that explains more than all of them. It is sought beside the first names: those
-    that are found when they are reconsidered explain more, and beside a law beyond doubt none need be.
+    The law is sought beside the first names: those that are found when they are reconsidered explain more,
+    and beside a law beyond doubt none need be.
     """
     stages = one_after_another(problem, baseline, variants, progress)
     law = unnamed_law(problem, stages)
     if law is not None and law.is_beyond_doubt:
-        return problem, stages, law
+        return stages, law
     stages = reconsidered(problem, stages, variants)
-    seen = stages[0].rivals | {j.effect for j in added_in(stages)}
-    named = stages[-1].fitted
-    doubtful = may_be_held(problem, named, seen) or may_be_linear(problem, named)
-    if doubtful and may_pay(problem, named, seen):
-        other, plain = read_otherwise(problem, baseline)
-        others = build_up(other, plain, variants, progress)
-        likelier = is_plainer if problem.held else is_likelier_held
-        if likelier(problem, named, other, others[-1].fitted):
-            return other, others, unnamed_law(other, others)
-    return problem, stages, None if law is None else unnamed_law(problem, stages)
+    return stages, None if law is None else unnamed_law(problem, stages)
 
 
 def _with_the_air(

@@ -11,9 +11,6 @@ from advisor.gap.fitting.uncertainty import belief_in, worth
 from advisor.gap.search.merit import BEYOND_DOUBT, Judged
 from advisor.gap.search.score import addition, price_of
 
-_NEAR = 0.5
-"""Share of the best candidate's gain from which on another one is a rival."""
-
 
 @dataclass(frozen=True)
 class Stage:
@@ -26,12 +23,6 @@ class Stage:
     and none where no more names were asked for."""
     added: Judged | None
     """What was added to this stage's model to reach the next one."""
-
-    @property
-    def rivals(self) -> frozenset[str]:
-        """Effects that gained at least half as much as the best."""
-        best = self.considered[0].gain if self.considered else 0.0
-        return frozenset(judged.effect for judged in self.considered if judged.gain > _NEAR * best)
 
     @property
     def disputed(self) -> Judged | None:

@@ -30,13 +30,6 @@ Progress = Callable[[str, float], None]
 """Called with what is being done and the share done, 0 to 1."""
 
 
-def build_up(
-    problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress = lambda *_: None
-) -> list[Stage]:
-    """Stages from the plain model to the last addition, and looked at once more as a whole."""
-    return reconsidered(problem, one_after_another(problem, baseline, variants, progress), variants)
-
-
 def reconsidered(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
     """Stages of the names that explain most together, in the order of what the whole loses without each."""
     replacements = (
