@@ -50,8 +50,6 @@ class Trait:
     """The elevator alone can show it; else something else must vary."""
     takes: bool = False
     """Its size is what it takes away: more of it is none."""
-    hides: bool = False
-    """Other numbers imitate it where most of the motion is missing: no screening leads to it then."""
     left_open: bool = False
     """Something to measure rather, where the aircraft file does not state it: it comes last."""
     need: Need | None = None

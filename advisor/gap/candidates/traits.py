@@ -55,7 +55,7 @@ TRAITS = {
         said_with={
             "about_trim": "The real elevator ignores the first {half_width_rad_deg:.2f} deg around its trim",
         },
-        imitated_by=("lower elevator effectiveness, at one amplitude", "fly two amplitudes"), hides=True,
+        imitated_by=("lower elevator effectiveness, at one amplitude", "fly two amplitudes"),
     ),
     "transport_delay": Trait(
         "input", steady=True,
@@ -263,6 +263,5 @@ KINKED = frozenset(name for name, trait in TRAITS.items() if trait.kinked)
 BY_NATURE = frozenset(name for name, trait in TRAITS.items() if trait.by_nature)
 OF_ANY_AIRFRAME = frozenset(name for name, trait in TRAITS.items() if trait.of_any_airframe)
 TAKES = frozenset(name for name, trait in TRAITS.items() if trait.takes)
-HIDES = frozenset(name for name, trait in TRAITS.items() if trait.hides)
 LEFT_OPEN = frozenset(name for name, trait in TRAITS.items() if trait.left_open)
 OF_ONE_IMU = tuple(name for name, trait in TRAITS.items() if trait.of_one_imu)

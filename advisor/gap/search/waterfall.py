@@ -19,7 +19,6 @@ from advisor.gap.search.companions import (
 )
 from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, MOST_EFFECTS, Judged
 from advisor.gap.search.ranking import candidates_for, judge
-from advisor.gap.search.restarts import from_every_start
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage, added_in, only, rebuilt
 
@@ -80,8 +79,7 @@ def _leading_on(
 
 def _judged(problem: Problem, fitted: Fitted, held: HeldOut, variants: Sequence[Variant]) -> list[Judged]:
     """What may be added to a model, best first."""
-    candidates = candidates_for(problem, fitted, variants)
-    return from_every_start(problem, fitted, held, judge(problem, fitted, held, candidates), candidates)
+    return judge(problem, fitted, held, candidates_for(problem, fitted, variants))
 
 
 def as_measured(problem: Problem, stages: Sequence[Stage]) -> list[Stage]:
