@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft import Aircraft
+from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, beyond_servo
 from advisor.gap.candidates.variant import Variant
@@ -14,7 +15,9 @@ from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.measure import file_model_of, whole_gap
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.fitting.uncertainty import file_is_off, worth
-from advisor.gap.records.floor import stated_floor
+from advisor.gap.noise.quiet import quiet_rms
+from advisor.gap.noise.stamps import stamp_power
+from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.air import Air, moving_air, one_stands_out
 from advisor.gap.search.speed import at_constant_speed
@@ -26,9 +29,8 @@ from advisor.gap.search.waterfall import (
     reconsidered,
     reduced_to,
 )
-from advisor.gap.unnamed.leftover import placed
-from advisor.gap.unnamed.remainder import of_the_input
-from advisor.gap.unnamed.search import scene_of, without_a_name
+from advisor.gap.unnamed.leftover import left_over, placed
+from advisor.gap.unnamed.swing import swinging
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
 from advisor.gap.unnamed.unnamed_law import Law, unnamed_law
@@ -57,21 +59,30 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     progress("looking at the air", 0.7)
     law, stages, air = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
-    scene = scene_of(problem, as_measured(problem, stages), air)
+    stages = as_measured(problem, stages)
+    first, last, tolerance = stages[0].fitted, stages[-1].fitted, tolerance_of(problem.flights)
     leftover = None if law is None else law.leftover
     if leftover is None:
-        leftover, scene = without_a_name(scene)
-    stages, floor, file_model = scene.stages, scene.floor, scene.file_model
+        leftover = swinging(problem, first, last, tolerance)
+    if leftover is None:
+        leftover = left_over(problem, first, last, tolerance, air is not None)
+    floor = _floor(problem, stages[-1], tolerance)
     # A model without the law that was found bends its air speed to it.
-    true_speed = true_speed_of(problem, stages[-1].fitted) if law is None else None
-    if leftover is not None:
-        leftover = of_the_input(leftover, stages, file_model, floor)
-        if leftover.in_quiet is not None:
-            least = np.maximum(stated_floor(problem.flights), scene.tolerance)
-            floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
-    named = file_model_of(problem, stages[-1].fitted) if len(stages) > 1 else None
-    speed = at_constant_speed(problem, stages[-1].fitted)
-    return Evidence(problem, stages, leftover, scene.air, floor, file_model, named, speed, true_speed)
+    true_speed = true_speed_of(problem, last) if law is None else None
+    if leftover is not None and leftover.in_quiet is not None:
+        least = np.maximum(stated_floor(problem.flights), tolerance)
+        floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
+    file_model = file_model_of(problem, first)
+    named = file_model_of(problem, last) if len(stages) > 1 else None
+    speed = at_constant_speed(problem, last)
+    return Evidence(problem, stages, leftover, air, floor, file_model, named, speed, true_speed)
+
+
+def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:
+    """Noise of each channel where nothing was flown, shape (channels,), no less than ``tolerance``."""
+    # Stamps that jitter are the instruments', too, but show only where something moves.
+    measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
+    return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)
 
 
 def seen_once(problem: Problem, plain: Fitted) -> Evidence:
@@ -80,15 +91,15 @@ def seen_once(problem: Problem, plain: Fitted) -> Evidence:
     The gap is what the aircraft file's derivatives leave where they are wrong, or else what fitted ones do.
     """
     stage = Stage(plain, hold_out(problem, plain), (), None)
-    scene = scene_of(problem, [stage], None)
+    floor, file_model = _floor(problem, stage, tolerance_of(problem.flights)), file_model_of(problem, plain)
     as_filed, held = plain, stage.held_out
     is_off = file_is_off(problem, plain, plainly=False)
-    if problem.believed is not None and scene.file_model is not None and is_off:
+    if problem.believed is not None and file_model is not None and is_off:
         file = replace(plain.point, derivatives=problem.believed)
-        as_filed, held = fit(replace(problem, holds_the_file=True), file, plain.noise), scene.file_model
-    is_gap = whole_gap(held.mean_square, scene.floor) >= VISIBLE
+        as_filed, held = fit(replace(problem, holds_the_file=True), file, plain.noise), file_model
+    is_gap = whole_gap(held.mean_square, floor) >= VISIBLE
     leftover = placed(problem, as_filed) if is_gap else None
-    return Evidence(problem, [stage], leftover, None, scene.floor, scene.file_model, None, None)
+    return Evidence(problem, [stage], leftover, None, floor, file_model, None, None)
 
 
 def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> Variant:
