@@ -21,7 +21,7 @@ from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.air import Air, moving_air, one_stands_out
 from advisor.gap.search.speed import at_constant_speed
-from advisor.gap.search.stage import Stage, added_in
+from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import (
     Progress,
     as_measured,
@@ -57,7 +57,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
     stages, law = _named(problem, baseline, variants, progress)
     progress("looking at the air", 0.7)
-    law, stages, air = _with_the_air(problem, stages, law)
+    stages, air = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
     stages = as_measured(problem, stages)
     first, last, tolerance = stages[0].fitted, stages[-1].fitted, tolerance_of(problem.flights)
@@ -132,31 +132,20 @@ def _named(
     return stages, None if law is None else unnamed_law(problem, stages)
 
 
-def _with_the_air(
-    problem: Problem, stages: list[Stage], law: Law | None
-) -> tuple[Law | None, list[Stage], Air | None]:
-    """A law and nothing that was named, with the air's motion; or, where it is the air's shape, the names."""
-    if law is not None:
-        plain, air = _beside_the_air(problem, reduced_to(problem, stages, []))
-        if not law.may_be(air):
-            # What the law does is no air: with it in the model there may be none.
-            still = air is None or moving_air(problem, law.fitted) is None
-            return law, plain, None if still else air
-    return None, *_beside_the_air(problem, stages)
+def _with_the_air(problem: Problem, stages: list[Stage], law: Law | None) -> tuple[list[Stage], Air | None]:
+    """The names and the air's motion; of a law, the law alone with what air there is beside it."""
+    if law is None:
+        return stages, _air_beside(problem, stages[-1].fitted)
+    plain = reduced_to(problem, stages, [])
+    air = _air_beside(problem, plain[-1].fitted)
+    # What the law does is no air: with it in the model there may be none.
+    still = air is None or moving_air(problem, law.fitted) is None
+    return plain, None if still else air
 
 
-def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage], Air | None]:
-    """The air's motion, and the stages without what is no more than its shape."""
-    last = stages[-1].fitted
+def _air_beside(problem: Problem, last: Fitted) -> Air | None:
+    """The air's motion beside a model; it is not asked for where nothing hints at it."""
     nearly_white = np.all(worth(problem, last.innovations) >= 0.5 * counts(problem))
     if not problem.knows_the_noise and nearly_white and not one_stands_out(problem, last):
-        return stages, None
-    air = moving_air(problem, last)
-    if air is None:
-        return stages, None
-    named = added_in(stages)
-    kept = [judged.effect for judged in named if not air.may_be(judged)]
-    if len(kept) == len(named):
-        return stages, air
-    stages = reduced_to(problem, stages, kept)
-    return stages, moving_air(problem, stages[-1].fitted)
+        return None
+    return moving_air(problem, last)

@@ -12,7 +12,6 @@ from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.records.prepare import prepare
-from advisor.gap.search.air import Air
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.ranking import evened
 from advisor.gap.search.score import addition, predict_alike
@@ -87,24 +86,6 @@ def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain
     assert not replace(plain, removed=2.0 * judged.least).worth_naming
     assert not replace(plain, sigmas=4.0).worth_naming
     assert not replace(plain, witness=2).worth_naming
-
-
-def test_beside_turbulence_that_explains_far_more_only_what_is_plain_is_not_its_shape(late):
-    *_, judged = late
-    strong = Air(0.01, 1000.0, False, 1, 0.02, 0.0, (), np.zeros(4), (), np.zeros(4), 100.0)
-    thrust = replace(judged.variant, effect="thrust_moment")
-    plain = replace(judged, variant=thrust, gain=18.0, removed=20.0 * judged.least, belief=0.0)
-    assert not strong.may_be(plain)
-    assert strong.may_be(replace(plain, gain=12.0))
-    assert strong.may_be(replace(plain, removed=5.0 * judged.least))
-    assert strong.may_be(replace(plain, sigmas=4.0))
-    assert replace(strong, gust=True).may_be(plain)
-    # Gusts meet the vane before the wing: the accelerometers seem late.
-    late_by_the_gusts = replace(plain, variant=judged.variant, gain=40.0)
-    assert strong.may_be(late_by_the_gusts)
-    certain = replace(late_by_the_gusts, gain=60.0)
-    assert not strong.may_be(certain)
-    assert strong.may_be(replace(certain, sigmas=4.0))
 
 
 def test_predictions_are_alike_where_they_differ_by_less_than_any_description_errs(late):

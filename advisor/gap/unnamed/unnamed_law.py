@@ -14,7 +14,6 @@ from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
-from advisor.gap.search.air import Air
 from advisor.gap.search.merit import CERTAIN, Judged
 from advisor.gap.search.score import (
     addition,
@@ -58,8 +57,6 @@ _BEYOND_DOUBT, _OF_WHAT_NAMES_LEAVE = 50.0, 0.5
 explain more together need be sought: of 50 laws of the truth that were found first, all stayed."""
 _MISSING = 0.03
 """Share of some channel's peak that names leave beyond the noise where most of the motion is another."""
-_OF_A_GUST, _OF_TURBULENCE = 0.2, 0.05
-"""Share of the log likelihood that moving air brings alone, below which a law is a part of what that does."""
 
 
 @dataclass(frozen=True)
@@ -72,14 +69,6 @@ class Law:
     gain: float
     is_beyond_doubt: bool
     """Likelier than all that was named by far, of which it leaves a part: no other names come near it."""
-
-    def may_be(self, air: Air | None) -> bool:
-        """Whether air that moves explains so much more that the law is no more than its shape.
-
-        Laws of the truth bring half of what the air would without them, and more; a likeness of the truth in
-        turbulence a fifteenth.
-        """
-        return air is not None and self.gain < (_OF_A_GUST if air.gust else _OF_TURBULENCE) * air.gain
 
 
 def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:

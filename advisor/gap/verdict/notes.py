@@ -36,7 +36,7 @@ def notes_of(
         _command(e),
         *_of_the_speed(e, aircraft),
         *_of_a_constant_speed(e, verdict),
-        *_of_the_unexplained(e, verdict),
+        *_of_the_unexplained(e),
         *_of_single_witnesses(e),
         *_of_the_air(e),
         *_of_the_file(aircraft, nobodys_fault),
@@ -99,11 +99,9 @@ def _without_air_speed(flights: Flights, is_known: bool) -> str:
     return f"No air speed in the log: {flights.reference_m_s:.1f} m/s {level}, {whence}{differs}; {later}."
 
 
-def _of_the_unexplained(e: Evidence, verdict: Verdict) -> Iterator[str]:
+def _of_the_unexplained(e: Evidence) -> Iterator[str]:
     if e.leftover is not None and e.leftover.note:
         yield f"Unexplained {place(e.leftover.block)}: {e.leftover.note}"
-    if e.leftover is not None and verdict == "parameters":
-        yield f"Beside the wrong numbers something small {place(e.leftover.block)} stays unexplained."
 
 
 def _of_single_witnesses(e: Evidence) -> Iterator[str]:
