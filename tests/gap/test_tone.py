@@ -80,30 +80,6 @@ def test_an_engine_that_beats_is_unknown_in_the_moment_and_no_noise(gust_std):
     assert found.gap.before > VISIBLE
 
 
-def test_fuel_that_the_stick_sets_swinging_is_a_moment_and_no_servo_that_hunts():
-    found = diagnose(fly(Setup(maneuvers=6, switches={"slosh": 0.12}, seed=39)), Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "moment_equation")
-    assert any("Once set off, it swings" in note for note in found.notes)
-
-
-@pytest.mark.parametrize("gust_std", [0.0, 0.1])
-def test_a_little_fuel_is_known_by_what_pitching_does_to_it(gust_std):
-    """So little that a noise with a memory, or moving air, describes most of it."""
-    sloshing = fly(Setup(maneuvers=6, switches={"slosh": 0.008}, gust_std=gust_std, seed=39))
-    found = diagnose(sloshing, Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "moment_equation")
-    assert any("Once set off, it swings, 0.9" in note for note in found.notes)
-
-
-@pytest.mark.parametrize("gust_std", [0.0, pytest.param(0.1, marks=pytest.mark.study)])
-def test_a_large_tank_swings_slowly(gust_std):
-    slow = {"slosh": 0.03, "slosh_hz": 0.45}
-    sloshing = fly(Setup(maneuvers=6, switches=slow, gust_std=gust_std, seed=39))
-    found = diagnose(sloshing, Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "moment_equation")
-    assert any("Once set off, it swings, 0.4" in note for note in found.notes)
-
-
 def test_what_swung_before_the_stick_moved_was_not_set_off_by_it():
     found = diagnose(fly(Setup(maneuvers=6, switches={"beat": 0.01, "beat_hz": 0.9}, seed=42)), Aircraft())
     assert found.verdict == "unknown"
@@ -128,8 +104,3 @@ def test_a_sensor_that_shakes_is_unknown_in_that_sensor(channel, amplitude, bloc
     found = diagnose(shaken(channel, amplitude), Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == block
-
-
-def test_an_accelerometer_that_an_engine_shakes_no_louder_than_its_noise_is_nothing():
-    found = diagnose(shaken("a_z", 0.15), Aircraft())
-    assert found.verdict == "none"
