@@ -30,6 +30,7 @@ from advisor.gap.search.waterfall import (
     reduced_to,
 )
 from advisor.gap.unnamed.leftover import left_over, placed
+from advisor.gap.unnamed.remainder import only_resemble
 from advisor.gap.unnamed.swing import swinging
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
@@ -60,6 +61,9 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     stages, air = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
     stages = as_measured(problem, stages)
+    if air is not None and only_resemble(stages):
+        stages = reduced_to(problem, stages, [])
+        air = moving_air(problem, stages[0].fitted)
     first, last, tolerance = stages[0].fitted, stages[-1].fitted, tolerance_of(problem.flights)
     leftover = None if law is None else law.leftover
     if leftover is None:

@@ -16,18 +16,13 @@ from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
 from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.unnamed.remainder import removed_beyond_air
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.yardsticks import yardsticks
 from advisor.gravity import GRAVITY_M_S2
 
 _UNCHANGED = 0.1
 """Share of the change of the derivatives that a manoeuvre may have and count as flown before it."""
-
-_OF_A_RIGHT_MODEL = 2.5
-"""What each of its numbers adds to the squared innovations of manoeuvres kept out, together, in those of one
-sample: they are fitted to two thirds, of a motion that bends a little (1 to 7 in 25 flights) ..."""
-_AT_MOST = 0.3
-"""... but that share of what is there without the names: the rest is something."""
 
 
 def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
@@ -89,18 +84,9 @@ def _by_numbers(e: Evidence) -> float | None:
 
 
 def _by_effects(e: Evidence) -> float | None:
-    """Share of what the air does not explain that names take away, per cent, on manoeuvres kept out.
-
-    Measured in the innovations, which are freed of the air, beyond what a right model leaves there for its
-    numbers being those of the other manoeuvres. None where that is everything.
-    """
-    last = e.stages[-1]
-    noise, samples = last.fitted.noise**2, sum(map(len, last.fitted.innovations))
-    was, now = (float(np.mean(s.held_out.innovation_square / noise)) - 1.0 for s in (e.stages[0], last))
-    if was <= 1e-9:
-        return None
-    right = min(_OF_A_RIGHT_MODEL * len(last.fitted.point.shared) / samples, _AT_MOST * was)
-    return float(np.clip(100.0 * (1.0 - max(now - right, 0.0) / (was - right)), 0.0, 100.0))
+    """Shrink of the innovations, per cent; see ``Shrink``."""
+    removed = removed_beyond_air(e.stages)
+    return None if removed is None else float(np.clip(100.0 * removed, 0.0, 100.0))
 
 
 def waterfall_of(
