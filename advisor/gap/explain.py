@@ -25,9 +25,10 @@ from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import (
     Progress,
     as_measured,
+    in_full,
     one_after_another,
-    reconsidered,
     reduced_to,
+    settled,
 )
 from advisor.gap.unnamed.leftover import left_over, placed
 from advisor.gap.unnamed.remainder import only_resemble
@@ -123,17 +124,10 @@ def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> 
 def _named(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
 ) -> tuple[list[Stage], Law | None]:
-    """The model built up, and the law without a name that explains more than all of its names.
-
-    The law is sought beside the first names: those that are found when they are reconsidered explain more,
-    and beside a law beyond doubt none need be.
-    """
+    """The model built up, and the law without a name that explains more than all of its names, if any."""
     stages = one_after_another(problem, baseline, variants, progress)
     law = unnamed_law(problem, stages)
-    if law is not None and law.is_beyond_doubt:
-        return stages, law
-    stages = reconsidered(problem, stages, variants)
-    return stages, None if law is None else unnamed_law(problem, stages)
+    return (in_full(problem, settled(problem, stages)) if law is None else stages), law
 
 
 def _with_the_air(problem: Problem, stages: list[Stage], law: Law | None) -> tuple[list[Stage], Air | None]:

@@ -9,14 +9,6 @@ from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import shared_std, worth
-from advisor.gap.search.by_the_file import by_the_file
-from advisor.gap.search.companions import (
-    one_early,
-    one_for_another,
-    one_number_for_ice,
-    other_description,
-    two_in_place_of_one,
-)
 from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, MOST_EFFECTS, Judged
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
@@ -27,17 +19,6 @@ _OPEN = 0.1
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share done, 0 to 1."""
-
-
-def reconsidered(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
-    """Stages of the names that explain most together, in the order of what the whole loses without each."""
-    replacements = (
-        other_description, one_for_another, two_in_place_of_one, one_early,
-        one_number_for_ice, by_the_file,
-    )  # fmt: skip
-    for better in replacements:
-        stages = better(problem, stages, variants)
-    return in_full(problem, settled(problem, stages))
 
 
 def one_after_another(

@@ -11,7 +11,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
-from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
+from advisor.gap.fitting.holdout import HeldOut, hold_out
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
 from advisor.gap.search.merit import CERTAIN, Judged
@@ -27,7 +27,6 @@ from advisor.gap.search.screen import Screen, penalty
 from advisor.gap.search.stage import Stage, added_in
 from advisor.gap.unnamed.laws import PLAIN, RINGING, laws_for, said
 from advisor.gap.unnamed.leftover import Leftover
-from advisor.gap.unnamed.stops import SURFACE_STOP
 
 _WORTH_A_FIT = 0.2
 """Share of the likeliest law's gain in the screening from which on another is fitted, too."""
@@ -41,9 +40,6 @@ gyro that feels acceleration, and a propeller that beats a little like a surface
 _IN_MOST = 0.6
 """Share of the manoeuvres that any law leaves less of: what holds in fewer is no law but a gust, or a fault
 that comes and goes."""
-_LITTLE = 0.004
-"""Change, beside a channel's peak, below which a law is not worth a word: what has a name and is too small
-for it is taken for one."""
 _SEVERAL = 2
 """Names that together imitate a law."""
 _BESIDE = 0.5
@@ -51,10 +47,6 @@ _BESIDE = 0.5
 certain is enough. And they must change that share of what the law removes: a speed that is off has
 side effects."""
 
-
-_BEYOND_DOUBT, _OF_WHAT_NAMES_LEAVE = 50.0, 0.5
-"""By how much a law beats what was named, and what it leaves of that, beside the noise, if no names that
-explain more together need be sought: of 50 laws of the truth that were found first, all stayed."""
 _MISSING = 0.03
 """Share of some channel's peak that names leave beyond the noise where most of the motion is another."""
 
@@ -66,9 +58,6 @@ class Law:
     leftover: Leftover
     fitted: Fitted
     """The plain model with the law."""
-    gain: float
-    is_beyond_doubt: bool
-    """Likelier than all that was named by far, of which it leaves a part: no other names come near it."""
 
 
 def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
@@ -100,17 +89,16 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     # What one sample is worth depends on the fit that says so: both are held against the same.
     disputed = stages[-1].disputed
     named = max(_gain_of_all(problem, stages, independent), 0.0 if disputed is None else disputed.gain)
-    is_stop = law.effect == SURFACE_STOP and _begins_beyond_the_trim(stages)
-    if not bent.worth_naming or bent.gain < max(CERTAIN, named + (-_LIKELIER if is_stop else _LIKELIER)):
+    if not bent.worth_naming or bent.gain < max(CERTAIN, named + _LIKELIER):
         return None
     after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
-    if np.mean(after < before) < _IN_MOST or not _shows(problem, held, bent.held_out):
+    if np.mean(after < before) < _IN_MOST:
         return None
     alike = difference(problem, stages[-1].held_out, bent.held_out) < bent.least
-    if alike and not is_stop and len(added_in(stages)) < _SEVERAL:
+    if alike and len(added_in(stages)) < _SEVERAL:
         # Next to the same motion as what was named: one name stays, several in concert are no likelier.
         return None
-    if len(stages) > 1 and not is_stop and _is_another_matter(problem, stages, bent, independent):
+    if len(stages) > 1 and _is_another_matter(problem, stages, bent, independent):
         return None
     left = bent.held_out.mean_square / held.mean_square
     if law.effect in PLAIN and np.min(left) > _LEAVES:
@@ -119,28 +107,8 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     rivals = {j.block: _share(j, bent) for j in reversed(stages[0].considered)}
     ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
     share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))
-    names_leave, leaves = (
-        float(np.mean(h.innovation_square / fitted.noise**2)) - 1.0
-        for h in (stages[-1].held_out, bent.held_out)
-    )
-    sure = bent.gain > named + _BEYOND_DOUBT and leaves < _OF_WHAT_NAMES_LEAVE * names_leave
     leftover = Leftover(block, share, ((block, 1.0), *ranking), note=said(bent))
-    return Law(leftover, fitted, bent.gain, sure)
-
-
-def _shows(problem: Problem, before: HeldOut, after: HeldOut) -> bool:
-    """Whether a law changes some channel of some manoeuvre by more than any simulator is good for."""
-    changes = [a - b for a, b in zip(before.left, after.left, strict=True)]
-    return bool(np.any(np.sqrt(mean_squares(problem, changes)) > _LITTLE * problem.flights.peaks))
-
-
-def _begins_beyond_the_trim(stages: list[Stage]) -> bool:
-    """Whether the one name is a dead band that no trim lies in: its far edge is a guess, and it a stop."""
-    named = added_in(stages)
-    if [judged.effect for judged in named] != ["actuator_deadband"]:
-        return False
-    half_width, neutral = named[0].value[:2]
-    return bool(abs(neutral) > half_width)
+    return Law(leftover, fitted)
 
 
 def _gain_of_all(problem: Problem, stages: list[Stage], independent: FloatArray) -> float:
