@@ -164,14 +164,9 @@ def _command(e: Evidence) -> str:
     )
 
 
-def left_out(maneuvers: Sequence[Maneuver], torn: int | None) -> tuple[str, ...]:
-    """Which manoeuvres were not used, and why; ``torn`` is the one in which a change came."""
-    why = [
-        f"manoeuvre {m.number}: "
-        + ("the change came while it was flown" if m.number == torn else why_left_out(m))
-        for m in maneuvers
-    ]
-    return tuple(f"Left out: {reason}." for reason in why)
+def left_out(maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
+    """Which manoeuvres were not used, and why."""
+    return tuple(f"Left out: manoeuvre {m.number}: {why_left_out(m)}." for m in maneuvers)
 
 
 def _listed(effects: Sequence[str]) -> str:
