@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.ablation.corpus import Corpus, right
-from benchmarks.ablation.instrument import ROOM, is_constant, rules_in
+from benchmarks.ablation.instrument import ROOM, is_constant, module_files, rules_in
 from benchmarks.ablation.tally import Count, Tally
 
 _HEAD = (
@@ -26,13 +26,14 @@ class Size:
 
 
 def sizes() -> dict[str, Size]:
-    """Size of every rule of ``advisor.gap``, by name."""
+    """Size of every rule of ``advisor.gap``, by name; of one that says yes or no, by both forced answers."""
     found = {}
-    for path in ROOM.rglob("*.py"):
+    for path in module_files():
         tree = ast.parse(path.read_text(encoding="utf-8"))
         module = path.relative_to(ROOM).with_suffix("").as_posix()
-        for name, function, _ in rules_in(tree):
-            found[f"{module}:{name}"] = _size(tree, function)
+        for name, function, kind in rules_in(tree):
+            for forced in (" = False", " = True") if kind == "bool" else ("",):
+                found[f"{module}:{name}{forced}"] = _size(tree, function)
     return found
 
 
@@ -75,11 +76,12 @@ def table(corpus: Corpus, raw: Path, note: str) -> str:
 
 
 def _rows(counts: dict[str, Count], answered: int) -> Iterator[str]:
-    """Rules that were taken out, those with the fewest flips first."""
+    """Rules that were taken out, or never spoke; those with the fewest flips first."""
     known = sizes()
-    tried = [(rule, count) for rule, count in counts.items() if count.tried]
-    for rule, count in sorted(tried, key=lambda pair: (pair[1].per_thousand(answered), pair[0])):
-        size = known.get(rule.rpartition(" = ")[0] or rule, Size(0, 0))
+    silent = {rule: Count() for rule in known if rule not in counts and not rule.endswith(" = True")}
+    shown = silent | {rule: count for rule, count in counts.items() if count.tried}
+    for rule, count in sorted(shown.items(), key=lambda pair: (pair[1].per_thousand(answered), pair[0])):
+        size = known.get(rule, Size(0, 0))
         yield (
             f"| `{rule}` | {size.lines} | {size.constants} | {count.spoke} | {count.tried} | {count.flips} "
             f"| {count.per_thousand(answered):.1f} | {count.worse} | {count.better} |"
