@@ -30,7 +30,7 @@ from advisor.gap.search.waterfall import (
     reduced_to,
     settled,
 )
-from advisor.gap.unnamed.leftover import left_over, placed
+from advisor.gap.unnamed.leftover import Leftover, left_over, placed
 from advisor.gap.unnamed.remainder import only_resemble
 from advisor.gap.unnamed.swing import swinging
 from advisor.gap.unnamed.tone import ringing_hz
@@ -68,9 +68,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     first, last, tolerance = stages[0].fitted, stages[-1].fitted, tolerance_of(problem.flights)
     leftover = None if law is None else law.leftover
     if leftover is None:
-        leftover = swinging(problem, first, last, tolerance)
-    if leftover is None:
-        leftover = left_over(problem, first, last, tolerance, air is not None)
+        leftover = _without_a_name(problem, stages, tolerance, air is not None)
     floor = _floor(problem, stages[-1], tolerance)
     # A model without the law that was found bends its air speed to it.
     true_speed = true_speed_of(problem, last) if law is None else None
@@ -81,6 +79,22 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     named = file_model_of(problem, last) if len(stages) > 1 else None
     speed = at_constant_speed(problem, last)
     return Evidence(problem, stages, leftover, air, floor, file_model, named, speed, true_speed)
+
+
+def _without_a_name(
+    problem: Problem, stages: Sequence[Stage], tolerance: FloatArray, moving_air: bool
+) -> Leftover | None:
+    """What swings by itself, or what the last model leaves otherwise. ``tolerance`` as in ``left_over``."""
+    first, last = stages[0].fitted, stages[-1].fitted
+    found = swinging(problem, first, last, tolerance)
+    if found is not None:
+        return found
+    found = left_over(problem, first, last, tolerance, moving_air)
+    slight = None if found is None else stages[-1].slight_in(found.block)
+    if slight is None:
+        return found
+    # A cause that is known, and below its physical minimum, leaves nothing without a name.
+    return left_over(problem, first, slight.fitted, tolerance, moving_air)
 
 
 def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:

@@ -174,24 +174,6 @@ def test_what_every_instrument_has_is_not_unknown_where_it_shows_beside_small_mo
     assert found.verdict == "none"
 
 
-def test_beside_another_name_four_numbers_give_way_to_one_that_does_as_well():
-    """Ice takes up what an arm that is not yet in the model does to the motion."""
-    course = (0.0, 0.0, 0.0, 0.0, 0.4, 0.4)
-    both = Setup(maneuvers=6, noise=0.004, cg_course=course, switches={"acc_arm": 0.4}, seed=68)
-    found = diagnose(fly(both), Aircraft())
-    assert {c.effect for c in found.causes if c.present} == {"cg_shift", "accelerometer_offset"}
-
-
-@pytest.mark.parametrize("seed", [72, pytest.param(73, marks=pytest.mark.study)])
-def test_a_late_vane_that_reads_low_is_no_vane_far_ahead(seed):
-    """One place of the vane describes both but for a rest that is too small for a name."""
-    both = Setup(
-        airframe=LIGHT_AIRCRAFT, alpha_scale=-0.1, skew={"alpha": 0.07}, noise=0.03, maneuvers=6, seed=seed
-    )
-    found = diagnose(fly(both), Aircraft())
-    assert {c.effect for c in found.causes if c.present} == {"alpha_skew", "alpha_scale"}
-
-
 def gained_by_a_gyros_scale(thrust_arm):
     """Of a gyro that reads 6 % too much, beside thrust that moved in one manoeuvre only, as ``gain``."""
     flown = Setup(

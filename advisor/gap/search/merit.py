@@ -155,6 +155,11 @@ class Judged:
         return bool(np.any(near)) and not self.variant.one_sided
 
     @property
+    def large_enough(self) -> bool:
+        """At or above the physical minimum."""
+        return size_of(self.variant, self.value) >= self.least_size
+
+    @property
     def least_size(self) -> float:
         """The physical minimum; stamps that jitter hide no time that is plain all the same."""
         plain = self.gain >= BEYOND_DOUBT and self.removed >= _SEEN_CHANGE * self.least

@@ -7,7 +7,7 @@ from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import worth
-from advisor.gap.search.merit import Judged
+from advisor.gap.search.merit import BEYOND_DOUBT, Judged
 from advisor.gap.search.score import addition
 
 
@@ -28,6 +28,11 @@ class Stage:
         """The likeliest candidate, where nothing was added and manoeuvres kept out alone refuse it."""
         first = next(iter(self.considered), None)
         return first if first is not None and self.added is None and first.is_disputed else None
+
+    def slight_in(self, block: str) -> Judged | None:
+        """What is beyond doubt in a block, and too small for a name only."""
+        found = (j for j in self.considered if j.block == block and j.gain >= BEYOND_DOUBT)
+        return next((j for j in found if not j.large_enough and not j.at_its_bounds), None)
 
 
 def added_in(stages: Sequence[Stage]) -> list[Judged]:

@@ -11,7 +11,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
-from advisor.gap.fitting.holdout import HeldOut, hold_out
+from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
 from advisor.gap.search.merit import CERTAIN, Judged
@@ -40,6 +40,9 @@ gyro that feels acceleration, and a propeller that beats a little like a surface
 _IN_MOST = 0.6
 """Share of the manoeuvres that any law leaves less of: what holds in fewer is no law but a gust, or a fault
 that comes and goes."""
+_LITTLE = 0.004
+"""Change, beside a channel's peak, below which a law is not worth a word: what has a name and is too small
+for it is taken for one."""
 _SEVERAL = 2
 """Names that together imitate a law."""
 _BESIDE = 0.5
@@ -92,7 +95,7 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     if not bent.worth_naming or bent.gain < max(CERTAIN, named + _LIKELIER):
         return None
     after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
-    if np.mean(after < before) < _IN_MOST:
+    if np.mean(after < before) < _IN_MOST or not _shows(problem, held, bent.held_out):
         return None
     alike = difference(problem, stages[-1].held_out, bent.held_out) < bent.least
     if alike and len(added_in(stages)) < _SEVERAL:
@@ -109,6 +112,12 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))
     leftover = Leftover(block, share, ((block, 1.0), *ranking), note=said(bent))
     return Law(leftover, fitted)
+
+
+def _shows(problem: Problem, before: HeldOut, after: HeldOut) -> bool:
+    """Whether a law changes some channel of some manoeuvre by more than any simulator is good for."""
+    changes = [a - b for a, b in zip(before.left, after.left, strict=True)]
+    return bool(np.any(np.sqrt(mean_squares(problem, changes)) > _LITTLE * problem.flights.peaks))
 
 
 def _gain_of_all(problem: Problem, stages: list[Stage], independent: FloatArray) -> float:
