@@ -16,9 +16,12 @@ from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import at_another_speed, fit_baseline
 from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
+from advisor.gap.search.stage import added_in
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.unnamed.leftover import Leftover, of_the_wind
-from advisor.gap.unnamed.wind import wind_shear
+from advisor.gap.unnamed.true_speed import true_over_read, true_speed_of
+from advisor.gap.unnamed.weight import Weight, weight_carried
+from advisor.gap.unnamed.wind import blows_along, wind_shear
 from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
@@ -85,9 +88,15 @@ def _explained(
         aircraft = replace(aircraft, reference_airspeed_m_s=speed)
         flights = prepare(maneuvers, aircraft)
         problem, baseline = at_another_speed(problem, baseline, flights)
+    weight = weight_carried(flown, flights.reference_m_s)
+    over_read = true_over_read(true_speed_of(problem, baseline), weight)
+    if over_read > 1.0:
+        # An indicated air speed changes by less than the accelerometers say.
+        flights = prepare(maneuvers, aircraft, over_read)
+        problem, baseline = at_another_speed(problem, baseline, flights)
     if len(flights) == 1:
         return seen_once(problem, baseline), kinematics
-    return _with_the_wind(explain(problem, baseline, aircraft, progress), flown), kinematics
+    return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
 
 
 def _refuse(flights: Flights) -> None:
@@ -127,12 +136,31 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
     return replace(maneuver, channels=channels)
 
 
-def _with_the_wind(e: Evidence, flown: Sequence[Maneuver]) -> Evidence:
-    """The evidence with wind that changes with height, which air speed and accelerations show."""
-    shear = wind_shear(flown)
-    if shear is None or _feigns_wind(e.leftover):
-        return e
-    return replace(e, shear=shear, leftover=of_the_wind(e.leftover))
+def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver], weight: Weight | None) -> Evidence:
+    """What air speed and accelerometer are off by beside the path, without any aerodynamics."""
+    shear = wind_shear(flown, true_over_read(e.true_speed, weight))
+    of_gusts = shear is not None and shear.is_feigned and e.air is not None
+    if shear is not None and not of_gusts and not _feigns_wind(e.leftover):
+        # Air that moves swings the air speed, too: beside it what is not plain is worth a note, no more.
+        is_there = e.air is None or shear.is_plain
+        e = replace(e, shear=shear, leftover=of_the_wind(e.leftover) if is_there else e.leftover)
+    if e.leftover is not None and e.leftover.block == "force_equation" and blows_along(flown):
+        # A wind that changes is felt as lift that comes and goes.
+        e = replace(e, leftover=of_the_wind(e.leftover))
+    is_off = weight is not None and weight.is_off
+    # What an accelerometer reads wrong looks like a force, too: a name for one is no other explanation.
+    elsewhere = any(j.block != "force_equation" for j in added_in(e.stages))
+    is_scaled = e.true_speed is not None and e.true_speed.is_the_accelerometers(weight)
+    if e.leftover is None and (is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight)):
+        e = replace(e, leftover=Leftover("accelerometer", 1.0, (("accelerometer", 1.0),)))
+    return replace(e, weight=weight if is_off else None)
+
+
+def _reads_another_speed(e: Evidence, weight: Weight | None) -> bool:
+    """Whether air speed and accelerometer are too far apart for any air speed, and nothing else was named."""
+    # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
+    alone = len(e.stages) == 1 and not (e.air is not None and e.air.gust)
+    return alone and e.true_speed is not None and e.true_speed.is_wrong(e.air is not None, weight)
 
 
 def _feigns_wind(leftover: Leftover | None) -> bool:

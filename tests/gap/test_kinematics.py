@@ -13,7 +13,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES
-from advisor.gap.unnamed.wind import wind_shear
+from advisor.gap.unnamed.wind import blows_along, wind_shear
 from advisor.gap.verdict.apart import alpha_bias_cause
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
@@ -192,6 +192,16 @@ def late(maneuver, by_s):
     return replace(maneuver, channels={**maneuver.channels, "airspeed": replace(speed, y=y)})
 
 
+def test_no_wind_changes_by_most_of_its_own_speed_in_a_metre():
+    still = fly(Setup(maneuvers=5, seed=51))
+    assert not wind_shear([blown(m, 0.4) for m in still]).is_feigned
+    steep = [blown(m, 0.7) for m in still]
+    assert wind_shear(steep).is_feigned
+    found = diagnose(steep, Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "air")
+    assert any("more than any wind changes" in note for note in found.notes)
+
+
 @pytest.mark.parametrize("by_s", [0.3, 0.6])
 def test_an_air_speed_that_is_late_is_no_wind_and_hides_none(by_s):
     still = fly(Setup(maneuvers=6, seed=3, speed_change=0.05))
@@ -232,6 +242,19 @@ def test_a_wind_that_plainly_changes_with_height_is_told_from_air_that_moves_bes
     assert diagnose(moving, Aircraft()).causes[0].effect == "turbulence"
     found = diagnose([blown(m, 0.25) for m in moving], Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "air")
+
+
+def test_a_wind_that_all_manoeuvres_agree_on_is_plain_though_the_air_speed_is_rough():
+    rng, rough = np.random.default_rng(3), []
+    for maneuver in fly(Setup(seed=51)):
+        sheared = blown(maneuver, 0.2)
+        speed = sheared.channels["airspeed"]
+        y = speed.y + 0.4 * rng.standard_normal(len(speed.y))
+        rough.append(replace(sheared, channels={**sheared.channels, "airspeed": replace(speed, y=y)}))
+    every, few = wind_shear(rough), wind_shear(rough[:5])
+    assert every.share < 0.25
+    assert every.is_plain
+    assert few is None or not few.is_plain
 
 
 def test_a_rough_beginning_of_the_records_makes_no_air_speed_late():
@@ -278,6 +301,19 @@ def test_a_layer_of_wind_is_told_by_two_manoeuvres_that_cross_its_edge():
         wind = 0.4 * np.clip(np.interp(speed.t, height.t, height.y) - 150.0, -10.0, 10.0)
         sheared.append(replace(m, channels={**m.channels, "airspeed": replace(speed, y=speed.y + wind)}))
     found = wind_shear(sheared)
+    assert found.is_plain
     assert abs(found.gradient_per_s - 0.4) < 0.1
     # One that was flown in it agrees with no other.
     assert wind_shear([m for k, m in enumerate(sheared) if k != 4]) is None
+
+
+def test_air_that_moves_along_the_path_shows_in_the_air_speed_and_a_late_engine_does_not():
+    def gusty(m, size_m_s):
+        speed = m.channels["airspeed"]
+        y = speed.y + size_m_s * np.tanh((speed.t - speed.t[0] - 4.0) / 0.5)
+        return replace(m, channels={**m.channels, "airspeed": replace(speed, y=y)})
+
+    still = fly(Setup(maneuvers=5, thrust_amplitude=0.5, engine_lag_s=0.8, seed=61))
+    assert not blows_along(still)
+    assert not blows_along([gusty(m, 0.2) for m in still])
+    assert blows_along([gusty(m, 2.0) for m in still])

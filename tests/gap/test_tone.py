@@ -104,3 +104,8 @@ def test_a_sensor_that_shakes_is_unknown_in_that_sensor(channel, amplitude, bloc
     found = diagnose(shaken(channel, amplitude), Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == block
+
+
+def test_an_accelerometer_that_an_engine_shakes_no_louder_than_its_noise_is_nothing():
+    found = diagnose(shaken("a_z", 0.15), Aircraft())
+    assert found.verdict == "none"

@@ -10,6 +10,8 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import INDEX
+from advisor.gap.unnamed.true_speed import TrueSpeed
+from advisor.gap.unnamed.weight import Weight
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study
@@ -49,6 +51,15 @@ def test_a_scale_without_a_name_is_no_sum_of_named_effects_even_in_moving_air(ch
 def test_where_a_named_instrument_is_off_no_other_is_suspected():
     found = diagnose(scaled(Setup(maneuvers=6, seed=38), "q", 1.08), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["pitch_rate_scale"]
+
+
+@pytest.mark.parametrize(
+    "setup", [HARD, pytest.param(Setup(seed=6, coloured=0.5, jitter=0.004), marks=pytest.mark.study)]
+)
+def test_an_air_speed_that_is_off_is_not_blamed_on_the_aircraft_and_may_be_the_accelerometer(setup):
+    found = diagnose(scaled(setup, "airspeed", 1.08), Aircraft())
+    assert found.verdict == "unknown"
+    assert any("accelerometer that reads as much too low looks the same" in note for note in found.notes)
 
 
 @pytest.mark.parametrize(
@@ -202,6 +213,26 @@ def test_damping_that_bends_is_no_sum_of_bent_moments(setup, switches, says):
     assert any(says in note for note in found.notes)
 
 
+@pytest.mark.study
+def test_an_accelerometer_that_does_not_carry_the_weight_is_unknown_where_the_dynamics_tell_nothing():
+    stormy = Setup(gust_std=2.0, coloured=0.5, jitter=0.004, seed=37)
+    found = diagnose(scaled(stormy, "a_z", 0.78), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "accelerometer")
+    assert any("reads 0.78" in note for note in found.notes)
+    sound = diagnose(fly(stormy), Aircraft())
+    assert sound.where.block != "accelerometer"
+
+
 def test_an_accelerometers_zero_that_is_off_by_a_common_amount_is_no_cause():
     found = diagnose(with_reading(Setup(maneuvers=6, seed=5), "a_z", lambda y: y + 0.6), Aircraft())
     assert found.verdict == "none"
+
+
+@pytest.mark.parametrize(
+    ("scale", "share", "scaled_it_is"), [(-0.19, 0.8, True), (-0.19, 1.0, False), (0.02, 0.8, False)]
+)
+def test_an_accelerometer_that_misses_as_much_of_the_weight_as_of_the_path_is_scaled(
+    scale, share, scaled_it_is
+):
+    assert TrueSpeed(scale, 0.003).is_the_accelerometers(Weight(share, 0.004)) is scaled_it_is
+    assert not TrueSpeed(scale, 0.003).is_the_accelerometers(None)

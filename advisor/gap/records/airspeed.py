@@ -35,17 +35,19 @@ def measures_speed(maneuver: Maneuver) -> bool:
     return len(speed) > 1 and float(np.min(speed.y)) > SLOWEST_FLIGHT_M_S
 
 
-def airspeed_on(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
+def airspeed_on(
+    grid: FloatArray, maneuver: Maneuver, start_s: float, true_over_read: float = 1.0
+) -> FloatArray:
     """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), as it is read.
 
-    Accelerometers show how it changes.
+    Accelerometers show how the true one changes: ``true_over_read`` times as much as one that is indicated.
     """
     found = maneuver.channels
     t, y = found["airspeed"].t - start_s, found["airspeed"].y
     as_read = smooth(np.interp(grid, t, y), _READ_OVER_S)
     if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
         return as_read
-    shape = integrated(grid, speed_rate_at(grid + start_s, found))
+    shape = integrated(grid, speed_rate_at(grid + start_s, found)) / true_over_read
     inside = (t >= grid[0]) & (t <= grid[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return as_read

@@ -26,8 +26,11 @@ from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.place import ASSUMED_M_S
 
 
-def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Flights:
-    """Make the manoeuvres ready; those that cannot be used are left out (``usable_of``)."""
+def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float = 1.0) -> Flights:
+    """Make the manoeuvres ready; those that cannot be used are left out (``usable_of``).
+
+    ``true_over_read``: how many times the air speed that is read the true one is, where that is known.
+    """
     usable = usable_of(maneuvers)
     speeds = [m.channels["airspeed"].y for m in usable if measures_speed(m)]
     measured = bool(usable) and len(speeds) == len(usable)
@@ -38,7 +41,9 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Flights:
         reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S
         shown = speeds_about(usable, reference)
     levels = [None] * len(usable) if shown is None else [float(v) for v in shown.before_m_s]
-    flights = _about_their_mean(_ready(m, reference, level) for m, level in zip(usable, levels, strict=True))
+    flights = _about_their_mean(
+        _ready(m, reference, level, true_over_read) for m, level in zip(usable, levels, strict=True)
+    )
     if shown is None:
         moves = _largest_departure(flights)
         flights = _with_doubt(flights, usable)
@@ -108,7 +113,7 @@ def _largest_departure(flights: Sequence[Flight]) -> float:
     return float(np.max(np.abs(speeds / np.mean(speeds) - 1.0)))
 
 
-def _ready(m: Maneuver, reference: float, level: float | None) -> Flight:
+def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: float) -> Flight:
     """On the grid; ``level`` is its speed in m/s before the first step, None where the log has the speed."""
     start, end = recorded(m)
     n = int(np.ceil((end - start) / STEP_S)) + 1
@@ -121,7 +126,11 @@ def _ready(m: Maneuver, reference: float, level: float | None) -> Flight:
             return np.full(n, otherwise)
         return np.asarray(np.interp(grid, channel.t - start, channel.y))
 
-    speed = airspeed_on(grid, m, start) if level is None else speed_without_instrument(grid, m, start, level)
+    speed = (
+        airspeed_on(grid, m, start, true_over_read)
+        if level is None
+        else speed_without_instrument(grid, m, start, level)
+    )
     theta_at = on_grid("theta", 0.0)
     a_x = smooth(on_grid("a_x", GRAVITY_M_S2 * float(np.sin(theta_at[0]))), 0.05)
     bank = smooth(on_grid("bank", 0.0), 0.1)

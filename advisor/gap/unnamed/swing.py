@@ -15,12 +15,15 @@ from advisor.gap.unnamed.leftover import (
     noise_of,
     ranking_of,
 )
-from advisor.gap.unnamed.tone import tone_in
+from advisor.gap.unnamed.tone import Tone, tone_in
 
 _OF_PEAK_SWINGING = 0.005
 """Share of a channel's peak that a swing of the aircraft must be: no error of a model looks like that."""
 _VISIBLE = 0.05
 """Power of a swing, beside the instruments' noise, from which on there is something to explain."""
+_SHAKEN = 4.0
+"""Power of a swing of the accelerometer alone: an engine shakes every one, and samples make a slow swing of
+that."""
 
 
 def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArray) -> Leftover | None:
@@ -34,7 +37,7 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArra
     if not np.any(tone.power > np.maximum(least * problem.flights.peaks, tolerance) ** 2):
         return None
     beside = tone.power / instruments**2
-    if float(np.mean(beside)) < _VISIBLE:
+    if float(np.mean(beside)) < _VISIBLE or (_may_be_shaken(tone) and np.max(beside) < _SHAKEN):
         return None
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
@@ -42,3 +45,10 @@ def swinging(problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArra
         return None
     note = f"It swings by itself, {tone.hz:.2g} times a second."
     return Leftover(best.block, best.explained, ranking_of(tone.probes, best.block), tone.power, note)
+
+
+def _may_be_shaken(tone: Tone) -> bool:
+    """Whether a swing is the accelerometer's, or a force's so fast that nothing else feels it."""
+    best = tone.probes[0]
+    accelerometer = next((p.gain for p in tone.probes if p.block == "accelerometer"), 0.0)
+    return best.block in ("accelerometer", "force_equation") and accelerometer > best.gain - LEAST_GAIN

@@ -9,6 +9,7 @@ from advisor.gap.search.air import Air
 from advisor.gap.search.stage import Stage
 from advisor.gap.unnamed.leftover import Leftover
 from advisor.gap.unnamed.true_speed import TrueSpeed
+from advisor.gap.unnamed.weight import Weight
 from advisor.gap.unnamed.wind import Shear
 
 
@@ -33,3 +34,5 @@ class Evidence:
     """By how much the true air speed is off the one in use, where it is worth saying."""
     shear: Shear | None = None
     """Wind that changes with height: it has no name in the catalogue."""
+    weight: Weight | None = None
+    """What the accelerometer reads of the weight, where it is not all of it."""

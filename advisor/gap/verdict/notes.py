@@ -66,9 +66,14 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
         )
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
-        yield f"The wind changed with height, by {per_metre} a metre."
+        if e.shear.is_feigned:
+            yield f"The air speed's error grows by {per_metre} a metre climbed: more than any wind changes."
+        else:
+            yield f"The wind changed with height, by {per_metre} a metre."
     if e.true_speed is not None:
         yield e.true_speed.sentence
+    if e.weight is not None:
+        yield e.weight.sentence
 
 
 def _of_a_constant_speed(e: Evidence, verdict: Verdict) -> Iterator[str]:

@@ -1,0 +1,88 @@
+"""Does the accelerometer carry the weight? Its mean against the path, without any aerodynamics.
+
+Over a manoeuvre a_z = (V (α̇ − q − G) + a_x sin α)/cos α, G = (g/V)(cos α cos θ cos φ + sin α sin θ), as in
+``simulate``. The fit leaves every channel an offset of its own in each manoeuvre; one of more than a seventh
+of the weight is no accelerometer's zero.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import FloatArray
+from advisor.gravity import GRAVITY_M_S2
+
+_NEEDED = ("a_z", "alpha", "theta")
+_LEAST_MANEUVERS = 3
+"""A scatter needs as many."""
+_LEVEL_RAD = 0.26
+"""Bank beyond which the pitch angle's rate is no measure of the pitch rate."""
+_ENDS_S = 0.3
+"""Over which both ends of an angle are averaged."""
+_LEAST = 0.15
+"""Departure from one that no offset of an accelerometer is ..."""
+_SIGMAS = 5.0
+"""... and the standard errors it must have, from the scatter between manoeuvres."""
+
+
+@dataclass(frozen=True)
+class Weight:
+    """What the accelerometer reads of what weight and path demand."""
+
+    share: float
+    std: float
+
+    @property
+    def is_off(self) -> bool:
+        """Whether it is plainly not one, by more than the offset of any accelerometer."""
+        return abs(self.share - 1.0) > max(_LEAST, _SIGMAS * self.std)
+
+    @property
+    def sentence(self) -> str:
+        """For the reader of the diagnosis."""
+        return (
+            f"The accelerometer reads {self.share:.2f} ± {self.std:.2f} of what weight and path demand: "
+            "its scale or its zero is off."
+        )
+
+
+def weight_carried(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> Weight | None:
+    """The share that is read; None where too few manoeuvres tell.
+
+    ``airspeed_m_s`` is taken where none was logged.
+    """
+    pairs = [p for p in (_means(m, airspeed_m_s) for m in maneuvers) if p is not None]
+    if len(pairs) < _LEAST_MANEUVERS:
+        return None
+    read, due = np.array(pairs).T
+    shares = read / due
+    return Weight(float(np.mean(shares)), float(np.std(shares, ddof=1) / np.sqrt(len(shares))))
+
+
+def _means(maneuver: Maneuver, airspeed_m_s: float) -> tuple[float, float] | None:
+    """Mean of a_z as it is read, and as it must be."""
+    channels = maneuver.channels
+    if not all(name in channels and len(channels[name]) > 1 for name in _NEEDED):
+        return None
+    t = channels["a_z"].t
+    length = float(t[-1] - t[0])
+    if length < 4.0 * _ENDS_S:
+        return None
+
+    def on_stamps(name: str, otherwise: float) -> FloatArray:
+        found = channels.get(name)
+        return np.full(len(t), otherwise) if found is None else np.interp(t, found.t, found.y)
+
+    def rate(y: FloatArray) -> float:
+        return float(np.mean(y[t > t[-1] - _ENDS_S]) - np.mean(y[t < t[0] + _ENDS_S])) / (length - _ENDS_S)
+
+    alpha, theta, bank = on_stamps("alpha", 0.0), on_stamps("theta", 0.0), on_stamps("bank", 0.0)
+    if np.max(np.abs(bank)) > _LEVEL_RAD:
+        return None
+    level = np.cos(alpha) * np.cos(theta) * np.cos(bank) + np.sin(alpha) * np.sin(theta)
+    curved = np.mean(on_stamps("airspeed", airspeed_m_s)) * (rate(alpha) - rate(theta))
+    along = np.mean(on_stamps("a_x", 0.0) * np.sin(alpha))
+    due = curved - GRAVITY_M_S2 * float(np.mean(level)) + along
+    return float(np.mean(channels["a_z"].y)), float(due / np.mean(np.cos(alpha)))
