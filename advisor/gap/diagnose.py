@@ -22,7 +22,6 @@ from advisor.gap.unnamed.leftover import Leftover, of_the_wind
 from advisor.gap.unnamed.true_speed import true_over_read, true_speed_of
 from advisor.gap.unnamed.weight import Weight, weight_carried
 from advisor.gap.unnamed.wind import blows_along, wind_shear
-from advisor.gap.verdict.amid import is_told_without, torn_by_a_change
 from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
@@ -60,17 +59,10 @@ def diagnose(
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = [_without_offset(m, offset) for m in maneuvers]
     evidence, kinematics = _explained(maneuvers, aircraft, progress)
-    torn = torn_by_a_change(evidence)
-    if torn is not None:
-        others = _explained([m for m in maneuvers if m.number != torn], aircraft, progress)
-        if is_told_without(evidence, others[0], torn):
-            evidence, kinematics = others
-        else:
-            torn = None
     progress("measuring the gap", 0.9)
     diagnosis = answer(evidence, aircraft, kinematics, holdout)
     used = {flight.number for flight in evidence.problem.flights.flights}
-    missing = left_out([m for m in maneuvers if m.number not in used], torn)
+    missing = left_out([m for m in maneuvers if m.number not in used])
     return replace(diagnosis, notes=(*diagnosis.notes, *missing))
 
 

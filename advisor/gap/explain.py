@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft import Aircraft
+from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, beyond_servo
 from advisor.gap.candidates.variant import Variant
@@ -14,30 +15,24 @@ from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.measure import file_model_of, whole_gap
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.fitting.uncertainty import file_is_off, worth
-from advisor.gap.records.floor import stated_floor
+from advisor.gap.noise.quiet import quiet_rms
+from advisor.gap.noise.stamps import stamp_power
+from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.air import Air, moving_air, one_stands_out
-from advisor.gap.search.command import (
-    is_likelier_held,
-    is_plainer,
-    may_be_held,
-    may_be_linear,
-    may_pay,
-    read_otherwise,
-)
 from advisor.gap.search.speed import at_constant_speed
-from advisor.gap.search.stage import Stage, added_in
+from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import (
     Progress,
     as_measured,
-    build_up,
+    in_full,
     one_after_another,
-    reconsidered,
     reduced_to,
+    settled,
 )
-from advisor.gap.unnamed.leftover import placed
-from advisor.gap.unnamed.remainder import of_the_input
-from advisor.gap.unnamed.search import scene_of, without_a_name
+from advisor.gap.unnamed.leftover import Leftover, left_over, placed
+from advisor.gap.unnamed.remainder import only_resemble
+from advisor.gap.unnamed.swing import swinging
 from advisor.gap.unnamed.tone import ringing_hz
 from advisor.gap.unnamed.true_speed import true_speed_of
 from advisor.gap.unnamed.unnamed_law import Law, unnamed_law
@@ -62,25 +57,51 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     variants = beyond_servo(aircraft, variants_for(problem.flights))
     variants = beyond_known(aircraft.effects, variants)
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
-    problem, stages, law = _named(problem, baseline, variants, progress)
+    stages, law = _named(problem, baseline, variants, progress)
     progress("looking at the air", 0.7)
-    law, stages, air = _with_the_air(problem, stages, law)
+    stages, air = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
-    scene = scene_of(problem, as_measured(problem, stages), air)
+    stages = as_measured(problem, stages)
+    if air is not None and only_resemble(stages):
+        stages = reduced_to(problem, stages, [])
+        air = moving_air(problem, stages[0].fitted)
+    first, last, tolerance = stages[0].fitted, stages[-1].fitted, tolerance_of(problem.flights)
     leftover = None if law is None else law.leftover
     if leftover is None:
-        leftover, scene = without_a_name(scene)
-    stages, floor, file_model = scene.stages, scene.floor, scene.file_model
+        leftover = _without_a_name(problem, stages, tolerance, air is not None)
+    floor = _floor(problem, stages[-1], tolerance)
     # A model without the law that was found bends its air speed to it.
-    true_speed = true_speed_of(problem, stages[-1].fitted) if law is None else None
-    if leftover is not None:
-        leftover = of_the_input(leftover, stages, file_model, floor)
-        if leftover.in_quiet is not None:
-            least = np.maximum(stated_floor(problem.flights), scene.tolerance)
-            floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
-    named = file_model_of(problem, stages[-1].fitted) if len(stages) > 1 else None
-    speed = at_constant_speed(problem, stages[-1].fitted)
-    return Evidence(problem, stages, leftover, scene.air, floor, file_model, named, speed, true_speed)
+    true_speed = true_speed_of(problem, last) if law is None else None
+    if leftover is not None and leftover.in_quiet is not None:
+        least = np.maximum(stated_floor(problem.flights), tolerance)
+        floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
+    file_model = file_model_of(problem, first)
+    named = file_model_of(problem, last) if len(stages) > 1 else None
+    speed = at_constant_speed(problem, last)
+    return Evidence(problem, stages, leftover, air, floor, file_model, named, speed, true_speed)
+
+
+def _without_a_name(
+    problem: Problem, stages: Sequence[Stage], tolerance: FloatArray, moving_air: bool
+) -> Leftover | None:
+    """What swings by itself, or what the last model leaves otherwise. ``tolerance`` as in ``left_over``."""
+    first, last = stages[0].fitted, stages[-1].fitted
+    found = swinging(problem, first, last, tolerance)
+    if found is not None:
+        return found
+    found = left_over(problem, first, last, tolerance, moving_air)
+    slight = None if found is None else stages[-1].slight_in(found.block)
+    if slight is None:
+        return found
+    # A cause that is known, and below its physical minimum, leaves nothing without a name.
+    return left_over(problem, first, slight.fitted, tolerance, moving_air)
+
+
+def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:
+    """Noise of each channel where nothing was flown, shape (channels,), no less than ``tolerance``."""
+    # Stamps that jitter are the instruments', too, but show only where something moves.
+    measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
+    return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)
 
 
 def seen_once(problem: Problem, plain: Fitted) -> Evidence:
@@ -89,15 +110,15 @@ def seen_once(problem: Problem, plain: Fitted) -> Evidence:
     The gap is what the aircraft file's derivatives leave where they are wrong, or else what fitted ones do.
     """
     stage = Stage(plain, hold_out(problem, plain), (), None)
-    scene = scene_of(problem, [stage], None)
+    floor, file_model = _floor(problem, stage, tolerance_of(problem.flights)), file_model_of(problem, plain)
     as_filed, held = plain, stage.held_out
     is_off = file_is_off(problem, plain, plainly=False)
-    if problem.believed is not None and scene.file_model is not None and is_off:
+    if problem.believed is not None and file_model is not None and is_off:
         file = replace(plain.point, derivatives=problem.believed)
-        as_filed, held = fit(replace(problem, holds_the_file=True), file, plain.noise), scene.file_model
-    is_gap = whole_gap(held.mean_square, scene.floor) >= VISIBLE
+        as_filed, held = fit(replace(problem, holds_the_file=True), file, plain.noise), file_model
+    is_gap = whole_gap(held.mean_square, floor) >= VISIBLE
     leftover = placed(problem, as_filed) if is_gap else None
-    return Evidence(problem, [stage], leftover, None, scene.floor, scene.file_model, None, None)
+    return Evidence(problem, [stage], leftover, None, floor, file_model, None, None)
 
 
 def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> Variant:
@@ -116,54 +137,27 @@ def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> 
 
 def _named(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
-) -> tuple[Problem, list[Stage], Law | None]:
-    """The model built up, with the command read the other way where that names the likelier effects.
-
-    Also returned is the law that explains more than all of them. It is sought beside the first names: those
-    that are found when they are reconsidered explain more, and beside a law beyond doubt none need be.
-    """
+) -> tuple[list[Stage], Law | None]:
+    """The model built up, and the law without a name that explains more than all of its names, if any."""
     stages = one_after_another(problem, baseline, variants, progress)
     law = unnamed_law(problem, stages)
-    if law is not None and law.is_beyond_doubt:
-        return problem, stages, law
-    stages = reconsidered(problem, stages, variants)
-    seen = stages[0].rivals | {j.effect for j in added_in(stages)}
-    named = stages[-1].fitted
-    doubtful = may_be_held(problem, named, seen) or may_be_linear(problem, named)
-    if doubtful and may_pay(problem, named, seen):
-        other, plain = read_otherwise(problem, baseline)
-        others = build_up(other, plain, variants, progress)
-        likelier = is_plainer if problem.held else is_likelier_held
-        if likelier(problem, named, other, others[-1].fitted):
-            return other, others, unnamed_law(other, others)
-    return problem, stages, None if law is None else unnamed_law(problem, stages)
+    return (in_full(problem, settled(problem, stages)) if law is None else stages), law
 
 
-def _with_the_air(
-    problem: Problem, stages: list[Stage], law: Law | None
-) -> tuple[Law | None, list[Stage], Air | None]:
-    """A law and nothing that was named, with the air's motion; or, where it is the air's shape, the names."""
-    if law is not None:
-        plain, air = _beside_the_air(problem, reduced_to(problem, stages, []))
-        if not law.may_be(air):
-            # What the law does is no air: with it in the model there may be none.
-            still = air is None or moving_air(problem, law.fitted) is None
-            return law, plain, None if still else air
-    return None, *_beside_the_air(problem, stages)
+def _with_the_air(problem: Problem, stages: list[Stage], law: Law | None) -> tuple[list[Stage], Air | None]:
+    """The names and the air's motion; of a law, the law alone with what air there is beside it."""
+    if law is None:
+        return stages, _air_beside(problem, stages[-1].fitted)
+    plain = reduced_to(problem, stages, [])
+    air = _air_beside(problem, plain[-1].fitted)
+    # What the law does is no air: with it in the model there may be none.
+    still = air is None or moving_air(problem, law.fitted) is None
+    return plain, None if still else air
 
 
-def _beside_the_air(problem: Problem, stages: list[Stage]) -> tuple[list[Stage], Air | None]:
-    """The air's motion, and the stages without what is no more than its shape."""
-    last = stages[-1].fitted
+def _air_beside(problem: Problem, last: Fitted) -> Air | None:
+    """The air's motion beside a model; it is not asked for where nothing hints at it."""
     nearly_white = np.all(worth(problem, last.innovations) >= 0.5 * counts(problem))
     if not problem.knows_the_noise and nearly_white and not one_stands_out(problem, last):
-        return stages, None
-    air = moving_air(problem, last)
-    if air is None:
-        return stages, None
-    named = added_in(stages)
-    kept = [judged.effect for judged in named if not air.may_be(judged)]
-    if len(kept) == len(named):
-        return stages, air
-    stages = reduced_to(problem, stages, kept)
-    return stages, moving_air(problem, stages[-1].fitted)
+        return None
+    return moving_air(problem, last)

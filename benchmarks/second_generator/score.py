@@ -152,7 +152,8 @@ def _score_outside(table: Table, case: Document, answer: Document) -> bool:
     return unknown and block
 
 
-def _score_case(table: Table, name: str, case: Document, answer: Document) -> None:
+def score_case(table: Table, name: str, case: Document, answer: Document) -> bool:
+    """Count one case in the table; return whether its answer is right."""
     kind = case["class"]
     table.add("usable", bool(answer.get("usable", False)))
     if kind == "one":
@@ -172,6 +173,7 @@ def _score_case(table: Table, name: str, case: Document, answer: Document) -> No
         good = _score_outside(table, case, answer)
     if not good:
         table.wrong.append(_wrong_line(name, case, answer))
+    return good
 
 
 def _wrong_line(name: str, case: Document, answer: Document) -> str:
@@ -209,7 +211,7 @@ def scored(folder: Path, answers: Path) -> Scored:
     given = {str(line["case"]): line for line in lines}
     table = Table()
     for name, case in cases.items():
-        _score_case(table, name, case, given.get(name, {}).get("answer") or {})
+        score_case(table, name, case, given.get(name, {}).get("answer") or {})
     seconds = [float(line["cpu_s"]) for line in lines if line.get("cpu_s") is not None]
     return Scored(key.get("seed"), len(cases), len(given), table, seconds)
 

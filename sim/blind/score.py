@@ -162,6 +162,17 @@ def in_time(seconds: Sequence[float]) -> Rate:
     return _share(f"CPU seconds at most {FAST_S:g}", [s <= FAST_S for s in seconds], "all")
 
 
+def is_right(j: Judged) -> bool:
+    """Whether an answer is what its group asks for: a cause, both, the block, numbers, or nothing."""
+    if j.group == "none":
+        return not _alarm(j)
+    if j.group == "parameters":
+        return j.verdict == "parameters"
+    if j.group == "outside":
+        return j.verdict == "unknown" and j.block in j.blocks
+    return _both(j) if j.group == "two" else j.right
+
+
 def _alarm(j: Judged) -> bool:
     """An effect, a change or an unknown claimed where nothing was; background turbulence may be named."""
     return j.verdict != "none" and not j.is_there

@@ -7,14 +7,10 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.diagnosis import maneuvers_of
-from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
-from advisor.gap.explain import explain
-from advisor.gap.fitting.fit import fit
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import usable_of
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.search.command import is_likelier_held, may_be_held, may_pay, read_otherwise
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario
@@ -35,14 +31,6 @@ def plain_model_of(scenario, folder):
     return fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
 
 
-@pytest.fixture(scope="module")
-def both_readings(tmp_path_factory):
-    """A held command read as it is, and as linear: data and plain model of each."""
-    held, plain = plain_model_of(f"{UAV}input: held\n", tmp_path_factory.mktemp("held"))
-    linear = replace(held, held=False)
-    return held, plain, linear, fit(linear, plain.point, plain.noise)
-
-
 @pytest.mark.parametrize("flown", ["held", "linear"])
 def test_a_command_is_read_as_it_was_flown(tmp_path, flown):
     problem, _ = plain_model_of(f"{UAV}input: {flown}\n", tmp_path)
@@ -50,87 +38,14 @@ def test_a_command_is_read_as_it_was_flown(tmp_path, flown):
 
 
 @pytest.mark.parametrize("flown", ["held", "linear"])
-def test_a_servo_that_moves_no_faster_is_no_later_for_a_command_that_was_held(tmp_path, flown):
+def test_a_servo_that_moves_no_faster_is_named_alone_whichever_way_its_command_was_flown(tmp_path, flown):
     limited = f"{UAV}input: {flown}\neffects: {{actuator_rate_limit: {{rate_rad_s: 0.7}}}}\n"
     (tmp_path / "uav.yaml").write_text(limited)
     record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
     found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers, Aircraft())
     (cause,) = [c for c in found.causes if c.present]
-    assert any("answer 10 ms late: the two look the same" in note for note in found.notes) == (
-        flown == "held"
-    )
     assert cause.effect == "actuator_rate_limit"
-    assert cause.parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.03)
-
-
-def test_a_limit_that_steps_meet_for_less_than_an_interval_is_no_sign_of_a_held_command(both_readings):
-    held, plain, linear, read_as_linear = both_readings
-    limit = next(v for v in variants_for(held.flights) if v.effect == "actuator_rate_limit")
-
-    def is_held_with(rate_rad_s: float) -> bool:
-        limited = plain.point.with_effect(limit, (1.0 / rate_rad_s,))
-        return is_likelier_held(linear, read_as_linear, held, replace(plain, point=limited))
-
-    # The fits are the same but for the limit: steps of 4 deg take 70 ms there, and 7 ms here.
-    assert is_held_with(1.0)
-    assert not is_held_with(10.0)
-
-
-@pytest.mark.parametrize(("late_s", "is_held"), [(0.012, True), (0.003, False)])
-def test_a_sensor_that_is_late_by_what_the_linear_reading_shifts_is_a_sign_of_a_held_command(
-    both_readings, late_s, is_held
-):
-    held, plain, linear, read_as_linear = both_readings
-    skew, scale = (
-        next(v for v in variants_for(held.flights) if v.effect == effect)
-        for effect in ("accelerometer_skew", "alpha_scale")
-    )
-    late = replace(read_as_linear, point=read_as_linear.point.with_effect(skew, (late_s,)))
-    scaled = replace(plain, point=plain.point.with_effect(scale, (0.05,)))
-    # Both name one effect, and the held reading is the likelier one.
-    assert is_likelier_held(linear, late, held, scaled) == is_held
-
-
-@pytest.mark.parametrize("early_s", [0.012, pytest.param(0.016, marks=pytest.mark.study)])
-def test_a_pitch_rate_that_is_early_beside_a_held_command_makes_nothing_else_late(tmp_path, early_s):
-    skewed = f"effects: {{pitch_rate_skew: {{skew_s: {-early_s}}}}}\n"
-    quiet = UAV.replace("uav", "light").replace("0.15", "0.05")
-    (tmp_path / "light.yaml").write_text(f"{quiet}input: held\n{skewed}")
-    record(flight_of(read_scenario(tmp_path / "light.yaml")), tmp_path / "light.tlog")
-    found = diagnose(maneuvers_of([tmp_path / "light.tlog"], Aircraft()).maneuvers, Aircraft())
-    (cause,) = [c for c in found.causes if c.present]
-    assert cause.effect == "pitch_rate_skew"
-    assert cause.parameters["skew_s"].value == pytest.approx(-early_s, abs=0.002)
-
-
-def test_a_linear_command_taken_for_a_held_one_is_read_again_where_it_puts_several_sensors_out_of_step():
-    flown = fly(Setup(maneuvers=6, skew={"q": 0.0145}, noise=0.007, seed=73))
-    # Stamped late besides, by more than the servo takes: a few milliseconds of latency hide nothing then.
-    for n, maneuver in enumerate(flown):
-        elevator = maneuver.channels["elevator"]
-        late = replace(elevator, t=elevator.t + 0.012)
-        flown[n] = replace(maneuver, channels={**maneuver.channels, "elevator": late})
-    flights = prepare(flown, Aircraft())
-    held, plain = read_otherwise(*fit_baseline(flights, Aircraft()))
-    assert held.held
-    found = explain(held, plain, Aircraft(), lambda *_: None)
-    assert not found.problem.held
-    assert [s.added.effect for s in found.stages if s.added is not None] == ["pitch_rate_skew"]
-
-
-def test_the_other_reading_is_searched_only_where_the_named_effects_may_do_with_it():
-    flown = fly(Setup(maneuvers=4, skew={"q": 0.0145}, noise=0.007, seed=73))
-    linear, plain = fit_baseline(prepare(flown, Aircraft()), Aircraft())
-    skew = next(v for v in variants_for(linear.flights) if v.effect == "pitch_rate_skew")
-
-    def named_with(problem, fitted):
-        return fit(problem, fitted.point.with_effect(skew, (0.0145,)), fitted.noise)
-
-    held, plainly_held = read_otherwise(linear, plain)
-    assert not linear.held
-    assert may_be_held(linear, named_with(linear, plain), {"pitch_rate_skew"})
-    assert not may_pay(linear, named_with(linear, plain), {"pitch_rate_skew"})
-    assert may_pay(held, named_with(held, plainly_held), {"pitch_rate_skew"})
+    assert cause.parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.06)
 
 
 @pytest.mark.parametrize("seed", [1, 2])

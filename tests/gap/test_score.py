@@ -12,7 +12,6 @@ from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.records.prepare import prepare
-from advisor.gap.search.air import Air
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.ranking import evened
 from advisor.gap.search.score import addition, predict_alike
@@ -87,24 +86,6 @@ def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain
     assert not replace(plain, removed=2.0 * judged.least).worth_naming
     assert not replace(plain, sigmas=4.0).worth_naming
     assert not replace(plain, witness=2).worth_naming
-
-
-def test_beside_turbulence_that_explains_far_more_only_what_is_plain_is_not_its_shape(late):
-    *_, judged = late
-    strong = Air(0.01, 1000.0, False, 1, 0.02, 0.0, (), np.zeros(4), (), np.zeros(4), 100.0)
-    thrust = replace(judged.variant, effect="thrust_moment")
-    plain = replace(judged, variant=thrust, gain=18.0, removed=20.0 * judged.least, belief=0.0)
-    assert not strong.may_be(plain)
-    assert strong.may_be(replace(plain, gain=12.0))
-    assert strong.may_be(replace(plain, removed=5.0 * judged.least))
-    assert strong.may_be(replace(plain, sigmas=4.0))
-    assert replace(strong, gust=True).may_be(plain)
-    # Gusts meet the vane before the wing: the accelerometers seem late.
-    late_by_the_gusts = replace(plain, variant=judged.variant, gain=40.0)
-    assert strong.may_be(late_by_the_gusts)
-    certain = replace(late_by_the_gusts, gain=60.0)
-    assert not strong.may_be(certain)
-    assert strong.may_be(replace(certain, sigmas=4.0))
 
 
 def test_predictions_are_alike_where_they_differ_by_less_than_any_description_errs(late):
@@ -191,24 +172,6 @@ def test_what_every_instrument_has_is_not_unknown_where_it_shows_beside_small_mo
     small = replace(UAV, amplitude_deg=0.2 * UAV.amplitude_deg)
     found = diagnose(fly(Setup(airframe=small, maneuvers=6, q_bias=0.0015, noise=0.01, seed=61)), Aircraft())
     assert found.verdict == "none"
-
-
-def test_beside_another_name_four_numbers_give_way_to_one_that_does_as_well():
-    """Ice takes up what an arm that is not yet in the model does to the motion."""
-    course = (0.0, 0.0, 0.0, 0.0, 0.4, 0.4)
-    both = Setup(maneuvers=6, noise=0.004, cg_course=course, switches={"acc_arm": 0.4}, seed=68)
-    found = diagnose(fly(both), Aircraft())
-    assert {c.effect for c in found.causes if c.present} == {"cg_shift", "accelerometer_offset"}
-
-
-@pytest.mark.parametrize("seed", [72, pytest.param(73, marks=pytest.mark.study)])
-def test_a_late_vane_that_reads_low_is_no_vane_far_ahead(seed):
-    """One place of the vane describes both but for a rest that is too small for a name."""
-    both = Setup(
-        airframe=LIGHT_AIRCRAFT, alpha_scale=-0.1, skew={"alpha": 0.07}, noise=0.03, maneuvers=6, seed=seed
-    )
-    found = diagnose(fly(both), Aircraft())
-    assert {c.effect for c in found.causes if c.present} == {"alpha_skew", "alpha_scale"}
 
 
 def gained_by_a_gyros_scale(thrust_arm):

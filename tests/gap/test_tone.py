@@ -7,13 +7,10 @@ import pytest
 from scipy.signal import lfilter
 
 from advisor.aircraft import Aircraft
-from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
-from advisor.gap.fitting.fit import fit, noise_of
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.unnamed.swing import swings_the_aircraft
 from advisor.gap.unnamed.tone import line_of, ringing_hz, tone_in
 from tests.gap.generator import Setup, fly
 
@@ -83,30 +80,6 @@ def test_an_engine_that_beats_is_unknown_in_the_moment_and_no_noise(gust_std):
     assert found.gap.before > VISIBLE
 
 
-def test_fuel_that_the_stick_sets_swinging_is_a_moment_and_no_servo_that_hunts():
-    found = diagnose(fly(Setup(maneuvers=6, switches={"slosh": 0.12}, seed=39)), Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "moment_equation")
-    assert any("Once set off, it swings" in note for note in found.notes)
-
-
-@pytest.mark.parametrize("gust_std", [0.0, 0.1])
-def test_a_little_fuel_is_known_by_what_pitching_does_to_it(gust_std):
-    """So little that a noise with a memory, or moving air, describes most of it."""
-    sloshing = fly(Setup(maneuvers=6, switches={"slosh": 0.008}, gust_std=gust_std, seed=39))
-    found = diagnose(sloshing, Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "moment_equation")
-    assert any("Once set off, it swings, 0.9" in note for note in found.notes)
-
-
-@pytest.mark.parametrize("gust_std", [0.0, pytest.param(0.1, marks=pytest.mark.study)])
-def test_a_large_tank_swings_slowly(gust_std):
-    slow = {"slosh": 0.03, "slosh_hz": 0.45}
-    sloshing = fly(Setup(maneuvers=6, switches=slow, gust_std=gust_std, seed=39))
-    found = diagnose(sloshing, Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "moment_equation")
-    assert any("Once set off, it swings, 0.4" in note for note in found.notes)
-
-
 def test_what_swung_before_the_stick_moved_was_not_set_off_by_it():
     found = diagnose(fly(Setup(maneuvers=6, switches={"beat": 0.01, "beat_hz": 0.9}, seed=42)), Aircraft())
     assert found.verdict == "unknown"
@@ -136,19 +109,3 @@ def test_a_sensor_that_shakes_is_unknown_in_that_sensor(channel, amplitude, bloc
 def test_an_accelerometer_that_an_engine_shakes_no_louder_than_its_noise_is_nothing():
     found = diagnose(shaken("a_z", 0.15), Aircraft())
     assert found.verdict == "none"
-
-
-@pytest.mark.parametrize(("swings", "hz", "block"), [
-    ({"beat": 0.004, "beat_hz": 2.3}, 2.3, "moment_equation"),
-    ({"mode_gain": 3.0, "mode_hz": 4.0}, 4.0, None),
-])  # fmt: skip
-def test_a_swing_that_all_channels_show_is_no_structure_that_bends_the_gyro(swings, hz, block):
-    flights = prepare(fly(Setup(maneuvers=6, switches=swings, seed=37)), Aircraft())
-    problem, plain = fit_baseline(flights, Aircraft())
-    mode = next(v for v in variants_for(flights) if v.effect == "structural_mode")
-    start = [0.0, 0.1, 2.0 * np.pi * hz, 0.02]
-    named = fit(problem, plain.point.with_effect(mode, start), plain.noise, 2)
-    assert tone_in(problem, plain, noise_of(problem, plain.innovations)) is not None
-    found = swings_the_aircraft(problem, plain, named)
-    assert (found and found.block) == block
-    assert swings_the_aircraft(problem, plain, plain) is None

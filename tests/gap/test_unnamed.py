@@ -10,19 +10,11 @@ from advisor.aircraft import PARAMETERS, Aircraft, Alpha
 from advisor.gap.candidates.between import shift_moments
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.belief import WIDE, log_belief, pull_of
-from advisor.gap.noise.probes import KNOTS_S
-from advisor.gap.records.floor import tolerance_of
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.smoothness import is_filtered, is_smoothed
-from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
-from advisor.gap.unnamed.course import has_tone
-from advisor.gap.unnamed.leftover import other_than_air
-from advisor.gap.unnamed.origin import followed
-from advisor.gap.unnamed.swing import swinging
-from advisor.gap.unnamed.wind import wind_shear
-from tests.gap.generator import LIGHT_AIRCRAFT, UAV, Setup, fly
+from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 pytestmark = pytest.mark.study
 """Whole diagnoses, run by ``make study-gap``."""
@@ -44,52 +36,6 @@ def test_what_is_restless_beyond_doubt_is_unknown_from_half_a_per_cent_of_a_peak
         wobbling.append(replace(m, channels={**m.channels, "q": replace(q, y=y)}))
     found = diagnose(wobbling, Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "pitch_rate_sensor")
-
-
-def test_an_unknown_moment_is_told_by_whether_it_follows_the_stick_or_the_motion():
-    flights = prepare(fly(Setup(maneuvers=6, seed=26)), Aircraft()).flights
-    rng = np.random.default_rng(26)
-    played, damped, neither = [], [], []
-    for flight in flights:
-        t = KNOTS_S * np.arange(1.0, flight.duration_s / KNOTS_S)
-        stick = np.interp(t, flight.t_u, flight.u)
-        at, loose = 0.0, []
-        for deflection in stick:
-            at = float(np.clip(at, deflection - 0.02, deflection + 0.02))
-            loose.append(deflection - at)
-        rate = np.interp(t, flight.outputs["q"].t, flight.outputs["q"].y)
-        played.append(np.array(loose))
-        damped.append(np.maximum(rate, 0.0))
-        neither.append(rng.standard_normal(len(t)))
-    assert followed(flights, played) == "input"
-    assert followed(flights, damped) == "moment_equation"
-    assert followed(flights, neither) is None
-
-
-def test_that_the_motion_swings_with_a_tone_does_not_tell_where_the_tone_is():
-    def humming(flight):
-        q = flight.outputs["q"]
-        return replace(q, y=q.y + 0.2 * np.sin(2.0 * np.pi * 1.2 * q.t))
-
-    calm = prepare(fly(Setup(maneuvers=6, seed=26)), Aircraft()).flights
-    flights = [replace(f, outputs={**f.outputs, "q": humming(f)}) for f in calm]
-    rates = []
-    for flight in flights:
-        t = KNOTS_S * np.arange(1.0, flight.duration_s / KNOTS_S)
-        rates.append(np.sin(2.0 * np.pi * 1.2 * t))
-    assert followed(flights, rates) is None
-
-
-def test_what_sticks_while_the_stick_goes_to_and_fro_has_a_tone_and_is_the_sticks_all_the_same():
-    flights, stuck = [], []
-    for n, flight in enumerate(prepare(fly(Setup(maneuvers=6, seed=26)), Aircraft()).flights):
-        to_and_fro = flight.u_trim + 0.08 * np.sin(2.0 * np.pi * 0.7 * flight.t_u + n)
-        flights.append(replace(flight, u=to_and_fro))
-        t = KNOTS_S * np.arange(1.0, flight.duration_s / KNOTS_S)
-        stick = np.interp(t, flight.t_u, to_and_fro) - flight.u_trim
-        stuck.append(stick - np.clip(stick, -0.05, 0.05))
-    assert has_tone(stuck)
-    assert followed(flights, stuck) == "input"
 
 
 @pytest.mark.parametrize("named", [{}, {"delay": 0.06}])
@@ -208,31 +154,6 @@ def test_a_wandering_centre_of_gravity_gives_every_force_the_same_further_arm():
     assert changes / forces == pytest.approx(np.full(3, changes[0] / forces[0]))
 
 
-def test_noise_with_a_memory_in_every_instrument_is_no_disturbance_of_one_of_them():
-    noisy = fly(Setup(maneuvers=6, coloured=0.8, noise=0.02, seed=302))
-    problem, plain = fit_baseline(prepare(noisy, Aircraft()), Aircraft())
-    assert other_than_air(problem, plain, plain) is None
-
-
-def test_moving_air_is_believed_only_where_no_other_place_describes_the_residual_far_better():
-    gusty = fly(Setup(maneuvers=6, gust_std=0.5, seed=3))
-    problem, plain = fit_baseline(prepare(gusty, Aircraft()), Aircraft())
-    assert other_than_air(problem, plain, plain) is None
-    surging = fly(Setup(maneuvers=6, switches={"thrust_arm": 0.05}, surge=1.0, seed=3))
-    problem, plain = fit_baseline(prepare(surging, Aircraft()), Aircraft())
-    found = other_than_air(problem, plain, plain)
-    assert found is not None
-    assert found.block == "moment_equation"
-
-
-def test_air_that_the_tail_meets_later_than_the_wing_is_the_air_where_an_aircraft_is_well_damped_too():
-    damped = replace(UAV, cm_alpha=-0.12, cm_q=-45.0, amplitude_deg=5.0)
-    setup = Setup(airframe=damped, maneuvers=6, gust_std=0.5, switches={"tail_chords": 3.0}, seed=1)
-    found = diagnose(fly(setup), Aircraft())
-    assert found.verdict == "effect"
-    assert [c.effect for c in found.causes if c.present] == ["turbulence"]
-
-
 def test_a_moment_of_the_angles_rate_is_told_from_three_other_derivatives_in_moving_air_too(still_file):
     moving = Setup(maneuvers=6, switches={"cm_alphadot": -8.0}, gust_std=0.3, seed=27)
     found = diagnose(fly(moving), still_file)
@@ -341,19 +262,6 @@ def test_a_clock_that_drifts_is_unknown_in_the_time_stamps():
     assert (found.verdict, found.where.block) == ("unknown", "timing")
 
 
-def test_what_a_drifting_clock_makes_of_a_hardly_damped_motion_does_not_swing_by_itself():
-    flown = flown_with(
-        "alpha",
-        lambda k, alpha: replace(alpha, t=alpha.t + 0.024 * (k - 2.5)),
-        seed=71,
-        airframe=replace(LIGHT_AIRCRAFT, cm_q=0.3 * LIGHT_AIRCRAFT.cm_q),
-    )
-    problem, plain = fit_baseline(prepare(flown, Aircraft()), Aircraft())
-    found = swinging(problem, plain, plain, tolerance_of(problem.flights))
-    assert found is not None
-    assert (found.block, found.note) == ("timing", "")
-
-
 def test_what_a_command_logged_ten_times_a_second_leaves_open_is_not_unknown():
     seldom = flown_with("elevator", lambda k, e: replace(e, t=e.t[k % 5 :: 5], y=e.y[k % 5 :: 5]), seed=5)
     assert diagnose(seldom, Aircraft()).verdict == "none"
@@ -363,18 +271,6 @@ def test_a_scale_that_drifts_is_unknown_in_the_sensor():
     flown = flown_with("q", lambda k, q: replace(q, y=q.y * (1.0 + 0.06 * k)), seed=31)
     found = diagnose(flown, Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "pitch_rate_sensor")
-
-
-@pytest.mark.study
-def test_an_attitude_that_leans_with_the_pitch_rate_is_no_wind():
-    def leaning(k, theta):
-        late = lfilter([0.03], [1.0, -0.97], theta.y - theta.y[0])
-        return replace(theta, y=theta.y - 0.4 * late)
-
-    flown = flown_with("theta", leaning, seed=32)
-    assert wind_shear(flown) is not None
-    found = diagnose(flown, Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "attitude_sensor")
 
 
 def test_a_visible_gap_that_is_too_small_for_a_name_is_not_called_nothing():

@@ -8,12 +8,9 @@ import pytest
 from advisor.aircraft import Aircraft, Elevator
 from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
-from advisor.gap.search.air import Air
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import INDEX
-from advisor.gap.unnamed.leftover import Leftover
 from advisor.gap.unnamed.true_speed import TrueSpeed
-from advisor.gap.unnamed.unnamed_law import Law
 from advisor.gap.unnamed.weight import Weight
 from tests.gap.generator import Setup, fly
 
@@ -239,13 +236,3 @@ def test_an_accelerometer_that_misses_as_much_of_the_weight_as_of_the_path_is_sc
 ):
     assert TrueSpeed(scale, 0.003).is_the_accelerometers(Weight(share, 0.004)) is scaled_it_is
     assert not TrueSpeed(scale, 0.003).is_the_accelerometers(None)
-
-
-@pytest.mark.parametrize(("gust", "least"), [(True, 0.2), (False, 0.05)])
-def test_a_law_that_brings_a_fraction_of_what_moving_air_does_is_its_shape(gust, least):
-    air = Air(0.01, 1000.0, gust, 1, 0.02, 0.0, (), np.zeros(4), (), np.zeros(4), 100.0)
-    somewhere = Leftover("moment_equation", 0.2, (("moment_equation", 1.0),))
-    plain = fit_baseline(prepare(fly(Setup(maneuvers=2)), Aircraft()), Aircraft())[1]
-    assert Law(somewhere, plain, 900.0 * least, False).may_be(air)
-    assert not Law(somewhere, plain, 1100.0 * least, False).may_be(air)
-    assert not Law(somewhere, plain, 30.0, False).may_be(None)

@@ -33,16 +33,10 @@ class Trait:
     """Output without which it cannot be tried; empty where any will do."""
     stated: tuple[str, str] | None = None
     """Section and key of the aircraft file that state how much of it the simulator has."""
-    steady: bool = False
-    """One number for a whole flight. A bias may wander a little, and is one all the same."""
     of_one_flight: bool = False
     """Came at some time of one flight, and says nothing of another."""
-    kinked: bool = False
-    """Between command and surface, and not linear."""
     by_nature: bool = False
     """What every aircraft has to some degree, or what takes its shape: faint, it is no finding."""
-    of_any_airframe: bool = False
-    """Bends, and fuel that is burnt: what of it changes next to nothing is no cause."""
     of_one_imu: bool = False
     """Goes with an angle of attack that an autopilot makes of its own pitch rate and accelerations, which
     cannot show it; or is the nature of one."""
@@ -50,8 +44,6 @@ class Trait:
     """The elevator alone can show it; else something else must vary."""
     takes: bool = False
     """Its size is what it takes away: more of it is none."""
-    hides: bool = False
-    """Other numbers imitate it where most of the motion is missing: no screening leads to it then."""
     left_open: bool = False
     """Something to measure rather, where the aircraft file does not state it: it comes last."""
     need: Need | None = None

@@ -25,7 +25,7 @@ _UNFILTERED = (
 # fmt: off
 TRAITS = {
     "actuator_lag": Trait(
-        "input", steady=True,
+        "input",
         said=(
             "The simulator's elevator is too quick: the real servo lags by {lag_s_ms:.0f} ms",
             "The simulator's elevator is too slow: its servo lags by {lag_s_ms:.0f} ms too much",
@@ -35,11 +35,11 @@ TRAITS = {
         stated=("elevator", "lag_s"),
     ),
     "actuator_rate_limit": Trait(
-        "input", kinked=True, said="The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
+        "input", said="The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
         apart={"transport_delay": _AMPLITUDES},
     ),
     "actuator_backlash": Trait(
-        "input", kinked=True,
+        "input",
         said=(
             "The real elevator has play of {half_width_rad_deg:.2f} deg to either side",
             "The simulator's elevator has {half_width_rad_deg:.2f} deg too much play to either side",
@@ -47,7 +47,7 @@ TRAITS = {
         apart={"actuator_deadband": "fly two amplitudes, and steps short of neutral"},
     ),
     "actuator_deadband": Trait(
-        "input", kinked=True,
+        "input",
         said=(
             "The real elevator ignores the first {half_width_rad_deg:.2f} deg around neutral",
             "The simulator's elevator ignores {half_width_rad_deg:.2f} deg too much around neutral",
@@ -55,10 +55,10 @@ TRAITS = {
         said_with={
             "about_trim": "The real elevator ignores the first {half_width_rad_deg:.2f} deg around its trim",
         },
-        imitated_by=("lower elevator effectiveness, at one amplitude", "fly two amplitudes"), hides=True,
+        imitated_by=("lower elevator effectiveness, at one amplitude", "fly two amplitudes"),
     ),
     "transport_delay": Trait(
-        "input", steady=True,
+        "input",
         said=(
             "The simulator answers {delay_s_ms:.0f} ms too early: a delay between command and surface",
             "The simulator answers {delay_s_ms:.0f} ms too late: its delay is too long",
@@ -68,12 +68,12 @@ TRAITS = {
         imitated_by=("an equal delay of every logged stream", _SURFACE), stated=("elevator", "delay_s"),
     ),
     "elevator_nonlinearity": Trait(
-        "moment_equation", by_nature=True, of_any_airframe=True,
+        "moment_equation", by_nature=True,
         said="The real elevator's moment is not proportional to its deflection",
         apart={"nonlinear_pitching_moment": "fly slow and fast steps of equal size"},
     ),
     "nonlinear_pitching_moment": Trait(
-        "moment_equation", by_nature=True, of_any_airframe=True,
+        "moment_equation", by_nature=True,
         said="The real pitching moment is not linear in the angle of attack",
     ),
     "thrust_moment": Trait(
@@ -84,7 +84,7 @@ TRAITS = {
         unrecorded=("throttle", "no throttle in the log", "VFR_HUD at 10 Hz"),
     ),
     "cg_shift": Trait(
-        "moment_equation", of_one_flight=True, of_any_airframe=True,
+        "moment_equation", of_one_flight=True,
         said="The centre of gravity moved during the flight", need=Need("step", *_FEW),
         apart={"mass_change": _WEIGHT, "icing": _WEIGHT, "airspeed_variation": _REPEAT},
     ),
@@ -96,14 +96,14 @@ TRAITS = {
         apart={"unsteady_lift": "log the accelerometer at a higher rate"},
     ),
     "nonlinear_lift": Trait(
-        "force_equation", by_nature=True, of_any_airframe=True,
+        "force_equation", by_nature=True,
         said="The real lift is not linear in the angle of attack",
     ),
     "unsteady_lift": Trait(
         "force_equation", by_nature=True, said="The real lift builds up with a lag of {lag_s_ms:.0f} ms",
     ),
     "mass_change": Trait(
-        "force_equation", of_one_flight=True, of_any_airframe=True,
+        "force_equation", of_one_flight=True,
         said="The mass changed during the flight", need=Need("step", *_FEW),
         apart={"icing": _WEIGHT, "airspeed_variation": _REPEAT}, twin="icing",
     ),
@@ -143,7 +143,7 @@ TRAITS = {
         need=Need("amplitude_m_s", *_NO_ALPHA),
     ),
     "alpha_lag": Trait(
-        "alpha_sensor", channel="alpha", steady=True, of_one_imu=True,
+        "alpha_sensor", channel="alpha", of_one_imu=True,
         said=(
             "The angle of attack channel lags by {lag_s_ms:.0f} ms",
             "The angle of attack channel is {lag_s_ms:.0f} ms ahead",
@@ -156,7 +156,7 @@ TRAITS = {
         twin="alpha_skew",
     ),
     "alpha_scale": Trait(
-        "alpha_sensor", channel="alpha", steady=True,
+        "alpha_sensor", channel="alpha",
         said=(
             "The angle of attack channel reads {scale_percent:.0f} % too much",
             "The angle of attack channel reads {scale_percent:.0f} % too little",
@@ -193,7 +193,7 @@ TRAITS = {
         ),
     ),
     "pitch_rate_scale": Trait(
-        "pitch_rate_sensor", steady=True, of_one_imu=True,
+        "pitch_rate_sensor", of_one_imu=True,
         said=(
             "The pitch rate reads {scale_percent:.1f} % too much",
             "The pitch rate reads {scale_percent:.1f} % too little",
@@ -216,7 +216,7 @@ TRAITS = {
         need=Need("arm_m", *_NO_A_Z), stated=("accelerometer", "arm_m"), left_open=True,
     ),
     "alpha_skew": Trait(
-        "timing", channel="alpha", steady=True, of_one_imu=True,
+        "timing", channel="alpha", of_one_imu=True,
         said=(
             "The angle of attack is stamped {skew_s_ms:.0f} ms too late",
             "The angle of attack is stamped {skew_s_ms:.0f} ms too early",
@@ -224,7 +224,7 @@ TRAITS = {
         need=Need("skew_s", *_NO_ALPHA),
     ),
     "pitch_rate_skew": Trait(
-        "timing", steady=True,
+        "timing",
         said=(
             "The pitch rate is stamped {skew_s_ms:.0f} ms too late",
             "The pitch rate is stamped {skew_s_ms:.0f} ms too early",
@@ -232,7 +232,7 @@ TRAITS = {
         imitated_by=_UNFILTERED,
     ),
     "accelerometer_skew": Trait(
-        "timing", channel="a_z", steady=True,
+        "timing", channel="a_z",
         said=(
             "The accelerometer is stamped {skew_s_ms:.0f} ms too late",
             "The accelerometer is stamped {skew_s_ms:.0f} ms too early",
@@ -240,7 +240,7 @@ TRAITS = {
         need=Need("skew_s", *_NO_A_Z), imitated_by=_UNFILTERED,
     ),
     "attitude_skew": Trait(
-        "timing", channel="theta", steady=True,
+        "timing", channel="theta",
         said=(
             "The attitude is stamped {skew_s_ms:.0f} ms too late",
             "The attitude is stamped {skew_s_ms:.0f} ms too early",
@@ -257,12 +257,8 @@ TRAITS = {
 # fmt: on
 """Every effect of the catalogue, in its order."""
 
-STEADY = frozenset(name for name, trait in TRAITS.items() if trait.steady)
 OF_ONE_FLIGHT = frozenset(name for name, trait in TRAITS.items() if trait.of_one_flight)
-KINKED = frozenset(name for name, trait in TRAITS.items() if trait.kinked)
 BY_NATURE = frozenset(name for name, trait in TRAITS.items() if trait.by_nature)
-OF_ANY_AIRFRAME = frozenset(name for name, trait in TRAITS.items() if trait.of_any_airframe)
 TAKES = frozenset(name for name, trait in TRAITS.items() if trait.takes)
-HIDES = frozenset(name for name, trait in TRAITS.items() if trait.hides)
 LEFT_OPEN = frozenset(name for name, trait in TRAITS.items() if trait.left_open)
 OF_ONE_IMU = tuple(name for name, trait in TRAITS.items() if trait.of_one_imu)

@@ -17,7 +17,6 @@ from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import KNOTS_S, Course, disturbance_courses
 from advisor.gap.noise.quiet import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
-from advisor.gap.search.merit import LEAST_BELIEF, Judged
 from advisor.model.response import OUTPUTS
 from advisor.oem.turbulence import Turbulence, find_turbulence
 
@@ -38,17 +37,6 @@ _TRIED = 6
 """Sizes of a gust beforehand, from what turbulence would have to any ..."""
 _AS_MUCH = 0.995
 """... and what a gentler course must take up of what the strongest does."""
-_OF_AIR = 0.02
-"""Share of the log likelihood that moving air brings which an effect must bring beside it ..."""
-_OF_POWER = 0.1
-"""... or else the share of its power that the effect must change."""
-_LATE, _OF_AIR_LATE = "accelerometer_skew", 0.05
-"""The first of these shares for accelerometers that seem late, plain or not: gusts meet a vane before they
-meet the wing, and its lift takes time, which no model here knows."""
-_LATE_SIGMAS = 5.0
-"""Standard deviations that they must be late by in moving air: those that are late by 9 ms have 13."""
-_OF_GUST = 0.05
-"""The same beside a gust: in its manoeuvre a bump of any shape passes for anything."""
 
 
 @dataclass(frozen=True)
@@ -76,22 +64,6 @@ class Air:
     """Shape (channels,): noise of the instruments beside it."""
     power: float
     """What its course takes up, mean over channels of the mean square beside the instruments' noise."""
-
-    def may_be(self, effect: Judged) -> bool:
-        """Whether an effect is no more than the shape of the air, which is known to low order only.
-
-        What brings the derivatives back to the aircraft file's is more, and beside turbulence what is plain.
-        """
-        if effect.belief >= LEAST_BELIEF:
-            return False
-        if self.gust:
-            return effect.gain < _OF_GUST * self.gain
-        late = effect.effect == _LATE
-        if late and effect.sigmas < _LATE_SIGMAS:
-            return True
-        of_air = _OF_AIR_LATE if late else _OF_AIR
-        little = effect.gain < of_air * self.gain and effect.removed < _OF_POWER * self.power
-        return little and (late or not effect.is_plain)
 
 
 def moving_air(problem: Problem, fitted: Fitted) -> Air | None:

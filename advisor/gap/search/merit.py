@@ -143,11 +143,6 @@ class Judged:
         return self.removed >= _PLAIN_CHANGE * self.least and self.sigmas > _PLAIN_SIGMAS
 
     @property
-    def is_plain(self) -> bool:
-        """More than the shape of moving air, which is known to low order only, feigns."""
-        return self.gain >= _PLAINLY and self.changes_plainly
-
-    @property
     def at_its_bounds(self) -> bool:
         """The search ran out of its range: a shape that only resembles the effect.
 

@@ -19,7 +19,7 @@ from advisor.gap.simulator.layout import DERIVATIVES
 _PROMISE = 0.7
 """Share of the least that the screening must promise before a full fit is spent on a candidate."""
 _ITERATIONS = 8
-TO_THE_END = 25
+_TO_THE_END = 25
 """Of a full fit of a candidate, and of the one that comes out first."""
 _FITS = 5
 """Candidates that get a full fit after the screening."""
@@ -27,7 +27,7 @@ _RIVAL = 0.3
 """Share of the best promise below which a candidate is no rival."""
 _LACKING = 0.2
 """Share of what the best explains that a candidate may lack and still be followed to its end."""
-GROSS = 300.0
+_GROSS = 300.0
 """Log likelihood promised by the best from which on the right model is far from where the screening looks."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
@@ -67,7 +67,7 @@ def _beside_the_file(
     if believed(file) < LEAST_BELIEF:
         return []
     points = [file.with_effect(v, v.beside_the_file) for v in variants if v.beside_the_file is not None]
-    fits = [fit(problem, point, plain.noise, TO_THE_END, 0.5) for point in points]
+    fits = [fit(problem, point, plain.noise, _TO_THE_END, 0.5) for point in points]
     return [Screened(f.point.effects[-1], f.point, f.cost, f.noise, believed(f.point)) for f in fits]
 
 
@@ -78,7 +78,7 @@ def judge(
     fits: list[Fitted] = []
     for s in shortlist(problem, before, candidates):
         plainly, *otherwise = (
-            fit(problem, point, s.noise, _ITERATIONS, 0.5, beaten_by=no_rival(before, fits))
+            fit(problem, point, s.noise, _ITERATIONS, 0.5, beaten_by=_no_rival(before, fits))
             for point in _described(s.point)
         )
         fits += [plainly, *(other for other in otherwise if other.cost < plainly.cost)]
@@ -94,12 +94,12 @@ def judge(
     first, *rest = best.values()
     if first.fitted.iterations == _ITERATIONS:
         # Far from the plain model the search is long; only what comes out first is followed to its end.
-        ended = fit(problem, first.fitted.point, first.fitted.noise, TO_THE_END, tolerance=0.5)
+        ended = fit(problem, first.fitted.point, first.fitted.noise, _TO_THE_END, tolerance=0.5)
         first = addition(problem, before, held_before, ended, first.effect, independent)
     return [first, *rest]
 
 
-def no_rival(before: Fitted, fits: Sequence[Fitted]) -> float:
+def _no_rival(before: Fitted, fits: Sequence[Fitted]) -> float:
     """Cost of one that explains a fraction of what another does: no rival, wherever its search would end."""
     best = min((before.cost, *(f.cost for f in fits)))
     return best + _LACKING * (before.cost - best)
@@ -149,7 +149,7 @@ def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) 
     def best_of(some: Sequence[Screened]) -> float:
         return max((promise(c) + c.belief for c in some), default=0.0)
 
-    gross = best_of(candidates) > GROSS
+    gross = best_of(candidates) > _GROSS
     if not gross:
         candidates = [
             c for c in candidates

@@ -1,18 +1,14 @@
 """One stage of the waterfall: a model, what was thought of adding to it, and what was added."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import belief_in, worth
+from advisor.gap.fitting.uncertainty import worth
 from advisor.gap.search.merit import BEYOND_DOUBT, Judged
-from advisor.gap.search.score import addition, price_of
-
-_NEAR = 0.5
-"""Share of the best candidate's gain from which on another one is a rival."""
+from advisor.gap.search.score import addition
 
 
 @dataclass(frozen=True)
@@ -26,12 +22,6 @@ class Stage:
     and none where no more names were asked for."""
     added: Judged | None
     """What was added to this stage's model to reach the next one."""
-
-    @property
-    def rivals(self) -> frozenset[str]:
-        """Effects that gained at least half as much as the best."""
-        best = self.considered[0].gain if self.considered else 0.0
-        return frozenset(judged.effect for judged in self.considered if judged.gain > _NEAR * best)
 
     @property
     def disputed(self) -> Judged | None:
@@ -73,23 +63,3 @@ def rebuilt(
 def only(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
     """The model with some of its effects, fitted."""
     return fit(problem, full.point.with_only(names), full.noise, iterations=8, tolerance=0.5)
-
-
-def is_likelier(problem: Problem, one: Fitted, other: Fitted) -> bool:
-    """Whether one model is likelier than the other, with what the file is worth and the names' price."""
-    independent = worth(problem, other.innovations)
-    gained = 0.5 * (other.cost - one.cost) + belief_in(problem, one, independent)
-    gained += price_of_all(other, independent) - belief_in(problem, other, independent)
-    return gained >= price_of_all(one, independent)
-
-
-def price_of_all(fitted: Fitted, independent: FloatArray) -> float:
-    """The price of every name in a model; see ``price_of``."""
-    return sum(price_of(v, independent) for v in fitted.point.effects if not v.always)
-
-
-def replaced_by(problem: Problem, first: Stage, model: Fitted) -> list[Stage]:
-    """Stages of the names of another model; what was thought of beside those that they replace is refuted."""
-    names = [effect.effect for effect in model.point.effects if not effect.always]
-    again = rebuilt(problem, first, names, model, dict.fromkeys(names, ()), ())
-    return [replace(s, considered=(s.added,) if s.added is not None else ()) for s in again]

@@ -9,17 +9,8 @@ from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import shared_std, worth
-from advisor.gap.search.by_the_file import by_the_file
-from advisor.gap.search.companions import (
-    one_early,
-    one_for_another,
-    one_number_for_ice,
-    other_description,
-    two_in_place_of_one,
-)
 from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, MOST_EFFECTS, Judged
 from advisor.gap.search.ranking import candidates_for, judge
-from advisor.gap.search.restarts import from_every_start
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage, added_in, only, rebuilt
 
@@ -28,24 +19,6 @@ _OPEN = 0.1
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share done, 0 to 1."""
-
-
-def build_up(
-    problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress = lambda *_: None
-) -> list[Stage]:
-    """Stages from the plain model to the last addition, and looked at once more as a whole."""
-    return reconsidered(problem, one_after_another(problem, baseline, variants, progress), variants)
-
-
-def reconsidered(problem: Problem, stages: list[Stage], variants: Sequence[Variant]) -> list[Stage]:
-    """Stages of the names that explain most together, in the order of what the whole loses without each."""
-    replacements = (
-        other_description, one_for_another, two_in_place_of_one, one_early,
-        one_number_for_ice, by_the_file,
-    )  # fmt: skip
-    for better in replacements:
-        stages = better(problem, stages, variants)
-    return in_full(problem, settled(problem, stages))
 
 
 def one_after_another(
@@ -87,8 +60,7 @@ def _leading_on(
 
 def _judged(problem: Problem, fitted: Fitted, held: HeldOut, variants: Sequence[Variant]) -> list[Judged]:
     """What may be added to a model, best first."""
-    candidates = candidates_for(problem, fitted, variants)
-    return from_every_start(problem, fitted, held, judge(problem, fitted, held, candidates), candidates)
+    return judge(problem, fitted, held, candidates_for(problem, fitted, variants))
 
 
 def as_measured(problem: Problem, stages: Sequence[Stage]) -> list[Stage]:

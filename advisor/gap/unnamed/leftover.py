@@ -13,16 +13,12 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.decision import Decision
 from advisor.gap.fitting.fit import Fitted, rms_of
-from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.noise.probes import SENSOR_CHANNELS, Probe, disturbance_courses, probe_blocks
-from advisor.gap.noise.quiet import unfiltered
+from advisor.gap.noise.probes import SENSOR_CHANNELS, Probe, probe_blocks
 from advisor.gap.records.floor import DOUBT
 from advisor.gap.simulator.layout import natural_frequency
 from advisor.gap.unnamed.clock import is_of_the_clock
-from advisor.gap.unnamed.course import is_in_few, is_of_the_air
 from advisor.gap.unnamed.jumps import jumping_sensor
-from advisor.gap.unnamed.origin import stick_or_motion
 from advisor.gap.unnamed.unrest import unrest
 
 LEAST_GAIN = 100.0
@@ -45,12 +41,6 @@ _BEYOND_DOUBT, _FAR_LOUDER, _FAR_ABOVE = 0.5, 4.0, 2.0
 """... that share of it where it is so much louder while the stick moves, and above noise in all."""
 _PLAIN = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
-_TURNS = ("input", "moment_equation")
-"""Blocks whose disturbance turns the aircraft, as air does that the tail meets later than the wing."""
-_BETTER_THAN_AIR = 1.1
-"""What another block must take up of a residual, beside what the air does that moves."""
-_OF_A_SENSOR = 0.4
-"""Share that an instrument must take up there: noise with a memory in all of them gives a third at most."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +71,7 @@ def left_over(
     first: Fitted,
     last: Fitted,
     tolerance: FloatArray,
-    moving_air: bool = False,
-    all_named: bool = False,
+    moving_air: bool,
 ) -> Leftover | None:
     """What the last model leaves, if it is more than noise.
 
@@ -94,8 +83,6 @@ def left_over(
         Shape (channels,): tolerance of channels that were filtered before they were recorded, else 0.
     moving_air
         Whether the air was found to move: then the filter that knows of it is known to low order only.
-    all_named
-        Whether named effects leave no gap: then only a sensor that jumps is asked for: the floor hides it.
     """
     noise = noise_of(problem)
     powers = (rms_of(problem, last.innovations) / noise) ** 2
@@ -107,7 +94,7 @@ def left_over(
     of_peak = np.where(beyond_doubt, _BEYOND_DOUBT, 1.0) * OF_PEAK
     telling &= beyond > np.maximum(of_peak, _of_the_command(problem, last)) * peaks
     jumping = jumping_sensor(problem, last, tolerance)
-    nothing = all_named or not np.any(telling)
+    nothing = not np.any(telling)
     if nothing and jumping is None:
         return None
     probes = probe_blocks(problem, last, noise)
@@ -135,7 +122,10 @@ def left_over(
     least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else LEAST_OF_GAP
     if unexplained < least * taken and not plain:
         return None
-    block = _block(problem, last, instruments_of(problem), probes)
+    block = _block(problem, last, best.block)
+    if moving_air and block == "air":
+        # What the filter leaves of the air, whose shape is known to low order only.
+        return None
     decisions = (
         Decision(block, "likelihood", best.gain, LEAST_GAIN, "log likelihood of a disturbance there"),
         Decision(block, "place", best.explained, least_share, "of what is left"),
@@ -145,82 +135,17 @@ def left_over(
     return Leftover(block, best.explained, ranking_of(probes, block), decisions=decisions)
 
 
-def is_the_gust(problem: Problem, last: Fitted, leftover: Leftover) -> bool:
-    """Whether what is left is the gust that was found, whose shape is known to low order only.
-
-    It is in few manoeuvres, and the air describes it nearly as well as any other block.
-    """
-    noise = noise_of(problem)
-    powers = np.mean(mean_squares(problem, last.innovations) / noise**2, axis=1)
-    return dict(leftover.ranking).get("air", 0.0) * _BETTER_THAN_AIR >= 1.0 and is_in_few(powers)
-
-
-def other_than_air(problem: Problem, first: Fitted, last: Fitted) -> Leftover | None:
-    """What passes for moving air, when an unknown disturbance in another block describes it far better.
-
-    A filter that knows of moving air takes up much of any disturbance with a memory, and little of it is left
-    to be seen. So all blocks are asked about the residual as the instruments have it. Arguments as in
-    ``left_over``.
-    """
-    if problem.flights.alpha_is_derived:
-        # An estimate of α sees no gust: what it leaves out looks like a disturbance elsewhere.
-        return None
-    problem, last = unfiltered(problem, last)
-    noise = instruments_of(problem)
-    probes = probe_blocks(problem, last, noise)
-    # A gust along the path changes the lift alone: a disturbance of the force is as much the air's.
-    air = max((p for p in probes if p.block in ("air", "force_equation")), key=lambda p: p.gain)
-    best = probes[0]
-    if best.explained < _BETTER_THAN_AIR * air.explained:
-        return None
-    powers = (rms_of(problem, last.left) / noise) ** 2
-    taken = float(np.sum((rms_of(problem, first.left) / noise) ** 2 - powers))
-    if best.explained * float(np.sum(powers)) < LEAST_OF_GAP * taken:
-        return None
-    noisy = problem.flights.alpha_is_smoothed or best.explained < _OF_A_SENSOR
-    if best.block in SENSOR_CHANNELS and noisy:
-        # Its noise, or what a low-pass leaves of that, is no disturbance of it: there the stick must tell.
-        c = problem.channels.index(SENSOR_CHANNELS[best.block])
-        active, quiet = unrest(problem, last.left)
-        if active[c] < _RESTLESS * quiet[c]:
-            return None
-    if _turns_as_air_does(problem, last, noise, best):
-        return None
-    block = _block(problem, last, noise, probes)
-    return Leftover(block, best.explained, ranking_of(probes, block))
-
-
-def is_of_passing_air(problem: Problem, last: Fitted, leftover: Leftover) -> bool:
-    """Whether what is left where the air moves is the moment by which passing air turns an aircraft.
-
-    The filter knows of the air at the wing; that of the tail, later, turns what is well damped most of all.
-    """
-    if leftover.block not in _TURNS:
-        return False
-    noise = noise_of(problem)
-    return _turns_as_air_does(problem, last, noise, probe_blocks(problem, last, noise)[0])
-
-
-def _turns_as_air_does(problem: Problem, last: Fitted, noise: FloatArray, best: Probe) -> bool:
-    if best.block not in _TURNS:
-        return False
-    course = disturbance_courses(problem, last, noise, best.block, [best.size])[0]
-    return is_of_the_air(problem.flights.flights, course.knots)
-
-
 def placed(problem: Problem, last: Fitted) -> Leftover:
     """What is left, in the block whose unknown disturbance explains it best."""
     probes = probe_blocks(problem, last, noise_of(problem))
-    block = _block(problem, last, instruments_of(problem), probes)
+    block = _block(problem, last, probes[0].block)
     return Leftover(block, probes[0].explained, ranking_of(probes, block))
 
 
-def _block(problem: Problem, last: Fitted, noise: FloatArray, probes: Sequence[Probe]) -> str:
-    """The likeliest block, where its neighbours do not explain the same residual better by its course."""
-    best = probes[0].block
-    if best in SENSOR_CHANNELS and is_of_the_clock(problem, last, SENSOR_CHANNELS[best]):
-        return "timing"
-    return stick_or_motion(problem, last, noise, probes) or best
+def _block(problem: Problem, last: Fitted, likeliest: str) -> str:
+    """The likeliest block, or timing where a sensor is off by its rate times a delay that changes."""
+    channel = SENSOR_CHANNELS.get(likeliest)
+    return "timing" if channel is not None and is_of_the_clock(problem, last, channel) else likeliest
 
 
 def _of_the_command(problem: Problem, last: Fitted) -> float:

@@ -14,7 +14,6 @@ from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import belief_in, worth
-from advisor.gap.search.air import Air
 from advisor.gap.search.merit import CERTAIN, Judged
 from advisor.gap.search.score import (
     addition,
@@ -28,7 +27,6 @@ from advisor.gap.search.screen import Screen, penalty
 from advisor.gap.search.stage import Stage, added_in
 from advisor.gap.unnamed.laws import PLAIN, RINGING, laws_for, said
 from advisor.gap.unnamed.leftover import Leftover
-from advisor.gap.unnamed.stops import SURFACE_STOP
 
 _WORTH_A_FIT = 0.2
 """Share of the likeliest law's gain in the screening from which on another is fitted, too."""
@@ -52,14 +50,8 @@ _BESIDE = 0.5
 certain is enough. And they must change that share of what the law removes: a speed that is off has
 side effects."""
 
-
-_BEYOND_DOUBT, _OF_WHAT_NAMES_LEAVE = 50.0, 0.5
-"""By how much a law beats what was named, and what it leaves of that, beside the noise, if no names that
-explain more together need be sought: of 50 laws of the truth that were found first, all stayed."""
 _MISSING = 0.03
 """Share of some channel's peak that names leave beyond the noise where most of the motion is another."""
-_OF_A_GUST, _OF_TURBULENCE = 0.2, 0.05
-"""Share of the log likelihood that moving air brings alone, below which a law is a part of what that does."""
 
 
 @dataclass(frozen=True)
@@ -69,17 +61,6 @@ class Law:
     leftover: Leftover
     fitted: Fitted
     """The plain model with the law."""
-    gain: float
-    is_beyond_doubt: bool
-    """Likelier than all that was named by far, of which it leaves a part: no other names come near it."""
-
-    def may_be(self, air: Air | None) -> bool:
-        """Whether air that moves explains so much more that the law is no more than its shape.
-
-        Laws of the truth bring half of what the air would without them, and more; a likeness of the truth in
-        turbulence a fifteenth.
-        """
-        return air is not None and self.gain < (_OF_A_GUST if air.gust else _OF_TURBULENCE) * air.gain
 
 
 def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
@@ -111,17 +92,16 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     # What one sample is worth depends on the fit that says so: both are held against the same.
     disputed = stages[-1].disputed
     named = max(_gain_of_all(problem, stages, independent), 0.0 if disputed is None else disputed.gain)
-    is_stop = law.effect == SURFACE_STOP and _begins_beyond_the_trim(stages)
-    if not bent.worth_naming or bent.gain < max(CERTAIN, named + (-_LIKELIER if is_stop else _LIKELIER)):
+    if not bent.worth_naming or bent.gain < max(CERTAIN, named + _LIKELIER):
         return None
     after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
     if np.mean(after < before) < _IN_MOST or not _shows(problem, held, bent.held_out):
         return None
     alike = difference(problem, stages[-1].held_out, bent.held_out) < bent.least
-    if alike and not is_stop and len(added_in(stages)) < _SEVERAL:
+    if alike and len(added_in(stages)) < _SEVERAL:
         # Next to the same motion as what was named: one name stays, several in concert are no likelier.
         return None
-    if len(stages) > 1 and not is_stop and _is_another_matter(problem, stages, bent, independent):
+    if len(stages) > 1 and _is_another_matter(problem, stages, bent, independent):
         return None
     left = bent.held_out.mean_square / held.mean_square
     if law.effect in PLAIN and np.min(left) > _LEAVES:
@@ -130,28 +110,14 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     rivals = {j.block: _share(j, bent) for j in reversed(stages[0].considered)}
     ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
     share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))
-    names_leave, leaves = (
-        float(np.mean(h.innovation_square / fitted.noise**2)) - 1.0
-        for h in (stages[-1].held_out, bent.held_out)
-    )
-    sure = bent.gain > named + _BEYOND_DOUBT and leaves < _OF_WHAT_NAMES_LEAVE * names_leave
     leftover = Leftover(block, share, ((block, 1.0), *ranking), note=said(bent))
-    return Law(leftover, fitted, bent.gain, sure)
+    return Law(leftover, fitted)
 
 
 def _shows(problem: Problem, before: HeldOut, after: HeldOut) -> bool:
     """Whether a law changes some channel of some manoeuvre by more than any simulator is good for."""
     changes = [a - b for a, b in zip(before.left, after.left, strict=True)]
     return bool(np.any(np.sqrt(mean_squares(problem, changes)) > _LITTLE * problem.flights.peaks))
-
-
-def _begins_beyond_the_trim(stages: list[Stage]) -> bool:
-    """Whether the one name is a dead band that no trim lies in: its far edge is a guess, and it a stop."""
-    named = added_in(stages)
-    if [judged.effect for judged in named] != ["actuator_deadband"]:
-        return False
-    half_width, neutral = named[0].value[:2]
-    return bool(abs(neutral) > half_width)
 
 
 def _gain_of_all(problem: Problem, stages: list[Stage], independent: FloatArray) -> float:

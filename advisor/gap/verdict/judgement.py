@@ -38,9 +38,6 @@ _MOSTLY = 0.98
 """Share of the gap that wrong numbers make, from which on they are the answer whatever is there besides: what
 leaves the file right, and is imitated by other numbers, is imitated by nine tenths at most, but for the one
 that they imitate exactly, if with it they are nearer to the file's."""
-_BY_FAR = 0.985
-"""Share of the gap that they must make beside something without a name in the equations they belong to."""
-_EQUATIONS = frozenset({"force_equation", "moment_equation"})
 _HALF = 0.5
 """What all that was named keeps of its probability where something without a name is there besides."""
 
@@ -125,20 +122,7 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     judge_speed = speed_is_unasked if told else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         apart = (speed, *apart)
-    unknown = e.leftover is not None
-    if unknown and not seen_once and _is_little_beside(numbers, max(removed, 0.0) + left, e):
-        unknown = False
-    return _Found(named, left, removed, numbers, bias, speed, outweighs, apart, unknown)
-
-
-def _is_little_beside(numbers: WrongNumbers, rest: float, e: Evidence) -> bool:
-    """Whether something without a name only bends an equation a little whose numbers are far off.
-
-    ``rest`` is what names and the last model have of the gap beside the numbers.
-    """
-    bends = e.leftover is not None and e.leftover.block in _EQUATIONS and e.air is None
-    are_to_blame = numbers.are_wrong and not numbers.are_imitated
-    return bends and are_to_blame and numbers.gap > _BY_FAR * (numbers.gap + rest)
+    return _Found(named, left, removed, numbers, bias, speed, outweighs, apart, e.leftover is not None)
 
 
 def _ordered(e: Evidence, found: _Found) -> tuple[Cause, ...]:

@@ -36,7 +36,7 @@ def notes_of(
         _command(e),
         *_of_the_speed(e, aircraft),
         *_of_a_constant_speed(e, verdict),
-        *_of_the_unexplained(e, verdict),
+        *_of_the_unexplained(e),
         *_of_single_witnesses(e),
         *_of_the_air(e),
         *_of_the_file(aircraft, nobodys_fault),
@@ -99,11 +99,9 @@ def _without_air_speed(flights: Flights, is_known: bool) -> str:
     return f"No air speed in the log: {flights.reference_m_s:.1f} m/s {level}, {whence}{differs}; {later}."
 
 
-def _of_the_unexplained(e: Evidence, verdict: Verdict) -> Iterator[str]:
+def _of_the_unexplained(e: Evidence) -> Iterator[str]:
     if e.leftover is not None and e.leftover.note:
         yield f"Unexplained {place(e.leftover.block)}: {e.leftover.note}"
-    if e.leftover is not None and verdict == "parameters":
-        yield f"Beside the wrong numbers something small {place(e.leftover.block)} stays unexplained."
 
 
 def _of_single_witnesses(e: Evidence) -> Iterator[str]:
@@ -171,14 +169,9 @@ def _command(e: Evidence) -> str:
     )
 
 
-def left_out(maneuvers: Sequence[Maneuver], torn: int | None) -> tuple[str, ...]:
-    """Which manoeuvres were not used, and why; ``torn`` is the one in which a change came."""
-    why = [
-        f"manoeuvre {m.number}: "
-        + ("the change came while it was flown" if m.number == torn else why_left_out(m))
-        for m in maneuvers
-    ]
-    return tuple(f"Left out: {reason}." for reason in why)
+def left_out(maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
+    """Which manoeuvres were not used, and why."""
+    return tuple(f"Left out: manoeuvre {m.number}: {why_left_out(m)}." for m in maneuvers)
 
 
 def _listed(effects: Sequence[str]) -> str:
