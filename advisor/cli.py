@@ -24,6 +24,7 @@ COMMANDS = {
     "replay": "The same screens on a log, with pause, speed and jump.",
     "analyze": "No screen: every manoeuvre's verdict, the estimates, stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
+    "export": "Channels, manoeuvres, estimates and residuals for other tools.",
     "doctor": "Is this telemetry good enough, before flying; what to change if not.",
     "study": "The paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
     "locate": "Where settings and recordings are kept.",

@@ -43,9 +43,9 @@ _LEAST_REST_S = 0.3
 """A rest before the movement is at least so long, if anything else moved before."""
 _KEEP_S = _REACH_S + 30.0
 """Samples are kept for so long: a movement and its free response."""
-_GAP_S = 1.0
+GAP_S = 1.0
 """A longer gap ends a free response, ..."""
-_MANY_INTERVALS = 5.0
+MANY_INTERVALS = 5.0
 """... if so many samples are missing."""
 _LONGEST_GAP_S = 3.0
 """A longer one ends everything; over a shorter one an input is recognised, to be refused for the gap."""
@@ -93,7 +93,7 @@ class Segmenter:
             last = float(self._samples.t[-1])
             if t <= last:
                 return []
-            if t - last > _GAP_S and t - last > _MANY_INTERVALS * self._samples.interval_s():
+            if t - last > GAP_S and t - last > MANY_INTERVALS * self._samples.interval_s():
                 self._interrupt(last, whole=t - last > _LONGEST_GAP_S)
         self._samples.append(t, u)
         self._advance(self._samples.size - 1)

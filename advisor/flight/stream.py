@@ -30,7 +30,8 @@ from advisor.flight.messages import Columns, FloatArray, arrivals
 from advisor.flight.mixing import Mixing
 from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.pieces import pieces
-from advisor.flight.record import Channel
+from advisor.flight.power_on import PowerOn
+from advisor.flight.record import UNITS, Channel
 from advisor.flight.senders import SenderWatch
 from advisor.flight.sense import SAID
 from advisor.flight.service import Service
@@ -60,12 +61,23 @@ class FlightStream:
         System id to follow; None: the first vehicle heard.
     marks
         Stretches that somebody has called manoeuvres, known before the stream begins.
+    keep_all
+        Keep every sample, for ``power_ons``; memory then grows with the length of the flight.
     """
 
     def __init__(
-        self, aircraft: Aircraft, target_system: int | None = None, marks: Sequence[Mark] = ()
+        self,
+        aircraft: Aircraft,
+        target_system: int | None = None,
+        marks: Sequence[Mark] = (),
+        *,
+        keep_all: bool = False,
     ) -> None:
         self._aircraft = aircraft
+        self._keep_s = np.inf if keep_all else KEEP_S
+        self._clock_heard: list[Master] = []
+        self.power_ons: list[PowerOn] = []
+        """Every power-on that is over, whole; empty unless everything is kept."""
         self._who = Identity(aircraft.elevator, target_system)
         self._attitudes = Attitudes()
         self._clock = BootClock()
@@ -91,6 +103,7 @@ class FlightStream:
 
     def _start_boot(self) -> None:
         self._tracks.clear()
+        self._clock_heard.clear()
         self._path.begin(self.boot)
         self._banks = Banks()
         self._mixing.begin()
@@ -233,7 +246,23 @@ class FlightStream:
     def _finish_boot(self) -> list[FlightEvent]:
         events = self._path.finish(self._master_s)
         self._past = self._at_best()
+        if self._keep_s == np.inf:
+            self.power_ons.append(self._power_on())
         return events
+
+    def _power_on(self) -> PowerOn:
+        """Everything that was heard since the vehicle's clock began."""
+        found = {name: self._tracks.cut(name, -np.inf, np.inf) for name in UNITS}
+        channels = {
+            name: replace(c, provenance=self._who.provenance(c.source, c.provenance))
+            for name, c in found.items()
+            if c is not None
+        }
+        if self._cutting.is_backwards and "elevator" in channels:
+            channels["elevator"] = replace(channels["elevator"], y=-channels["elevator"].y)
+        heard = [(master.order, master.t) for master in self._clock_heard if len(master.t)]
+        order, t = map(np.concatenate, zip(*heard, strict=True)) if heard else (np.empty(0, int), np.empty(0))
+        return PowerOn(self.boot, channels, order, t)
 
     def _at_best(self) -> dict[str, ChannelStatus]:
         """How each channel arrived when it arrived fastest, over all power-ons."""
@@ -287,10 +316,12 @@ class FlightStream:
 
     def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
         """Columns of one boot: channels first, then the elevator sample by sample."""
-        self._tracks.forget(max(self._path.newest_s, self._master_s) - KEEP_S)
+        self._tracks.forget(max(self._path.newest_s, self._master_s) - self._keep_s)
         orders = np.concatenate(([-1], master.order))
         # A late ATTITUDE says when it was, not what the time is.
         clock = np.fmax.accumulate(np.concatenate(([self._master_s], master.t)))
+        if self._keep_s == np.inf:
+            self._clock_heard.append(replace(master, t=clock[1:]))
         elevator: list[Commanded] = []
         for columns in merged(part):
             now = np.searchsorted(orders, columns.order, side="right") - 1
