@@ -1,3 +1,44 @@
-"""Inflight advisor: was that manoeuvre good, and may we stop testing."""
+"""Inflight advisor: was that manoeuvre good, and may we stop testing.
+
+The public library is imported when first used: ``read`` a log, ``find`` its manoeuvres, ``estimate`` the
+parameters, ``judge`` a campaign, ``diagnose`` the gap. What ``__all__`` does not list may change.
+"""
+
+from importlib import import_module
+from typing import Any
 
 __version__ = "0.1.0"
+
+_PUBLIC = {
+    "Aircraft": "advisor.aircraft",
+    "CampaignState": "advisor.campaign_state",
+    "ConfigurationError": "advisor.problems",
+    "Diagnosis": "advisor.gap.result",
+    "Estimate": "advisor.oem.estimate",
+    "Flight": "advisor.library",
+    "Maneuver": "advisor.flight.maneuver",
+    "NoEstimate": "advisor.oem.estimate",
+    "UnusableInputError": "advisor.problems",
+    "diagnose": "advisor.library",
+    "estimate": "advisor.library",
+    "find": "advisor.library",
+    "judge": "advisor.library",
+    "read": "advisor.library",
+}
+"""Public name to the module that has it."""
+
+__all__ = ["__version__", *_PUBLIC]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first asked for, so that the command line starts fast."""
+    if name not in _PUBLIC:
+        raise AttributeError(f"module 'advisor' has no attribute {name!r}")
+    value = getattr(import_module(_PUBLIC[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Public names, for completion."""
+    return sorted(__all__)

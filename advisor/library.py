@@ -1,0 +1,204 @@
+"""The advisor in a notebook: read a log, find manoeuvres, estimate, judge, diagnose.
+
+Every function does what a command does: ``advisor analyze`` and ``advisor gap`` give the same numbers.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+
+from advisor.aircraft import Aircraft
+from advisor.campaign_state import CampaignState
+from advisor.config import load_aircraft
+from advisor.diagnosis import diagnose_logs
+from advisor.exporting.reading import read_whole
+from advisor.flight.events import ManeuverFlown
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.power_on import PowerOn
+from advisor.flight.stream import FlightStream
+from advisor.flight.vehicle import Vehicle
+from advisor.gap.result import Diagnosis
+from advisor.marks_file import read_by_hand
+from advisor.mavlink.logs import open_log
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.estimator import estimate as estimate_one
+from advisor.oem.estimator import estimate_jointly
+from advisor.problems import ConfigurationError, Problem, UnusableInputError
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """What one log holds of one vehicle; :func:`read` makes it."""
+
+    log: Path
+    aircraft: Aircraft
+    """As the crew describes it."""
+    vehicle: Vehicle | None
+    """None where no heartbeat was heard."""
+    power_ons: tuple[PowerOn, ...] = field(repr=False)
+    """Every power-on of the vehicle: ``power_ons[0].channels["q"]`` has stamps ``t`` (s since boot) and
+    values ``y`` (SI), shape (n,) each."""
+    maneuvers: tuple[Maneuver, ...] = field(repr=False)
+    """Manoeuvres in the order of flying, numbered from 1."""
+    problems: tuple[Problem, ...]
+    """Why the log cannot be used, with mends; empty when it can."""
+    notes: tuple[str, ...]
+    """What was assumed of the elevator, in sentences."""
+
+
+def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | None = None) -> Flight:
+    """Read a log: every channel at its own stamps, and the manoeuvres.
+
+    Parameters
+    ----------
+    log : str or path
+        A ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not. Marks in ``LOG.maneuvers.yaml``
+        beside the log count.
+    aircraft : Aircraft, str or path, optional
+        The aircraft, or its YAML file; by default nothing is known of it.
+
+    Returns
+    -------
+    Flight
+        Also of a log that cannot be used for estimates; ``problems`` then says why.
+
+    Raises
+    ------
+    UnusableInputError
+        The file is missing or holds no log.
+    ConfigurationError
+        The aircraft file, or the file of marks, is wrong.
+    """
+    path = Path(log)
+    described = aircraft if isinstance(aircraft, Aircraft) else _described(aircraft)
+    stream = FlightStream(described, marks=read_by_hand(path).marks, keep_all=True)
+    events = [event for columns in open_log(path) for event in stream.feed(columns)] + stream.finish()
+    return Flight(
+        path,
+        described,
+        stream.vehicle,
+        tuple(stream.power_ons),
+        tuple(event.maneuver for event in events if isinstance(event, ManeuverFlown)),
+        tuple(stream.problems()),
+        stream.elevator_notes,
+    )
+
+
+def find(flight: Flight) -> tuple[Maneuver, ...]:
+    """Manoeuvres of a flight, in the order of flying.
+
+    Returns
+    -------
+    tuple of Maneuver
+        Each with its ``span`` (times in s since boot) and ``channels``: name to stamps ``t`` and values
+        ``y``, shape (n,) each, SI.
+
+    Raises
+    ------
+    UnusableInputError
+        The log cannot be used: no elevator, a rate too low, no manoeuvre, ...
+    """
+    if flight.problems:
+        raise UnusableInputError.of(flight.problems)
+    return flight.maneuvers
+
+
+def estimate(
+    maneuvers: Maneuver | Sequence[Maneuver], aircraft: Aircraft | None = None
+) -> Estimate | NoEstimate:
+    """The eight parameters of the short period, from one manoeuvre or from several together.
+
+    Parameters
+    ----------
+    maneuvers : Maneuver or sequence of Maneuver
+        Several share their derivatives; each keeps its own trim, initial state and biases.
+    aircraft : Aircraft, optional
+        The aircraft; by default nothing is known of it.
+
+    Returns
+    -------
+    Estimate or NoEstimate
+        ``theta`` and ``std``, shape (8,), and ``covariance``, shape (8, 8), in the order Z_0, Z_alpha, Z_q,
+        Z_delta_e, M_0, M_alpha, M_q, M_delta_e, rad and s. A failure is a value: ``NoEstimate`` with its
+        reason in ``text``.
+    """
+    described = aircraft or Aircraft()
+    if isinstance(maneuvers, Maneuver):
+        return estimate_one(maneuvers, described)
+    return estimate_jointly(maneuvers, described)
+
+
+def judge(flights: Flight | Sequence[Flight]) -> CampaignState:
+    """Verdicts on all manoeuvres, the joint estimate and the stop criterion, as ``advisor analyze`` has them.
+
+    Parameters
+    ----------
+    flights : Flight or sequence of Flight
+        One flight, or the flights of one campaign. Their logs are read again, oldest first where all tell
+        their times; what was decided by hand counts.
+
+    Returns
+    -------
+    CampaignState
+        ``maneuvers`` with ``estimate`` and ``verdict`` each, ``model`` (joint estimate), ``flight_test``
+        (stop or continue, criterion in percent).
+
+    Raises
+    ------
+    UnusableInputError
+        No log can be used.
+    ConfigurationError
+        The flights were read with different aircraft, or there is none.
+    """
+    several = _several(flights)
+    return read_whole([flight.log for flight in several], _one_aircraft(several)).state
+
+
+def diagnose(flights: Flight | Sequence[Flight], holdout: int | None = None) -> Diagnosis:
+    """Why the aircraft does not fly like its simulator, as ``advisor gap`` says.
+
+    Parameters
+    ----------
+    flights : Flight or sequence of Flight
+        One flight, or the flights of one campaign. Their logs are read again.
+    holdout : int, optional
+        Measure on so many manoeuvres, the last ones, with numbers fitted without them; by default the
+        diagnosis chooses.
+
+    Returns
+    -------
+    Diagnosis
+        ``verdict``, ``sentence``, ``causes`` (ranked, with probabilities), ``gap``, ``shrink``.
+
+    Raises
+    ------
+    UnusableInputError
+        A log cannot be used, or the manoeuvres are too few.
+    ConfigurationError
+        The flights were read with different aircraft, or there is none.
+    """
+    several = _several(flights)
+    logs = [flight.log for flight in several]
+    return diagnose_logs(logs, _one_aircraft(several), holdout, by_hand=[read_by_hand(log) for log in logs])
+
+
+def _described(file: str | PathLike[str] | None) -> Aircraft:
+    return load_aircraft(None if file is None else Path(file))
+
+
+def _several(flights: Flight | Sequence[Flight]) -> Sequence[Flight]:
+    return [flights] if isinstance(flights, Flight) else flights
+
+
+def _one_aircraft(flights: Sequence[Flight]) -> Aircraft:
+    if not flights:
+        raise ConfigurationError("There is no flight: give at least one that advisor.read has made.")
+    first = flights[0].aircraft
+    other = next((flight for flight in flights if flight.aircraft != first), None)
+    if other is not None:
+        raise ConfigurationError(
+            f"{other.log} was read with another aircraft than {flights[0].log}: read all flights of a "
+            "campaign with one."
+        )
+    return first

@@ -1,0 +1,118 @@
+"""The library gives what the commands give, and its page runs as it stands."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import advisor as library
+from advisor.aircraft import PARAMETERS, Aircraft, Elevator
+from tests.conftest import Advisor
+from tests.flights import FOUR, SHIPPED, recorded
+
+ROOT = Path(__file__).parents[1]
+KNOWN = Aircraft(elevator=Elevator(lag_s=0.02))
+
+
+@pytest.fixture(scope="module")
+def flight() -> library.Flight:
+    return library.read(recorded("uav", 1.0, maneuvers=FOUR), KNOWN)
+
+
+def test_the_example_of_the_page_runs_in_the_folder_of_the_project(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    monkeypatch.chdir(ROOT)
+    exec(compile(example, "docs/library.md", "exec"), {})
+    told = capsys.readouterr().out
+    assert "at 50 Hz" in told
+    assert "7 3-2-1-1" in told or "7 reverse 3-2-1-1" in told
+    assert "STOP TESTING" in told
+    assert "effect [('actuator_lag'" in told
+
+
+def test_every_public_name_is_there_and_documented() -> None:
+    for name in library.__all__:
+        if name != "__version__":
+            assert getattr(library, name).__doc__
+
+
+def test_the_page_names_every_public_function_and_error() -> None:
+    page = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
+    assert [name for name in library.__all__ if name != "__version__" and f"`{name}" not in page] == []
+
+
+def test_a_name_that_is_not_there_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'reed'"):
+        library.reed  # noqa: B018
+
+
+def test_importing_the_library_loads_nothing_heavy() -> None:
+    program = "import sys, advisor; print(sorted({'numpy', 'scipy', 'numba', 'click'} & set(sys.modules)))"
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert run.stdout == "[]\n"
+
+
+def test_find_gives_the_manoeuvres_that_analyze_lists(flight: library.Flight, advisor: Advisor) -> None:
+    told = json.loads(advisor("analyze", flight.log, "--json").stdout)["maneuvers"]
+    assert [m.span.start_s for m in library.find(flight)] == [m["start_boot_s"] for m in told]
+
+
+def test_judge_gives_the_numbers_of_analyze(flight: library.Flight, advisor: Advisor, tmp_path: Path) -> None:
+    aircraft = tmp_path / "aircraft.yaml"
+    aircraft.write_text("elevator: {lag_s: 0.02}\n")
+    told = json.loads(advisor("analyze", flight.log, "--aircraft", aircraft, "--json").stdout)
+    state = library.judge(flight)
+    assert [m.verdict.sentence for m in state.maneuvers] == [m["sentence"] for m in told["maneuvers"]]
+    assert state.flight_test.sentence == told["flight_test"]["sentence"]
+    assert state.model is not None
+    values = {name: state.model.value(name) for name in PARAMETERS}
+    assert values == {name: told["model"][name]["value"] for name in PARAMETERS}
+    assert library.read(flight.log, aircraft).aircraft == KNOWN
+
+
+def test_with_a_known_servo_estimate_gives_what_judge_has_for_each_manoeuvre(flight: library.Flight) -> None:
+    maneuvers, judged = library.find(flight), library.judge(flight).maneuvers
+    for maneuver, known in zip(maneuvers, judged, strict=True):
+        found = library.estimate(maneuver, flight.aircraft)
+        assert isinstance(found, library.Estimate)
+        assert isinstance(known.estimate, library.Estimate)
+        np.testing.assert_array_equal(found.theta, known.estimate.theta)
+
+
+def test_estimate_takes_several_manoeuvres_together(flight: library.Flight) -> None:
+    maneuvers = library.find(flight)
+    one, four = library.estimate(maneuvers[0], KNOWN), library.estimate(maneuvers, KNOWN)
+    assert isinstance(one, library.Estimate)
+    assert isinstance(four, library.Estimate)
+    assert (len(one.fits), len(four.fits)) == (1, 4)
+
+
+def test_diagnose_gives_the_verdict_of_gap(flight: library.Flight, advisor: Advisor, tmp_path: Path) -> None:
+    aircraft = tmp_path / "aircraft.yaml"
+    aircraft.write_text("elevator: {lag_s: 0.02}\n")
+    run = advisor("gap", flight.log, "--aircraft", aircraft, "--json", "--out", tmp_path / "improved.yaml")
+    told, found = json.loads(run.stdout), library.diagnose(flight)
+    assert found.verdict == told["verdict"]
+    assert [cause.effect for cause in found.causes] == [cause["effect"] for cause in told["causes"]]
+
+
+def test_a_log_that_cannot_be_used_is_read_with_its_problems_and_find_raises_them() -> None:
+    flight = library.read(SHIPPED / "arduplane-default-rates.tlog")
+    assert "rate" in {problem.code for problem in flight.problems}
+    with pytest.raises(library.UnusableInputError, match="Hz"):
+        library.find(flight)
+
+
+def test_flights_read_with_two_aircraft_are_no_campaign(flight: library.Flight) -> None:
+    other = library.read(flight.log)
+    with pytest.raises(library.ConfigurationError, match="another aircraft"):
+        library.judge([flight, other])
+    with pytest.raises(library.ConfigurationError, match="There is no flight"):
+        library.judge([])
