@@ -25,6 +25,7 @@ COMMANDS = {
     "analyze": "No screen: every manoeuvre's verdict, the estimates, stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
     "export": "Channels, manoeuvres, estimates and residuals for other tools.",
+    "batch": "Many flights: every log analyzed once, tables and changes over all of them.",
     "doctor": "Is this telemetry good enough, before flying; what to change if not.",
     "study": "The paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
     "locate": "Where settings and recordings are kept.",

@@ -14,7 +14,7 @@ from advisor.flight.messages import Columns
 from advisor.marks_file import read_by_hand
 from advisor.problems import Problem, UnusableInputError
 
-_SINCE_1970_S = 1e9
+SINCE_1970_S = 1e9
 """Times of arrival from 2001 on are dates; what a log without a date counts from its boot is smaller."""
 
 
@@ -94,13 +94,13 @@ def of_flight(columns: Sequence[Columns], flight: int) -> list[Columns]:
 
 
 def _oldest_first(logs: Sequence[Path]) -> list[Path]:
-    began_s = [_began_s(log) for log in logs]
-    if not all(at_s >= _SINCE_1970_S for at_s in began_s):
+    begun_s = [began_s(log) for log in logs]
+    if not all(at_s >= SINCE_1970_S for at_s in begun_s):
         return list(logs)
-    return [log for _, log in sorted(zip(began_s, logs, strict=True), key=lambda one: one[0])]
+    return [log for _, log in sorted(zip(begun_s, logs, strict=True), key=lambda one: one[0])]
 
 
-def _began_s(log: Path) -> float:
+def began_s(log: Path) -> float:
     """When a log began, s since 1970: smaller for one without dates, infinite for one that cannot be read."""
     from advisor.mavlink.logs import open_log
 

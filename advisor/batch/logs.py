@@ -1,0 +1,88 @@
+"""Which logs a batch is made of, and which aircraft file belongs to each."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatch
+from pathlib import Path
+
+from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.yaml_file import read_yaml
+
+ENDINGS = (".tlog", ".bin", ".ulg")
+PACKED = (".gz", ".zip")
+
+
+def find_logs(places: Sequence[Path], without: Path) -> list[Path]:
+    """Logs in the order given, those of a folder in the order of their names, each once.
+
+    Parameters
+    ----------
+    places
+        Logs, and folders that are searched with all folders in them for names that end as logs do.
+    without
+        Folder that is not searched: the results.
+
+    Raises
+    ------
+    UnusableInputError
+        A folder holds no log.
+    """
+    found: dict[Path, Path] = {}
+    for place in places:
+        logs = _in_folder(place, without.resolve()) if place.is_dir() else [place]
+        if not logs:
+            raise UnusableInputError(
+                "no_logs",
+                f"{place} holds no logs ({', '.join(ENDINGS)}, packed or not).",
+                "Give a folder with logs in it.",
+            )
+        for log in logs:
+            found.setdefault(log.resolve(), log)
+    return list(found.values())
+
+
+def _in_folder(folder: Path, without: Path) -> list[Path]:
+    found = []
+    for root, folders, files in os.walk(folder):
+        folders[:] = sorted(name for name in folders if (Path(root) / name).resolve() != without)
+        found += [Path(root) / name for name in sorted(files) if _is_log(name)]
+    return found
+
+
+def _is_log(name: str) -> bool:
+    lower = name.lower()
+    for ending in PACKED:
+        lower = lower.removesuffix(ending)
+    return lower.endswith(ENDINGS)
+
+
+@dataclass(frozen=True, slots=True)
+class AircraftMap:
+    """Patterns of logs, and the aircraft file of the logs that match; the first that matches counts."""
+
+    entries: tuple[tuple[str, Path], ...]
+
+    def file_of(self, log: Path) -> Path | None:
+        """The aircraft file of a log; None where no pattern matches its path or its name."""
+        names = (log.as_posix(), log.name)
+        return next((file for pattern, file in self.entries if any(fnmatch(n, pattern) for n in names)), None)
+
+
+def read_map(path: Path) -> AircraftMap:
+    """Read a YAML file of ``pattern: aircraft file``; files are relative to the map.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be read, or is no such list.
+    """
+    content = read_yaml(path)
+    if not isinstance(content, dict) or not all(
+        isinstance(one, str) for one in (*content, *content.values())
+    ):
+        raise ConfigurationError(
+            f"{path}: give one line a pattern, as in '\"alpha-*.tlog\": alpha.yaml'; "
+            "the first that matches counts."
+        )
+    return AircraftMap(tuple((pattern, path.parent / file) for pattern, file in content.items()))

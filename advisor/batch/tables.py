@@ -1,0 +1,137 @@
+"""The results of a batch as tables: flights, manoeuvres, changes."""
+
+from collections.abc import Sequence
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from advisor import __version__
+from advisor.aircraft import PARAMETERS
+from advisor.batch.flight import Analyzed
+from advisor.batch.trend import ChangeOverFlights, change_over_flights
+from advisor.exporting.found import PARAMETER_UNITS
+from advisor.exporting.table import Column, Dataset, Table, numbers, texts
+from advisor.log_series import SINCE_1970_S
+
+
+def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
+    """Flights oldest first where all usable ones tell when they began, else as given."""
+    if not all(SINCE_1970_S <= one.began_s < inf for one in results if one.usable):
+        return list(results)
+    return sorted(results, key=lambda one: one.began_s if one.usable else inf)
+
+
+def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
+    """The change over the flights of each aircraft, by the name of its aircraft file and its autopilot."""
+    by_aircraft: dict[str, list[tuple[int, Any]]] = {}
+    for number, flight in enumerate(flights, start=1):
+        if flight.estimate is not None:
+            by_aircraft.setdefault(aircraft_of(flight), []).append((number, flight.estimate))
+    found = {name: change_over_flights(several) for name, several in by_aircraft.items()}
+    return {name: change for name, change in found.items() if change is not None}
+
+
+def aircraft_of(flight: Analyzed) -> str:
+    """What tells one aircraft from another: the aircraft file and the kind of autopilot."""
+    vehicle = flight.document["log"]["vehicle"] or {}
+    return " ".join(filter(None, (flight.aircraft_file, vehicle.get("autopilot"))))
+
+
+def tables_of(flights: Sequence[Analyzed]) -> Dataset:
+    """One row a flight, one a manoeuvre, one a parameter of each change.
+
+    Parameters
+    ----------
+    flights
+        In the order of flying; flights are numbered from 1.
+    """
+    about = {"advisor": __version__, "logs": [{"file": f.log, "sha256": f.sha256} for f in flights]}
+    return Dataset((), (_flights(flights), _maneuvers(flights), _changes(changes_of(flights))), about)
+
+
+def _flights(flights: Sequence[Analyzed]) -> Table:
+    documents = [flight.document for flight in flights]
+    tests = [document["flight_test"] or {} for document in documents]
+    verdicts = [[m["verdict"] for m in document["maneuvers"]] for document in documents]
+    columns = [
+        Column("flight", np.arange(1, len(flights) + 1), "", "number in the order of flying"),
+        Column("log", texts([f.log for f in flights]), "", "file of the log"),
+        Column("sha256", texts([f.sha256 for f in flights]), "", "SHA-256 of the log"),
+        Column("aircraft", texts([aircraft_of(f) for f in flights]), "", "aircraft file and autopilot"),
+        Column("began_s", numbers([f.began_s for f in flights]), "s", "begin of the log since 1970"),
+        Column("duration_s", numbers([d["log"]["duration_s"] for d in documents]), "s", "vehicle time heard"),
+        Column("usable", np.array([f.usable for f in flights], np.bool_), "", "whether the log counts"),
+        Column("problems", texts([" ".join(f.reasons) for f in flights]), "", "why it does not count"),
+        Column("maneuvers", np.array([len(v) for v in verdicts], np.int64), "1", "number of manoeuvres"),
+        Column(
+            "accepted", np.array([v.count("accepted") for v in verdicts], np.int64), "1", "how many count"
+        ),
+        Column("decision", texts([t.get("decision", "") for t in tests]), "", "stop or continue"),
+        Column(
+            "criterion_percent", numbers([t.get("criterion_percent") for t in tests]), "%", "stop criterion"
+        ),
+        Column(
+            "airspeed_m_s",
+            numbers([f.joint.get("airspeed_m_s") for f in flights]),
+            "m/s",
+            "air speed at which the derivatives are given",
+        ),
+        *_parameters([d["model"] for d in documents], "of the joint estimate"),
+    ]
+    return Table("flights", "A row is a flight: one log.", tuple(columns))
+
+
+def _maneuvers(flights: Sequence[Analyzed]) -> Table:
+    rows = [(k, m) for k, f in enumerate(flights, start=1) for m in f.document["maneuvers"]]
+    found = [m for _, m in rows]
+    columns = [
+        Column("flight", np.array([k for k, _ in rows], np.int64), "", "number of the flight"),
+        Column("maneuver", np.array([m["number"] for m in found], np.int64), "", "number in the flight"),
+        Column("boot", np.array([m["boot"] for m in found], np.int64), "", "power-on in the log, from 0"),
+        Column("start_boot_s", numbers([m["start_boot_s"] for m in found]), "s", "onset of the first step"),
+        Column("end_boot_s", numbers([m["end_boot_s"] for m in found]), "s", "end of the free response"),
+        Column("input", texts([m["input"] for m in found]), "", "kind of input"),
+        Column("mode", texts([m["mode"] for m in found]), "", "flight mode"),
+        Column("accepted", np.array([m["verdict"] == "accepted" for m in found], np.bool_), "", "verdict"),
+        Column("sentence", texts([m["sentence"] for m in found]), "", "verdict as the pilot reads it"),
+        Column("reason_codes", texts([_codes(m) for m in found]), "", "stable codes of the reasons"),
+        Column("cost", numbers([m["cost"] for m in found]), "", "J of Eq. (7)"),
+        *_parameters([m["estimates"] for m in found], "of the manoeuvre"),
+    ]
+    return Table("maneuvers", "A row is a manoeuvre.", tuple(columns))
+
+
+def _changes(changes: dict[str, ChangeOverFlights]) -> Table:
+    rows = [(name, c, moved) for name, c in changes.items() for moved in c.change.moved]
+    columns = (
+        Column("aircraft", texts([name for name, _, _ in rows]), "", "aircraft file and autopilot"),
+        Column(
+            "since_flight",
+            np.array([c.since for _, c, _ in rows], np.int64),
+            "",
+            "first flight after the change",
+        ),
+        Column("parameter", texts([moved.parameter for *_, moved in rows]), "", "derivative that moved"),
+        Column("percent", numbers([moved.percent for *_, moved in rows]), "%", "growth of its size"),
+        Column("sigma", numbers([moved.sigma for *_, moved in rows]), "1", "difference over its std"),
+        Column(
+            "confirmed", np.array([c.change.confirmed for _, c, _ in rows], np.bool_), "", "two flights agree"
+        ),
+        Column("sentence", texts([c.sentence for _, c, _ in rows]), "", "change in words"),
+    )
+    return Table("changes", "A row is a derivative that moved from one flight to the next.", columns)
+
+
+def _parameters(estimates: Sequence[dict[str, Any] | None], of: str) -> list[Column]:
+    """Value and standard deviation of each parameter; NaN where there is none."""
+    columns = []
+    for name in PARAMETERS:
+        for key, suffix in (("value", ""), ("std", "_std")):
+            values = numbers([e[name][key] if e else None for e in estimates])
+            columns.append(Column(f"{name}{suffix}", values, PARAMETER_UNITS[name], f"{key} {of}"))
+    return columns
+
+
+def _codes(maneuver: dict[str, Any]) -> str:
+    return " ".join(reason["code"] for reason in maneuver["reasons"])

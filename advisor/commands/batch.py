@@ -1,0 +1,193 @@
+"""``advisor batch``: many flights, each analyzed once."""
+
+import os
+import sys
+import time
+from collections.abc import Sequence
+from datetime import datetime, timedelta
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from advisor.aircraft import Aircraft
+from advisor.commands.options import UNUSABLE, aircraft_option, read_aircraft
+from advisor.printable import printable
+from advisor.problems import ConfigurationError, Problem, UnusableInputError
+
+if TYPE_CHECKING:
+    from advisor.batch.flight import Analyzed, Task
+
+KEPT = "flights"
+"""Folder of what came of each log, by its key."""
+_TELL_EVERY_S = 10.0
+"""Without a terminal, progress is told this often."""
+
+
+@click.command
+@click.argument(
+    "places", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="LOGS-OR-FOLDERS..."
+)
+@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="DIR", help="Results.")
+@aircraft_option
+@click.option(
+    "--aircraft-map",
+    "map_file",
+    type=click.Path(path_type=Path),
+    metavar="MAP.yaml",
+    help="Several aircraft: patterns of logs and their aircraft files, one a line.",
+)
+@click.option(
+    "--workers",
+    type=click.IntRange(1),
+    default=lambda: os.cpu_count() or 1,
+    show_default="one a core",
+    help="Processes that analyze at the same time.",
+)
+def command(
+    places: tuple[Path, ...], out: Path, aircraft_file: Path | None, map_file: Path | None, workers: int
+) -> int:
+    """Analyze every log once; write one row a flight, one a manoeuvre, and what changed over the flights.
+
+    What came of each log is kept in DIR/flights: the next run with the same logs, configuration and advisor
+    analyzes what is new.
+
+    \b
+    Example:
+      advisor batch flights/ -o results --aircraft my-aircraft.yaml --workers 8
+      advisor batch flights/ -o results --aircraft-map fleet.yaml
+    """
+    if aircraft_file is not None and map_file is not None:
+        raise ConfigurationError("Give --aircraft for one aircraft, or --aircraft-map for several, not both.")
+    if out.exists() and not out.is_dir():
+        raise ConfigurationError(f"-o: {out} is a file; name a folder.")
+    from advisor.batch.logs import find_logs
+
+    logs = find_logs(places, out)
+    tasks, results = _tasks(logs, aircraft_file, map_file)
+    try:
+        (out / KEPT).mkdir(parents=True, exist_ok=True)
+        results |= _analyzed(tasks, out, workers)
+    except OSError as error:
+        raise ConfigurationError(
+            f"-o: {out} cannot be written to: {error.strerror or error}. Make room or name another place."
+        ) from None
+    return _told([results[log] for log in logs if log in results], out)
+
+
+def _tasks(
+    logs: Sequence[Path], aircraft_file: Path | None, map_file: Path | None
+) -> "tuple[list[Task], dict[Path, Analyzed]]":
+    """What is to be analyzed, each log once; and the results of logs that cannot be."""
+    from advisor.batch.flight import Task, failed, sha256_of
+    from advisor.batch.logs import read_map
+
+    chosen = read_map(map_file) if map_file is not None else None
+    described: dict[Path | None, Aircraft] = {}
+    tasks: dict[str, Task] = {}
+    results: dict[Path, Analyzed] = {}
+    for log in logs:
+        file = chosen.file_of(log) if chosen is not None else aircraft_file
+        if file not in described:
+            described[file] = read_aircraft(file)
+        task = Task(log, described[file], file.name if file else "", "")
+        if chosen is not None and file is None:
+            fix = "Add a line for the log, or a last one for '*'."
+            problem = Problem("no_aircraft", f"{log} matches no pattern in {map_file}.", fix)
+            results[log] = failed(task, [problem])
+            continue
+        try:
+            task = Task(log, described[file], task.aircraft_file, sha256_of(log))
+        except UnusableInputError as error:
+            results[log] = failed(task, error.problems)
+            continue
+        first = tasks.setdefault(task.key, task)
+        if first is not task:
+            click.echo(printable(f"{log} is a copy of {first.log}: it counts once."), err=True)
+    return list(tasks.values()), results
+
+
+def _analyzed(tasks: "Sequence[Task]", out: Path, workers: int) -> "dict[Path, Analyzed]":
+    """The result of every task: kept before, or made now and kept."""
+    from advisor.batch.flight import analyze, failed, keep, kept
+    from advisor.batch.runner import run_all
+
+    places = {task.log: out / KEPT / f"{task.key}.json" for task in tasks}
+    results = {task.log: known for task in tasks if (known := kept(places[task.log]))}
+    to_do = [task for task in tasks if task.log not in results]
+    if results:
+        click.echo(f"{len(results)} of {len(tasks)} logs were analyzed before.", err=True)
+    progress = _Progress(len(to_do))
+    for task, result in run_all(analyze, to_do, workers):
+        if isinstance(result, Exception):
+            results[task.log] = failed(task, [_fault(task, result)])
+        else:
+            results[task.log] = result
+            keep(result, places[task.log])
+        progress.advance()
+    return results
+
+
+def _fault(task: "Task", error: Exception) -> Problem:
+    """A log whose analysis ended with an error, in a sentence."""
+    from concurrent.futures import BrokenExecutor
+
+    if isinstance(error, ConfigurationError):
+        return Problem("configuration", str(error), "")
+    if isinstance(error, BrokenExecutor):
+        return Problem(
+            "worker_died",
+            f"The process that analyzed {task.log} was ended twice, as for want of memory.",
+            "Repeat with fewer --workers, or analyze the log alone.",
+        )
+    return Problem(
+        "fault",
+        f"A fault of the advisor in {task.log}: {type(error).__name__}: {error}.",
+        "Please report it.",
+    )
+
+
+def _told(results: "Sequence[Analyzed]", out: Path) -> int:
+    """Write the tables, and say what failed and what changed."""
+    from advisor.batch.tables import changes_of, in_order, tables_of
+    from advisor.exporting.formats import write_formats
+    from advisor.exporting.staging import staged
+
+    flights = in_order(results)
+    form = "parquet" if find_spec("pyarrow") else "csv"
+    with staged(out) as stage:
+        write_formats(tables_of(flights), stage, [form])
+    failures = [flight for flight in flights if not flight.usable]
+    for flight in failures:
+        click.echo(printable(f"{flight.log}: {' '.join(flight.reasons)}"), err=True)
+    for name, change in changes_of(flights).items():
+        click.echo(printable(f"{name}: {change.sentence}"))
+    maneuvers = sum(len(flight.document["maneuvers"]) for flight in flights)
+    click.echo(
+        f"{printable(str(out))}: {len(flights)} flights, {maneuvers} manoeuvres,"
+        f" {len(failures)} logs that cannot be used; flights.{form}, maneuvers.{form}, changes.{form}."
+    )
+    return UNUSABLE if len(failures) == len(flights) else 0
+
+
+class _Progress:
+    """How far the batch is, its rate, and when it ends, on standard error."""
+
+    def __init__(self, total: int) -> None:
+        self._total, self._done = total, 0
+        self._began_s = self._told_s = time.monotonic()
+
+    def advance(self) -> None:
+        """One more log is done."""
+        self._done += 1
+        now, last, watched = time.monotonic(), self._done == self._total, sys.stderr.isatty()
+        if not (watched or last or now - self._told_s > _TELL_EVERY_S):
+            return
+        self._told_s = now
+        took_s = now - self._began_s
+        line = f"{self._done} of {self._total} logs, {60.0 * self._done / took_s:.1f} a minute"
+        if not last:
+            ends = datetime.now() + timedelta(seconds=took_s / self._done * (self._total - self._done))
+            line += f", ends about {ends:%H:%M}"
+        click.echo(f"\r\033[K{line}" if watched else line, nl=last or not watched, err=True)

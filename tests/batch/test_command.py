@@ -1,0 +1,156 @@
+"""``advisor batch``: the numbers of ``analyze``, each log once, failures listed, resumable."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.batch.flight import Task, kept, sha256_of
+from advisor.batch.logs import AircraftMap, find_logs, read_map
+from advisor.problems import ConfigurationError, UnusableInputError
+from tests.conftest import Advisor
+from tests.flights import TWO, recorded
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Two flights, a copy of the first, and a log that holds nothing."""
+    place = tmp_path / "flights"
+    (place / "2026").mkdir(parents=True)
+    for seed in (11, 12):
+        shutil.copy(recorded("linear", 1.0, seed, TWO), place / f"flight-{seed}.tlog")
+    shutil.copy(place / "flight-11.tlog", place / "2026" / "copy.tlog")
+    (place / "empty.bin").write_bytes(b"")
+    (place / "notes.txt").write_text("no log")
+    return place
+
+
+def test_rows_have_the_numbers_of_analyze_and_failures_their_reason(
+    folder: Path, advisor: Advisor, tmp_path: Path
+) -> None:
+    run = advisor("batch", folder, "-o", tmp_path / "out", "--workers", 1)
+    assert run.returncode == 0, run.stderr
+    assert "is a copy of" in run.stderr
+    assert f"{folder / 'empty.bin'}: empty.bin is empty." in run.stderr
+    assert "3 of 3 logs" in run.stderr
+    flights = pq.read_table(tmp_path / "out" / "flights.parquet").to_pylist()
+    maneuvers = pq.read_table(tmp_path / "out" / "maneuvers.parquet").to_pylist()
+    assert [row["usable"] for row in flights].count(False) == 1
+    for row in filter(lambda one: one["usable"], flights):
+        told = json.loads(advisor("analyze", row["log"], "--json").stdout)
+        assert {name: row[name] for name in PARAMETERS} == {
+            name: told["model"][name]["value"] for name in PARAMETERS
+        }
+        mine = [m for m in maneuvers if m["flight"] == row["flight"]]
+        assert [m["sentence"] for m in mine] == [m["sentence"] for m in told["maneuvers"]]
+        assert [m["M_q_std"] for m in mine] == [m["estimates"]["M_q"]["std"] for m in told["maneuvers"]]
+    assert len(maneuvers) == 4
+
+
+def test_the_second_run_analyzes_nothing_and_gives_the_same_tables(
+    folder: Path, advisor: Advisor, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    advisor("batch", folder, "-o", out, "--workers", 1)
+    before = {path.name: path.read_bytes() for path in out.glob("*.parquet")}
+    stamps = {path: path.stat().st_mtime_ns for path in (out / "flights").iterdir()}
+    run = advisor("batch", folder, "-o", out, "--workers", 1)
+    assert "3 of 3 logs were analyzed before." in run.stderr
+    assert {path.name: path.read_bytes() for path in out.glob("*.parquet")} == before
+    assert {path: path.stat().st_mtime_ns for path in (out / "flights").iterdir()} == stamps
+
+
+def test_two_processes_give_the_tables_of_one(folder: Path, advisor: Advisor, tmp_path: Path) -> None:
+    for workers in (1, 2):
+        advisor("batch", folder, "-o", tmp_path / f"out-{workers}", "--workers", workers)
+    for name in ("flights", "maneuvers", "changes"):
+        one, two = (tmp_path / f"out-{workers}" / f"{name}.parquet" for workers in (1, 2))
+        assert one.read_bytes() == two.read_bytes()
+
+
+def test_the_key_changes_with_the_log_the_configuration_and_what_was_decided_by_hand(tmp_path: Path) -> None:
+    log = tmp_path / "flight.tlog"
+    log.write_bytes(b"a log")
+    task = Task(log, Aircraft(), "", sha256_of(log))
+    keys = [
+        task.key,
+        Task(log, Aircraft(), "", "another").key,
+        Task(log, Aircraft(airspeed_m_s=20.0), "", task.sha256).key,
+    ]
+    (tmp_path / "flight.maneuvers.yaml").write_text("maneuvers: []\n")
+    assert len({*keys, task.key}) == 4
+
+
+def test_a_result_that_was_damaged_is_made_again(tmp_path: Path) -> None:
+    (tmp_path / "half.json").write_text('{"log": "a.tl')
+    assert kept(tmp_path / "half.json") is None
+    assert kept(tmp_path / "none.json") is None
+
+
+def test_a_map_gives_each_log_its_aircraft_and_lists_logs_without_one(
+    folder: Path, advisor: Advisor, tmp_path: Path
+) -> None:
+    (tmp_path / "known.yaml").write_text("elevator: {lag_s: 0.02}\n")
+    (tmp_path / "fleet.yaml").write_text('"flight-12*": known.yaml\n')
+    run = advisor(
+        "batch", folder, "-o", tmp_path / "out", "--aircraft-map", tmp_path / "fleet.yaml", "--workers", 1
+    )
+    assert run.returncode == 0
+    assert f"{folder / 'flight-11.tlog'} matches no pattern" in run.stderr
+    rows = pq.read_table(tmp_path / "out" / "flights.parquet").to_pylist()
+    assert {Path(row["log"]).name: row["aircraft"] for row in rows if row["usable"]} == {
+        "flight-12.tlog": "known.yaml ardupilot"
+    }
+
+
+def test_the_first_pattern_that_matches_path_or_name_counts() -> None:
+    chosen = AircraftMap((("2026/*", Path("new.yaml")), ("a-*", Path("a.yaml")), ("*", Path("any.yaml"))))
+    names = [chosen.file_of(Path(log)) for log in ("2026/a-1.tlog", "old/a-1.tlog", "b.bin")]
+    assert names == [Path("new.yaml"), Path("a.yaml"), Path("any.yaml")]
+
+
+def test_what_is_no_map_is_refused_with_an_example(tmp_path: Path) -> None:
+    (tmp_path / "map.yaml").write_text("- a.yaml\n")
+    with pytest.raises(ConfigurationError, match="one line a pattern"):
+        read_map(tmp_path / "map.yaml")
+
+
+def test_logs_of_a_folder_are_those_that_end_so_and_results_are_left_out(folder: Path) -> None:
+    (folder / "out").mkdir()
+    (folder / "out" / "cut.tlog").write_bytes(b"")
+    (folder / "packed.TLOG.gz").write_bytes(b"")
+    names = [log.name for log in find_logs([folder, folder / "flight-12.tlog"], folder / "out")]
+    assert names == ["empty.bin", "flight-11.tlog", "flight-12.tlog", "packed.TLOG.gz", "copy.tlog"]
+
+
+def test_a_folder_without_logs_is_one_sentence_and_exit_code_3(advisor: Advisor, tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    run = advisor("batch", tmp_path / "empty", "-o", tmp_path / "out")
+    assert run.returncode == 3
+    assert run.stderr.count("\n") == 1
+    assert "holds no logs" in run.stderr
+    with pytest.raises(UnusableInputError):
+        find_logs([tmp_path / "empty"], tmp_path / "out")
+
+
+def test_when_no_log_can_be_used_the_exit_code_is_3(advisor: Advisor, tmp_path: Path) -> None:
+    (tmp_path / "a.tlog").write_bytes(b"")
+    run = advisor(
+        "batch", tmp_path / "a.tlog", tmp_path / "none.tlog", "-o", tmp_path / "out", "--workers", 1
+    )
+    assert run.returncode == 3
+    assert "There is no file" in run.stderr
+    assert "a.tlog is empty" in run.stderr
+
+
+def test_results_below_a_file_are_refused_in_one_sentence(
+    folder: Path, advisor: Advisor, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("")
+    run = advisor("batch", folder / "flight-11.tlog", "-o", tmp_path / "file" / "out")
+    assert run.returncode == 2
+    assert run.stderr.startswith("-o: ")
+    assert "cannot be written to: Not a directory" in run.stderr
