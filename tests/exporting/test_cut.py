@@ -8,7 +8,7 @@ import pytest
 
 from tests.conftest import Advisor
 from tests.exporting.conftest import Exported
-from tests.flights import SHIPPED
+from tests.flights import SHIPPED, TWO, recorded
 
 BASE_BIN = Path(__file__).parents[1] / "cases" / "base.bin"
 
@@ -50,14 +50,21 @@ def test_the_packets_of_a_cut_log_are_those_of_the_whole_log_in_their_order(
     assert len(cut.read_bytes()) < 0.5 * exported.log.stat().st_size
 
 
-@pytest.mark.parametrize("log", ["arduplane-calm.tlog", "bundled-demo.tlog"])
-@pytest.mark.parametrize("number", [1, 7])
+@pytest.mark.parametrize(("log", "number"), [("bundled-demo.tlog", 1), ("arduplane-calm.tlog", 7)])
 def test_the_first_and_the_last_manoeuvre_of_a_shipped_log_are_cut(
     log: str, number: int, advisor: Advisor, tmp_path: Path
 ) -> None:
     cut = tmp_path / "cut.tlog"
     assert advisor("export", SHIPPED / log, "--cut", number, "-o", cut).returncode == 0
     assert len(json.loads(advisor("analyze", cut, "--json").stdout)["maneuvers"]) == 1
+
+
+def test_a_manoeuvre_after_a_reboot_is_cut_from_its_own_power_on(advisor: Advisor, tmp_path: Path) -> None:
+    first, second = (recorded("linear", 1.0, seed, TWO).read_bytes() for seed in (11, 12))
+    (tmp_path / "two.tlog").write_bytes(first + second)
+    cut = tmp_path / "m3.tlog"
+    assert advisor("export", tmp_path / "two.tlog", "--cut", "3", "-o", cut).returncode == 0
+    assert set(records(cut.read_bytes())[-100:]) <= set(records(second))
 
 
 def test_a_packed_log_is_cut_as_the_log_inside(exported: Exported, advisor: Advisor, tmp_path: Path) -> None:
