@@ -1,5 +1,6 @@
 """``advisor export``: the flight's data for other tools."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from advisor.commands.options import (
     target_system_option,
 )
 from advisor.exporting.formats import WRITERS, parse_formats, write_formats
+from advisor.exporting.staging import refuse_inputs, staged
 from advisor.printable import printable
 from advisor.problems import ConfigurationError
 
@@ -74,14 +76,13 @@ def command(
     """
     inputs = [*logs, *([aircraft_file] if aircraft_file else [])]
     if cut is not None:
-        _refuse_wrong_cut(formats, out)
+        _refuse_wrong_cut(formats, out, inputs)
     elif out.exists() and not out.is_dir():
         raise ConfigurationError(f"-o: {out} is a file; name a folder.")
     chosen = () if cut is not None else parse_formats(formats or "csv")
     aircraft = read_aircraft(aircraft_file, rule)
     refuse_marks_on_several(marks, logs)
     from advisor.exporting.reading import dataset, read_whole
-    from advisor.exporting.staging import staged
 
     flights = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks)
     for note in flights.notes:
@@ -100,7 +101,8 @@ def command(
     return 0
 
 
-def _refuse_wrong_cut(formats: str | None, out: Path) -> None:
+def _refuse_wrong_cut(formats: str | None, out: Path, inputs: Sequence[Path]) -> None:
     if formats is not None:
         raise ConfigurationError("--cut writes a tlog: leave out --format, or leave out --cut.")
     refuse_unwritable("-o", out)
+    refuse_inputs([out], inputs)

@@ -11,6 +11,9 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.batch.flight import Task, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
 from advisor.problems import ConfigurationError, UnusableInputError
+from sim.effects.fitting import flight_of
+from sim.record import record
+from sim.scenario import Noise, Scenario
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded
 
@@ -48,6 +51,23 @@ def test_rows_have_the_numbers_of_analyze_and_failures_their_reason(
         assert [m["sentence"] for m in mine] == [m["sentence"] for m in told["maneuvers"]]
         assert [m["M_q_std"] for m in mine] == [m["estimates"]["M_q"]["std"] for m in told["maneuvers"]]
     assert len(maneuvers) == 4
+
+
+def test_a_centre_of_gravity_that_has_moved_is_told_since_its_first_flight(
+    advisor: Advisor, tmp_path: Path
+) -> None:
+    for number in range(1, 6):
+        aft = {"cg_shift": {"aft_m": 0.015, "at_s": 0.0}} if number >= 4 else {}
+        noise = Noise(percent=1.0)
+        scenario = Scenario(aircraft="uav", noise=noise, seed=number, maneuvers=TWO, effects=aft)
+        record(flight_of(scenario), tmp_path / f"flight-{number}.tlog")
+    run = advisor("batch", tmp_path, "-o", tmp_path / "out", "--workers", 1)
+    assert (
+        "Since flight 4 M_alpha is 35 % smaller; it looks like a shift of the centre of gravity."
+        in run.stdout
+    )
+    (row,) = pq.read_table(tmp_path / "out" / "changes.parquet").to_pylist()
+    assert (row["since_flight"], row["parameter"], row["confirmed"]) == (4, "M_alpha", True)
 
 
 def test_the_second_run_analyzes_nothing_and_gives_the_same_tables(
@@ -104,6 +124,16 @@ def test_a_map_gives_each_log_its_aircraft_and_lists_logs_without_one(
     assert {Path(row["log"]).name: row["aircraft"] for row in rows if row["usable"]} == {
         "flight-12.tlog": "known.yaml ardupilot"
     }
+
+
+def test_a_wrong_file_of_marks_is_the_failure_of_its_log_alone(
+    folder: Path, advisor: Advisor, tmp_path: Path
+) -> None:
+    (folder / "flight-11.maneuvers.yaml").write_text("wings: 2\n")
+    run = advisor("batch", folder / "flight-11.tlog", folder / "flight-12.tlog", "-o", tmp_path / "out")
+    assert run.returncode == 0
+    assert "wings: unknown key" in run.stderr
+    assert "1 logs that cannot be used" in run.stdout
 
 
 def test_the_first_pattern_that_matches_path_or_name_counts() -> None:

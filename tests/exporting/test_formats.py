@@ -14,6 +14,7 @@ from mcap.reader import make_reader
 from scipy.io import loadmat
 
 from advisor.aircraft import PARAMETERS
+from advisor.exporting.plotjuggler import layout
 from tests.exporting.conftest import Exported
 
 
@@ -182,6 +183,13 @@ def test_the_layout_for_plotjuggler_draws_columns_that_the_grid_has_over_its_col
     curves = [curve.attrib["name"] for curve in root.iter("curve")]
     assert {"elevator", "alpha", "q", "airspeed"} <= set(curves) <= set(columns)
     assert [p.attrib["time_axis"] for p in file.iter("parameters")] == [columns[0]]
+
+
+def test_a_layout_beside_parquet_alone_loads_the_parquet_grid(exported: Exported) -> None:
+    file = layout(exported.data.recordings[0], "parquet").find("previouslyLoaded_Datafiles/fileInfo")
+    assert file is not None
+    assert file.attrib["filename"] == "grid.parquet"
+    assert [d.attrib["prevTimestamp"] for d in file.iter("default")] == ["t_boot_s"]
 
 
 def test_every_parameter_of_the_model_has_a_row_and_a_column_of_covariance(exported: Exported) -> None:
