@@ -165,8 +165,8 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
         click.echo(printable(f"{name}: {change.sentence}"))
     maneuvers = sum(len(flight.document["maneuvers"]) for flight in flights)
     click.echo(
-        f"{printable(str(out))}: {len(flights)} flights, {maneuvers} manoeuvres,"
-        f" {len(failures)} logs that cannot be used; flights.{form}, maneuvers.{form}, changes.{form}."
+        f"{printable(str(out))}: flights: {len(flights)}; manoeuvres: {maneuvers}; logs that cannot be used:"
+        f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}."
     )
     return UNUSABLE if len(failures) == len(flights) else 0
 

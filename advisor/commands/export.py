@@ -97,7 +97,9 @@ def command(
         return 0
     with staged(out, inputs) as stage:
         write_formats(dataset(flights), stage, chosen)
-    click.echo(f"{printable(str(out))}: {len(flights.state.maneuvers)} manoeuvres as {', '.join(chosen)}.")
+    click.echo(
+        f"{printable(str(out))}: manoeuvres: {len(flights.state.maneuvers)}; formats: {', '.join(chosen)}."
+    )
     return 0
 
 

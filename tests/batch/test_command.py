@@ -133,7 +133,7 @@ def test_a_wrong_file_of_marks_is_the_failure_of_its_log_alone(
     run = advisor("batch", folder / "flight-11.tlog", folder / "flight-12.tlog", "-o", tmp_path / "out")
     assert run.returncode == 0
     assert "wings: unknown key" in run.stderr
-    assert "1 logs that cannot be used" in run.stdout
+    assert "logs that cannot be used: 1;" in run.stdout
 
 
 def test_the_first_pattern_that_matches_path_or_name_counts() -> None:

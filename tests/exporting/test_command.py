@@ -17,7 +17,7 @@ from tests.flights import TWO, recorded
 def test_the_default_is_csv(advisor: Advisor, tmp_path: Path) -> None:
     run = advisor("export", recorded("linear", 1.0, maneuvers=TWO), "-o", tmp_path / "out")
     assert run.returncode == 0
-    assert "2 manoeuvres as csv" in run.stdout
+    assert "manoeuvres: 2; formats: csv." in run.stdout
     assert (tmp_path / "out" / "maneuvers.csv").exists()
     assert {path.suffix for path in (tmp_path / "out").iterdir()} == {"", ".csv", ".json"}
 
