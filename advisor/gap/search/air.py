@@ -77,7 +77,8 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     found = _moving_in(problem, fitted, loudest)
     if found.gain < AIR_GAIN and _stands_out(power):
         found = _moving_in(problem, fitted, loudest[:1])
-    if found.gain < AIR_GAIN:
+    # What coloured instruments gain alone is no air: then the air's angle is found to be nothing.
+    if found.gain < AIR_GAIN or found.gust_angle <= 0.0:
         return None
     model = with_floor(problem, found.air)
     instruments = np.hypot(model.white, model.coloured)[[OUTPUTS.index(c) for c in problem.channels]]
