@@ -17,6 +17,9 @@ from advisor.gap.search.baseline import believed_derivatives
 from advisor.mavlink.logs import open_log
 from advisor.printable import printable
 from advisor.problems import Problem, UnusableInputError
+from advisor.simulators.compare import Compared, compare
+from advisor.simulators.protocol import Simulator
+from advisor.simulators.specification import simulator_of
 from advisor.untested import without_simulator
 
 _PAUSE_S = 60.0
@@ -115,19 +118,61 @@ def diagnose_logs(
     progress: Callable[[str, float], None] = lambda *_: None,
     by_hand: Sequence[ByHand] = (),
 ) -> Diagnosis:
-    """Read logs and diagnose their gap."""
+    """Read logs and diagnose their gap to the aircraft file's model."""
+    return compare_logs(logs, aircraft, None, holdout, target_system, progress, by_hand).diagnosis
+
+
+def compare_logs(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    simulator: Simulator | None,
+    holdout: int | None = None,
+    target_system: int | None = None,
+    progress: Callable[[str, float], None] = lambda *_: None,
+    by_hand: Sequence[ByHand] = (),
+) -> Compared:
+    """Read logs and diagnose their gap to a simulator; None: to the aircraft file's model.
+
+    Raises
+    ------
+    UnusableInputError
+        A log cannot be read or cannot serve, or the simulator does not fly.
+    """
     progress("reading", 0.0)
     flown = maneuvers_of(logs, aircraft, target_system, by_hand)
-    found = diagnose(flown.maneuvers, aircraft, holdout, progress)
-    if believed_derivatives(aircraft) is None:
-        found = without_simulator(found)
-    found = replace(found, height_m=_height_of(flown.maneuvers))
+    if simulator is not None:
+        compared = compare(flown.maneuvers, simulator, aircraft, holdout, progress)
+    else:
+        found = diagnose(flown.maneuvers, aircraft, holdout, progress)
+        told = found if believed_derivatives(aircraft) is not None else without_simulator(found)
+        compared = Compared(told, aircraft)
     notes = list(flown.notes)
     if flown.again:
         every = len(flown.maneuvers) + flown.again
         twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
         notes.insert(0, f"{twice}: they count once.")
-    return replace(found, notes=(*notes, *found.notes)) if notes else found
+    every_note = (*notes, *compared.diagnosis.notes)
+    found = replace(compared.diagnosis, notes=every_note, height_m=_height_of(flown.maneuvers))
+    return replace(compared, diagnosis=found)
+
+
+def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Simulator | None:
+    """Open the simulator that the aircraft names; None where it names none.
+
+    Raises
+    ------
+    ConfigurationError
+        The specification names no simulator.
+    UnusableInputError
+        The log that a simulator wrote cannot serve.
+    """
+    if aircraft.simulator is None:
+        return None
+
+    def read(log: Path) -> list[Maneuver]:
+        return maneuvers_of([log], aircraft, target_system).maneuvers
+
+    return simulator_of(aircraft.simulator, aircraft, read)
 
 
 def _height_of(maneuvers: Sequence[Maneuver]) -> float | None:

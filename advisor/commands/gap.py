@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
-    "no_marks": "--no-marks", "why": "--why", "exports": "--export",
+    "no_marks": "--no-marks", "why": "--why", "exports": "--export", "specification": "--simulator",
 }  # fmt: skip
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
@@ -49,6 +49,12 @@ _OF_A_PLAN = {
     "--holdout",
     type=click.IntRange(1),
     help="Measure on so many manoeuvres, the last ones, with numbers fitted without them.",
+)
+@click.option(
+    "--simulator",
+    "specification",
+    metavar="SPEC",
+    help="Your own simulator: linear, jsbsim:MODEL, fmu:FILE, python:module:factory or log:FILE.",
 )
 @click.option("--out", type=click.Path(path_type=Path), help="Where to write the improved simulator.")
 @export_option
@@ -68,6 +74,7 @@ def command(
     marks: "tuple[Mark, ...]",
     no_marks: bool,
     holdout: int | None,
+    specification: str | None,
     out: Path | None,
     exports: tuple[str, ...],
     why: bool,
@@ -86,6 +93,7 @@ def command(
       advisor gap flight-1.tlog flight-2.tlog --holdout 3 --json
       advisor gap flight.tlog --maneuver +12:+24
       advisor gap flight.tlog --aircraft my-aircraft.yaml --export matlab:short-period.m
+      advisor gap flight.tlog --simulator jsbsim:c172p
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
     _refuse_foreign(foresee)
@@ -110,32 +118,42 @@ def command(
             raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
     elif not os.access(Path(), os.W_OK):
         raise ConfigurationError("This folder cannot be written to: name a file in another with --out.")
+    if specification is not None:
+        aircraft = replace(aircraft, simulator=specification)
     orders = orders_of(exports, aircraft, [*logs, aircraft_file, out])
-    from advisor.diagnosis import diagnose_logs
+    from advisor.diagnosis import compare_logs, named_simulator
     from advisor.gap.document import gap_document
     from advisor.report.improved import improved_name, write_improved
 
     watched = sys.stderr.isatty()
+    progress = _progress if watched else lambda *_: None
+    simulator = None
     try:
-        found = diagnose_logs(
-            logs, aircraft, holdout, target_system, _progress if watched else lambda *_: None, by_hand
-        )
+        simulator = named_simulator(aircraft, target_system)
+        compared = compare_logs(logs, aircraft, simulator, holdout, target_system, progress, by_hand)
+        found = compared.diagnosis
     except UnusableInputError as error:
         if as_json:
             click.echo(json.dumps(gap_document(None, error.problems), indent=1))
         click.echo(str(error), err=True)
         return UNUSABLE
     finally:
+        if simulator is not None:
+            simulator.close()
         if watched:
             click.echo("\r\033[K", nl=False, err=True)
     improved = None
     if found.verdict in ("effect", "parameters"):
-        improved = str(write_improved(found, aircraft, out or Path(improved_name(found, aircraft_file))))
+        improved = str(
+            write_improved(found, compared.aircraft, out or Path(improved_name(found, aircraft_file)))
+        )
     elif out is not None:
         click.echo(
             f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
         )
-    outcomes = write_exports(orders, found, aircraft)
+    # The servo that the simulator has itself is no part of what is added to it.
+    as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
+    outcomes = write_exports(orders, found, as_given)
     if as_json:
         document = gap_document(found, (), improved) | {"exports": listed(outcomes)}
         click.echo(json.dumps(document, allow_nan=False, indent=1))

@@ -1,7 +1,7 @@
 """The diagnosis: where the gap lies, which effect causes it, how far it shrinks without it."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
@@ -26,6 +26,14 @@ from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
 from advisor.problems import UnusableInputError
+
+
+@dataclass(frozen=True)
+class Examined:
+    """A diagnosis with what it was made from."""
+
+    diagnosis: Diagnosis
+    evidence: Evidence
 
 
 def diagnose(
@@ -54,6 +62,22 @@ def diagnose(
     UnusableInputError
         No usable manoeuvre, or no angle of attack.
     """
+    return examine(maneuvers, aircraft, holdout, progress).diagnosis
+
+
+def examine(
+    maneuvers: Sequence[Maneuver],
+    aircraft: Aircraft,
+    holdout: int | None = None,
+    progress: Progress = lambda *_: None,
+) -> Examined:
+    """Diagnose as ``diagnose`` does, and keep the evidence for a simulator that flies the answer.
+
+    Raises
+    ------
+    UnusableInputError
+        No usable manoeuvre, or no angle of attack.
+    """
     progress("checking the angle of attack against the motion", 0.0)
     aircraft = _with_speed(usable_of(maneuvers), aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
@@ -63,7 +87,7 @@ def diagnose(
     diagnosis = answer(evidence, aircraft, kinematics, holdout)
     used = {flight.number for flight in evidence.problem.flights.flights}
     missing = left_out([m for m in maneuvers if m.number not in used])
-    return replace(diagnosis, notes=(*diagnosis.notes, *missing))
+    return Examined(replace(diagnosis, notes=(*diagnosis.notes, *missing)), evidence)
 
 
 def _explained(

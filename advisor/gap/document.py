@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from advisor.gap.decision import Decision
-from advisor.gap.result import Cause, Diagnosis, Value, Yardsticks
+from advisor.gap.result import Cause, Diagnosis, InSimulator, Qualification, Value, Yardsticks
 from advisor.problems import Problem
 
 SCHEMA = "advisor.gap/1"
@@ -13,7 +13,7 @@ _NOTHING: Mapping[str, Any] = {
     "verdict": None, "sentence": None, "maneuvers": [], "gap": None, "where": None, "causes": [],
     "shrink": None, "waterfall": [], "cannot_see": [], "model": None, "reference_airspeed_m_s": None,
     "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
-    "share_irreducible": None, "decisions": [],
+    "share_irreducible": None, "decisions": [], "simulator": None, "qualification": None,
 }  # fmt: skip
 """What stands in a document without a diagnosis."""
 
@@ -52,6 +52,11 @@ def gap_document(
             "percent": d.shrink.percent, "ci95_percent": list(d.shrink.ci95_percent),
             "beyond_air_percent": d.shrink.beyond_air_percent,
             "by_numbers_percent": d.shrink.by_numbers_percent,
+            "in_simulator": _in_simulator(d.in_simulator),
+        },
+        "simulator": None if d.in_simulator is None else d.in_simulator.simulator,
+        "qualification": None if d.in_simulator is None else {
+            q.channel: _qualification(q) for q in d.in_simulator.qualification
         },
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "cannot_see": [
@@ -88,6 +93,23 @@ def _cause(c: Cause) -> dict[str, Any]:
         "parameters": _values(c.parameters),
         "cannot_be_told_from": list(c.cannot_be_told_from), "tell_apart_by": c.tell_apart_by,
         "gap_after": c.gap_after, "in_model": c.present,
+    }  # fmt: skip
+
+
+def _in_simulator(found: InSimulator | None) -> dict[str, Any] | None:
+    if found is None or found.after is None:
+        return None
+    return {
+        "before": found.before, "after": found.after, "percent": found.percent,
+        "on_paper": list(found.on_paper),
+    }  # fmt: skip
+
+
+def _qualification(q: Qualification) -> dict[str, Any]:
+    return {
+        "limit": q.limit, "before": q.before, "after": q.after, "pass_before": q.passes_before,
+        "pass": q.passes_before if q.after is None else q.passes_after,
+        "theil_before": q.theil[0], "theil_after": q.theil[1],
     }  # fmt: skip
 
 

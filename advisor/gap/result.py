@@ -117,6 +117,49 @@ class Yardsticks:
 
 
 @dataclass(frozen=True, slots=True)
+class Qualification:
+    """One channel of the user's simulator beside the tolerance for qualifying training simulators."""
+
+    channel: str
+    limit: float | None
+    """14 CFR Part 60, Appendix A, test 2.c.10, SI of the channel; None: none is published."""
+    before: float
+    """Largest error of the simulator as given, on manoeuvres kept out, SI of the channel."""
+    after: float | None
+    """Largest error with the effects added to the simulator; None: nothing was added."""
+    theil: tuple[float, float | None]
+    """Theil's inequality coefficient, before and after."""
+
+    @property
+    def passes_before(self) -> bool | None:
+        """Whether the simulator as given stays within the limit; None without a limit."""
+        return None if self.limit is None else self.before <= self.limit
+
+    @property
+    def passes_after(self) -> bool | None:
+        """Whether the simulator with the effects stays within the limit; None without a limit or effects."""
+        return None if self.limit is None or self.after is None else self.after <= self.limit
+
+
+@dataclass(frozen=True, slots=True)
+class InSimulator:
+    """The gap measured in the user's own simulator, on manoeuvres kept out of the fit."""
+
+    simulator: str
+    """What the simulator is, for people."""
+    before: float
+    """Gap of the simulator as given, times the floor's power."""
+    after: float | None
+    """Gap with the effects added to the simulator; None: nothing was added."""
+    percent: float | None
+    on_paper: tuple[str, ...]
+    """What the simulator cannot be given: effects, ``derivatives``, ``its own servo``."""
+    qualification: tuple[Qualification, ...]
+    refused: str = ""
+    """Why the simulator does not fly with the effects; empty where it does, or none was added."""
+
+
+@dataclass(frozen=True, slots=True)
 class Trace:
     """One channel of one manoeuvre for plotting, at its own stamps."""
 
@@ -160,6 +203,8 @@ class Diagnosis:
     """Every number that was held against a limit, in the order of asking."""
     traces: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
+    in_simulator: InSimulator | None = None
+    """The gap in the user's own simulator; None where no simulator was named."""
     maneuvers: tuple[int, ...] = field(default=())
     height_m: float | None = None
     """Mean height of the manoeuvres, as recorded; None: not recorded."""

@@ -14,6 +14,7 @@ from advisor.gap.verdict.ledger import in_words
 from advisor.gap.verdict.text import place
 from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, worst_maneuver, yardsticks
+from advisor.report.gap_simulator import simulated
 from advisor.report.gap_sizes import short
 from advisor.report.gap_where import whereabouts
 
@@ -79,6 +80,9 @@ class GapScreen:
         yield ""
         yield from yardsticks(d)
         yield ""
+        if d.in_simulator is not None:
+            yield from simulated(d.in_simulator)
+            yield ""
         floor = d.gap.floor_note and f"Noise floor {d.gap.floor_note}."
         for note in (d.kinematics.sentence, floor, *d.notes, self._written()):
             if note:

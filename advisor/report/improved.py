@@ -17,7 +17,7 @@ def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]
     """The aircraft file with the fitted model and the effects found in it."""
     content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
     flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, diagnosis.effects))
-    kept = replace(flown, name=Aircraft().name, model={}, effects={})
+    kept = replace(flown, name=Aircraft().name, model={}, effects={}, simulator=None)
     content.update(_beyond(asdict(kept), asdict(Aircraft())))
     if diagnosis.reference_airspeed_m_s is not None:
         content["reference_airspeed_m_s"] = round(diagnosis.reference_airspeed_m_s, 4)

@@ -93,12 +93,17 @@ class Simulator(Protocol):
         From each method: the model does not load, does not trim, or takes longer than its time limit.
     """
 
-    description: str
-    """What it is, for people: ``JSBSim c172p``."""
-    takes_increments: bool
-    """Whether it carries effects of the force and of the pitching moment."""
-    speed_limit_s: float
-    """Wall time that one replay may take."""
+    @property
+    def description(self) -> str:
+        """What it is, for people: ``JSBSim c172p``."""
+
+    @property
+    def takes_increments(self) -> bool:
+        """Whether it carries effects of the force and of the pitching moment."""
+
+    @property
+    def speed_limit_s(self) -> float:
+        """Wall time that one replay may take."""
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""

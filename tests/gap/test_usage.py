@@ -11,6 +11,7 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
+from advisor.simulators.compare import Compared
 from tests.flights import TWO, recorded
 from tests.gap.generator import Setup, fly
 from tests.gap.test_report_screen import diagnosis
@@ -84,7 +85,7 @@ def test_where_there_is_nothing_to_improve_it_says_that_no_file_was_written(
     capsys, monkeypatch, tmp_path, verdict
 ):
     found: Diagnosis = diagnosis(verdict=verdict)
-    monkeypatch.setattr(reading, "diagnose_logs", lambda *_: found)
+    monkeypatch.setattr(reading, "compare_logs", lambda *_: Compared(found, Aircraft()))
     out: Path = tmp_path / "better.yaml"
     code, error = said(capsys, monkeypatch, "flight.tlog", "--out", out)
     assert code == 0

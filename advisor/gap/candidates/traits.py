@@ -70,11 +70,13 @@ TRAITS = {
     "elevator_nonlinearity": Trait(
         "moment_equation", by_nature=True,
         said="The real elevator's moment is not proportional to its deflection",
+        said_beyond="The real elevator's moment bends with its deflection otherwise than the simulator's",
         apart={"nonlinear_pitching_moment": "fly slow and fast steps of equal size"},
     ),
     "nonlinear_pitching_moment": Trait(
         "moment_equation", by_nature=True,
         said="The real pitching moment is not linear in the angle of attack",
+        said_beyond="The real pitching moment bends with the angle of attack otherwise than the simulator's",
     ),
     "thrust_moment": Trait(
         "moment_equation", by_nature=True, of_the_stick=False,
@@ -98,6 +100,7 @@ TRAITS = {
     "nonlinear_lift": Trait(
         "force_equation", by_nature=True,
         said="The real lift is not linear in the angle of attack",
+        said_beyond="The real lift bends with the angle of attack otherwise than the simulator's",
     ),
     "unsteady_lift": Trait(
         "force_equation", by_nature=True, said="The real lift builds up with a lag of {lag_s_ms:.0f} ms",

@@ -5,7 +5,7 @@ About the optimum the fit is linear, so leaving a fold out moves the shared numb
 Folds are interleaved and rotated, because a gust or a change may fall into any one of them.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,6 +76,33 @@ def folds_for(flights: Flights) -> list[list[int]]:
 def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None) -> HeldOut:
     """Rotate every fold out. With a single manoeuvre the fit itself is returned: nothing can be kept out."""
     n = len(problem.flights)
+    lefts: list[FloatArray] = [np.empty(0)] * n
+    innovations: list[FloatArray] = [np.empty(0)] * n
+    for fold, step, moved in _without_each(problem, fitted, folds):
+        for i in fold:
+            own = moved[i] @ np.append(-step, 1.0)
+            innovations[i] = fitted.linear[i].after(step, own)
+            lefts[i] = fitted.linear[i].measured.after(step, own)
+    return held_out(problem, lefts, innovations)
+
+
+def points_without(
+    problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None
+) -> tuple[Point, ...]:
+    """For every manoeuvre the model whose shared numbers are fitted without the manoeuvre's fold."""
+    points = [fitted.point] * len(problem.flights)
+    for fold, step, _ in _without_each(problem, fitted, folds):
+        without = fitted.point.moved(fitted.point.shared + step, fitted.point.own)
+        for i in fold:
+            points[i] = without
+    return tuple(points)
+
+
+def _without_each(
+    problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None
+) -> Iterator[tuple[Sequence[int], FloatArray, Sequence[FloatArray]]]:
+    """Yield each fold, the step of the shared numbers without that fold, and how own numbers follow."""
+    n = len(problem.flights)
     chosen = folds_for(problem.flights) if folds is None else folds
     weights = 1.0 / fitted.noise
     blocks = [own_eliminated(block, weights) for block in fitted.linear]
@@ -90,8 +117,6 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
     far = fitted.point.shared - _without_effect(fitted.point)
     anchor = np.minimum(_ANCHOR * told_beside_others(total_H), 1.0 / np.maximum(far**2, 1e-300))
     anchor[:k] = 0.0
-    lefts: list[FloatArray] = [np.empty(0)] * n
-    innovations: list[FloatArray] = [np.empty(0)] * n
     # Where a response has kinks, the search refuses what the linear model proposes: it is no part of the fit.
     least, most = lower - fitted.point.shared, upper - fitted.point.shared
     refused = solved_within(total_H, total_g, least, most, _INDIFFERENT)
@@ -103,11 +128,7 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
             g = total_g - np.sum(gradients[list(fold)], axis=0) - anchor * far
             step = solved_within(H, g, least, most, _INDIFFERENT) - refused
             step = np.clip(step, least, most)
-        for i in fold:
-            own = blocks[i][1] @ np.append(-step, 1.0)
-            innovations[i] = fitted.linear[i].after(step, own)
-            lefts[i] = fitted.linear[i].measured.after(step, own)
-    return held_out(problem, lefts, innovations)
+        yield fold, step, [block[1] for block in blocks]
 
 
 def _without_effect(point: Point) -> FloatArray:

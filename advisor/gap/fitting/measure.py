@@ -9,7 +9,7 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.linear import linearise
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.records.flights import Flight
 
@@ -102,11 +102,18 @@ def file_model_of(problem: Problem, fitted: Fitted) -> HeldOut | None:
     """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
     if problem.believed is None:
         return None
-    point = replace(fitted.point, derivatives=problem.believed)
+    return own_refitted(problem, replace(fitted.point, derivatives=problem.believed), fitted.noise)
+
+
+def own_refitted(problem: Problem, point: Point, noise: FloatArray) -> HeldOut:
+    """How a model with these shared numbers does, only initial states, trim and offsets refitted.
+
+    ``noise``, shape (channels,), weighs the channels.
+    """
     lefts: list[FloatArray] = []
     for _ in range(3):
         linear = linearise(problem, point)
-        owns = solve_blocks(problem, linear, 1.0 / fitted.noise, point).free
+        owns = solve_blocks(problem, linear, 1.0 / noise, point).free
         still = np.zeros(len(point.shared))
         lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
         point = replace(point, own=point.own + np.array([o[:4] for o in owns]))

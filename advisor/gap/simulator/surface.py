@@ -45,7 +45,7 @@ def surfaces(
             which[j] = 0
         else:
             different[count, 0] = surface(h, n, t_u, u, held, trim, p[j])
-            different[count, 1] = _above_start(different[count, 0])
+            different[count, 1] = above_start(different[count, 0])
             which[j] = count
             count += 1
     delta, above = np.empty((packs, n, lanes)), np.empty((packs, n, lanes))
@@ -66,7 +66,7 @@ def _differ(one: FloatArray, other: FloatArray) -> bool:
 
 
 @kernel()
-def _above_start(mean: FloatArray) -> FloatArray:
+def above_start(mean: FloatArray) -> FloatArray:
     """What the mean over each step is above the value at its start.
 
     Of the two steps that meet there the flatter one tells: a jump within the other leaves the value as it

@@ -21,11 +21,9 @@ def keep_out(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
 
     With None, or as many as there are, all: each was kept out in its turn.
     """
-    n = len(e.problem.flights)
-    if holdout is None or not 0 < holdout < n:
-        return e, list(range(n))
-    kept = list(range(n - holdout, n))
-    folds = [kept, *[[i for i in fold if i not in kept] for fold in folds_for(e.problem.flights)]]
+    kept, folds = kept_and_folds(e.problem, holdout)
+    if len(kept) == len(e.problem.flights):
+        return e, kept
 
     def judged(one: Judged) -> Judged:
         held = hold_out(e.problem, one.fitted, folds)
@@ -49,6 +47,18 @@ def keep_out(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
         file_model=e.file_model and over_maneuvers(e.problem, e.file_model, kept),
         file_and_names=e.file_and_names and over_maneuvers(e.problem, e.file_and_names, kept),
     ), kept
+
+
+def kept_and_folds(problem: Problem, holdout: int | None) -> tuple[list[int], list[list[int]]]:
+    """The places of the manoeuvres that the numbers are measured on, and the folds that are kept out in turn.
+
+    ``holdout``: so many manoeuvres, the last ones; None, or as many as there are: all.
+    """
+    n, folds = len(problem.flights), folds_for(problem.flights)
+    if holdout is None or not 0 < holdout < n:
+        return list(range(n)), folds
+    kept = list(range(n - holdout, n))
+    return kept, [kept, *[[i for i in fold if i not in kept] for fold in folds]]
 
 
 def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> HeldOut:

@@ -8,6 +8,9 @@ from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Cause
 from advisor.gap.search.merit import LEAST_SIGMA
 
+_CURVES = frozenset({"elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift"})
+"""What a simulator beyond eight numbers may have of its own."""
+
 
 def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
     """The effect as a statement with its size.
@@ -39,5 +42,6 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
 
 
 def in_simulator(aircraft: Aircraft) -> frozenset[str]:
-    """Effects that the aircraft file has some of, in ``effects`` or as a number of its own."""
-    return frozenset(aircraft.effects) | {effect for effect in TRAITS if stated_in(aircraft, effect)}
+    """Effects that the simulator has some of: in ``effects``, as a number, or as curves of its own."""
+    curves = _CURVES if aircraft.simulator is not None else frozenset()
+    return curves | frozenset(aircraft.effects) | {effect for effect in TRAITS if stated_in(aircraft, effect)}

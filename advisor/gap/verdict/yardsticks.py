@@ -2,7 +2,8 @@
 
 Theil's inequality coefficient with its split into bias, variance and covariance (Theil 1966; Jategaonkar,
 *Flight Vehicle System Identification*, section 11.3), R², and the band that qualification of training
-simulators allows the short period: ±1.5° of pitch or ±2 °/s, ±0.10 g (EASA CS-FSTD(A), test 2.c.10).
+simulators allows the short period: ±1.5° of pitch or ±2 °/s, ±0.10 g (14 CFR Part 60, Appendix A, and EASA
+CS-FSTD(A), test 2.c.10).
 """
 
 import numpy as np
@@ -11,7 +12,8 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.result import Yardsticks
 from advisor.gravity import GRAVITY_M_S2
 
-_BAND = {"theta": np.radians(1.5), "q": np.radians(2.0), "a_z": 0.10 * GRAVITY_M_S2}
+BAND = {"theta": np.radians(1.5), "q": np.radians(2.0), "a_z": 0.10 * GRAVITY_M_S2}
+"""Tolerance of the short period by channel, SI."""
 
 
 def yardsticks(channel: str, measured: FloatArray, simulated: FloatArray) -> Yardsticks:
@@ -22,7 +24,7 @@ def yardsticks(channel: str, measured: FloatArray, simulated: FloatArray) -> Yar
     spread_m, spread_s = float(np.std(measured)), float(np.std(simulated))
     bias = float(np.mean(error)) ** 2
     variance = (spread_m - spread_s) ** 2
-    band = _BAND.get(channel)
+    band = BAND.get(channel)
     return Yardsticks(
         theil=float(np.sqrt(power)) / size if size > 0.0 else float("nan"),
         bias=bias / power if power > 0.0 else 0.0,

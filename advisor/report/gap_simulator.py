@@ -1,0 +1,65 @@
+"""How far in the user's own simulator, and whether it would pass as a training simulator: as text."""
+
+import math
+from collections.abc import Iterator
+
+from rich import box
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from advisor.gap.result import InSimulator, Qualification, spelled
+from advisor.gravity import GRAVITY_M_S2
+from advisor.report.gap_sizes import short
+
+_UNITS = {
+    "alpha": ("α", "deg", math.degrees(1.0)), "q": ("q", "deg/s", math.degrees(1.0)),
+    "a_z": ("a_z", "g", 1.0 / GRAVITY_M_S2), "theta": ("θ", "deg", math.degrees(1.0)),
+}  # fmt: skip
+_LEGEND = (
+    "Largest error in any manoeuvre. Limits: 14 CFR Part 60 App. A, 2.c.10, short period: pitch or pitch "
+    "rate, and normal acceleration."
+)
+
+
+def simulated(found: InSimulator) -> Iterator[RenderableType]:
+    """Yield what the simulator does as given and with the effects, and the table of qualification."""
+    yield Text(f"in your simulator, {found.simulator}", style="bold")
+    yield Text("\n".join(_shrunk(found)))
+    yield _table(found)
+    yield Text(_LEGEND, style="dim")
+
+
+def _shrunk(found: InSimulator) -> Iterator[str]:
+    if found.after is None or found.percent is None:
+        yield f"gap {short(found.before)} times the noise floor's power; nothing was added"
+        return
+    yield (
+        f"gap {short(found.before)} → {short(found.after)} with the effects added to it, "
+        f"{found.percent:.1f} % less, on manoeuvres kept out of the fit"
+    )
+    if found.on_paper:
+        names = ", ".join(spelled(name) for name in found.on_paper)
+        yield f"on paper only, for this simulator cannot be given it: {names}"
+
+
+def _table(found: InSimulator) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+    for heading in ("", "limit", "before", "after", "", "Theil"):
+        table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
+    for q in found.qualification:
+        letter, unit, factor = _UNITS[q.channel]
+        after = "" if q.after is None else f"{factor * q.after:.2f}"
+        theil = f"{q.theil[0]:.3f}" + ("" if q.theil[1] is None else f" → {q.theil[1]:.3f}")
+        limit = "" if q.limit is None else f"±{factor * q.limit:.2g}"
+        table.add_row(f"{letter}, {unit}", limit, f"{factor * q.before:.2f}", after, _in_words(q), theil)
+    return table
+
+
+def _in_words(q: Qualification) -> str:
+    if q.passes_before is None:
+        return ""
+    words = [
+        "pass" if passed else "FAIL" for passed in (q.passes_before, q.passes_after) if passed is not None
+    ]
+    return " → ".join(words)

@@ -1,0 +1,93 @@
+"""Effects around a simulator: between command and surface before, and in the instruments behind."""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.simulator.layout import EFFECT_ENTRIES, INDEX, SKEWS
+
+COMMAND = EFFECT_ENTRIES[: EFFECT_ENTRIES.index("M_delta2")]
+"""Entries between command and surface."""
+INSTRUMENTS = (
+    "alpha_lag_s", "alpha_scale", "vane_arm_m", "q_bias", "q_scale", "mode_gain", "mode_rate_gain",
+    "mode_rad_s", "mode_damping", "imu_arm_m", "mode_attitude", *SKEWS,
+)  # fmt: skip
+"""Entries of instruments, all of which are carried around a simulator."""
+
+
+def instruments(
+    grid: FloatArray, speed: FloatArray, surface: FloatArray, h: float, p: FloatArray
+) -> FloatArray:
+    """A motion as its instruments read it, without the skew of their stamps.
+
+    Parameters
+    ----------
+    grid
+        Shape (4, n + 1): α, q, a_z, θ every ``h`` seconds.
+    speed
+        Shape (n + 1,), m/s.
+    surface
+        Shape (n,), rad from trim: the deflection over each step, which a structural mode answers.
+    h
+        Step in s.
+    p
+        Shape (entries,), in the order of ``advisor.gap.simulator.layout.ENTRIES``.
+
+    Returns
+    -------
+    Shape (4, n + 1).
+    """
+    alpha, q, a_z, theta = grid
+    trim = alpha[0]
+    vane = lagging(alpha - p[INDEX["vane_arm_m"]] * q / speed, h, float(p[INDEX["alpha_lag_s"]]))
+    bend, rate = swinging(surface, h, float(p[INDEX["mode_rad_s"]]), float(p[INDEX["mode_damping"]]))
+    softness = 1.0 / p[INDEX["mode_rad_s"]] if p[INDEX["mode_rad_s"]] > 0.0 else 0.0
+    of_rate = p[INDEX["mode_rate_gain"]] * softness
+    gyro = (
+        (1.0 + p[INDEX["q_scale"]]) * q + p[INDEX["q_bias"]] + p[INDEX["mode_gain"]] * bend + of_rate * rate
+    )
+    return np.stack(
+        [
+            trim + (1.0 + p[INDEX["alpha_scale"]]) * (vane - trim),
+            gyro,
+            a_z - p[INDEX["imu_arm_m"]] * np.gradient(q, h),
+            theta + p[INDEX["mode_attitude"]] * of_rate * bend,
+        ]
+    )
+
+
+def skewed(grid: FloatArray, h: float, p: FloatArray) -> FloatArray:
+    """Series of shape (4, n + 1) as they stand under stamps that are late by the skews in ``p``."""
+    t = np.arange(grid.shape[1]) * h
+    return np.stack([np.interp(t - p[INDEX[name]], t, y) for name, y in zip(SKEWS, grid, strict=True)])
+
+
+def lagging(y: FloatArray, h: float, lag_s: float) -> FloatArray:
+    """A series of shape (n,) behind a lag of first order, linear between its samples; below zero: ahead."""
+    if lag_s <= 0.0:
+        return y - lag_s * np.gradient(y, h) if lag_s < 0.0 else y
+    keep = np.exp(-h / lag_s)
+    trail = lag_s / h * (1.0 - keep)
+    out = np.empty_like(y)
+    out[0] = y[0]
+    for i in range(1, len(y)):
+        out[i] = keep * (out[i - 1] - y[i - 1]) + y[i] - trail * (y[i] - y[i - 1])
+    return out
+
+
+def swinging(
+    surface: FloatArray, h: float, omega_rad_s: float, damping: float
+) -> tuple[FloatArray, FloatArray]:
+    """Bend of a structural mode that follows the surface, rad, and its rate: each of shape (n + 1,)."""
+    n = len(surface)
+    bend, rate = np.zeros(n + 1), np.zeros(n + 1)
+    if omega_rad_s <= 0.0:
+        return bend, rate
+    damped = np.sqrt(max(1.0 - damping**2, 1e-6))
+    fade = np.exp(-damping * omega_rad_s * h)
+    swing = np.cos(omega_rad_s * damped * h)
+    turn = np.sin(omega_rad_s * damped * h) / damped
+    for i in range(n):
+        off, at = bend[i] - surface[i], rate[i]
+        bend[i + 1] = surface[i] + fade * ((swing + damping * turn) * off + turn * at / omega_rad_s)
+        rate[i + 1] = fade * ((swing - damping * turn) * at - omega_rad_s * turn * off)
+    return bend, rate

@@ -1,0 +1,81 @@
+"""A simulator that is known only by a log which it wrote: what the log shows of it, identified first."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from advisor.aircraft import Aircraft
+from advisor.flight.maneuver import Maneuver
+from advisor.gap.diagnose import diagnose
+from advisor.gap.result import Diagnosis, spelled
+from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.simulators.linear import LinearSimulator
+
+_LEAST = 2
+"""Manoeuvres of a simulator's log: a single one names no effect, for none is left to confirm it."""
+_SUFFIXES = (".tlog", ".bin", ".ulg")
+
+
+@dataclass(frozen=True)
+class IdentifiedSimulator(LinearSimulator):
+    """The short period and the effects that a simulator's log shows, as a simulator."""
+
+    as_file: Aircraft = field(default_factory=Aircraft)
+    """The aircraft file with what was identified in place of its model, servo and effects."""
+    notes: tuple[str, ...] = ()
+    """What was identified, with standard deviations."""
+
+
+def from_log(
+    path: Path, aircraft: Aircraft, read_log: Callable[[Path], list[Maneuver]]
+) -> IdentifiedSimulator:
+    """Identify a simulator by the existing diagnosis of its log, without any model.
+
+    Raises
+    ------
+    ConfigurationError
+        The file is no log, or there is none.
+    UnusableInputError
+        The log has no elevator manoeuvres, or they cannot be used.
+    """
+    if path.suffix.lower() not in _SUFFIXES:
+        raise ConfigurationError(
+            f"--simulator log:{path}: a log ends with {', '.join(_SUFFIXES)}; name such a file."
+        )
+    if not path.is_file():
+        raise ConfigurationError(f"--simulator log:{path}: there is no such file; name the simulator's log.")
+    servo = replace(aircraft.elevator, lag_s=None, delay_s=None)
+    unknown = replace(
+        aircraft, model={}, effects={}, elevator=servo, airspeed_m_s=None, reference_airspeed_m_s=None
+    )
+    maneuvers = read_log(path)
+    if len(maneuvers) < _LEAST:
+        raise UnusableInputError(
+            "simulator_log",
+            f"The simulator's log {path.name} holds {len(maneuvers)} elevator manoeuvres; two are needed.",
+            "Fly the inputs of the flight in the simulator, too, and log them.",
+        )
+    found = diagnose(maneuvers, unknown)
+    effects = {effect: dict(sizes) for effect, sizes in found.effects.items()}
+    lag = effects.pop("actuator_lag", None) if set(effects.get("actuator_lag", ())) == {"lag_s"} else None
+    delay = effects.pop("transport_delay", None)
+    servo = replace(servo, lag_s=lag["lag_s"] if lag else None, delay_s=delay["delay_s"] if delay else None)
+    derivatives = {name: found.model[name].value for name in DERIVATIVES}
+    as_file = replace(
+        aircraft, model=derivatives, effects=effects, elevator=servo,
+        reference_airspeed_m_s=found.reference_airspeed_m_s or aircraft.reference_airspeed_m_s,
+    )  # fmt: skip
+    return IdentifiedSimulator(
+        derivatives, as_file.reference_airspeed_m_s, f"the simulator that wrote {path.name}",
+        as_file=as_file, notes=_identified(path.name, found, maneuvers),
+    )  # fmt: skip
+
+
+def _identified(name: str, found: Diagnosis, maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
+    numbers = ", ".join(f"{n} {found.model[n].value:.3g} ± {found.model[n].std:.2g}" for n in DERIVATIVES)
+    notes = [f"Of the simulator, {len(maneuvers)} manoeuvres in {name} show {numbers}."]
+    for cause in (c for c in found.causes if c.present):
+        sizes = ", ".join(f"{n} {v.value:.3g} ± {v.std:.2g}" for n, v in cause.parameters.items())
+        notes.append(f"The simulator has {spelled(cause.effect)} of its own: {sizes}.")
+    return tuple(notes)

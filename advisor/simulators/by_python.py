@@ -1,0 +1,24 @@
+"""A simulator that a Python function makes: ``python:module:factory``, in a process of its own."""
+
+from advisor.aircraft import Aircraft
+from advisor.problems import ConfigurationError
+from advisor.simulators.isolated import Isolated
+from advisor.simulators.protocol import Simulator
+
+_PARTS = 2
+
+
+def make_python(rest: str, aircraft: Aircraft) -> Simulator:
+    """Start a process that imports the module and calls the factory, without arguments.
+
+    Raises
+    ------
+    ConfigurationError
+        ``rest`` is not ``module:factory``, or there is no such module or function.
+    """
+    parts = rest.split(":")
+    if len(parts) != _PARTS or not all(part.replace(".", "_").isidentifier() for part in parts):
+        raise ConfigurationError(
+            f"--simulator python:{rest}: name a module and a function, as in python:my_simulator:make."
+        )
+    return Isolated(rest, description=f"Python {rest}")

@@ -1,0 +1,176 @@
+"""A simulator flies the recorded inputs, and what it makes of them beyond its linear surrogate."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.records.usable import DEPARTED_RAD
+from advisor.gap.simulator.layout import INDEX, REFERENCE
+from advisor.problems import UnusableInputError
+from advisor.simulators.around import instruments, skewed
+from advisor.simulators.increments import Added, entries_of
+from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid
+from advisor.simulators.protocol import Increments, Replay, Simulator
+from advisor.simulators.surrogate import Surrogate, trimmed_at
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Flying:
+    """A simulator with the manoeuvres that it is to fly."""
+
+    simulator: Simulator
+    flights: Flights
+    mass_kg: float | None
+    progress: Progress
+
+    def replays(
+        self, command: FloatArray, held: bool, increments: tuple[Increments | None, ...] | None = None
+    ) -> list[Replay]:
+        """Fly every manoeuvre.
+
+        Parameters
+        ----------
+        command
+            Shape (manoeuvres, entries): what lies between the recorded command and the simulator's input.
+        held
+            Whether the command was held between its stamps.
+        increments
+            What is added to the simulator in each manoeuvre; None: nothing.
+
+        Raises
+        ------
+        UnusableInputError
+            The simulator does not load, does not trim, takes too long, or leaves numbers.
+        """
+        found = []
+        many = self.flights.flights
+        for i, flight in enumerate(many):
+            self.progress(f"{self.simulator.description} flies manoeuvre {flight.number}", i / len(many))
+            condition = condition_of(flight, self.flights, self.mass_kg)
+            inputs = inputs_of(flight, self.flights, command[i], held)
+            replay = self.simulator.replay(condition, inputs, None if increments is None else increments[i])
+            _refuse_broken(replay, self.simulator.description, flight)
+            found.append(replay)
+        return found
+
+    def as_flown(self, replays: Sequence[Replay]) -> list[Flight]:
+        """The manoeuvres with the simulator's own speed and trim."""
+        pairs = zip(self.flights.flights, replays, strict=True)
+        return [as_flight(flight, replay, self.flights.reference_m_s) for flight, replay in pairs]
+
+
+@dataclass(frozen=True)
+class AsGiven:
+    """One manoeuvre as the simulator flew it before anything was found."""
+
+    flight: Flight
+    """With the simulator's own speed and trim."""
+    beyond: FloatArray
+    """Shape (4, n + 1): what the simulator made of the inputs beyond its surrogate."""
+
+
+def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool = False) -> list[FloatArray]:
+    """What a simulator made of the inputs beyond the surrogate with the same effects, manoeuvre by manoeuvre.
+
+    Parameters
+    ----------
+    replays
+        The simulator's motion in every manoeuvre.
+    p
+        Shape (manoeuvres, entries): the surrogate with the effects around and in the simulator.
+    held
+        Whether the command was held between its stamps.
+
+    Returns
+    -------
+    A manoeuvre's α, q, a_z and θ on its grid, each of shape (4, n + 1).
+    """
+    problem = Problem(flying.flights, p, held)
+    found = []
+    for there, replay, numbers in zip(flying.as_flown(replays), replays, p, strict=True):
+        ends = np.arange(there.n + 1) * there.h
+        speed = np.interp(ends, replay.t, replay.airspeed_m_s)
+        surface = inputs_of(there, flying.flights, numbers, held).elevator
+        read = instruments(on_grid(replay, there), speed, surface, there.h, numbers)
+        linear = problem.fly(there, trimmed_at(numbers, there))
+        found.append(skewed(read - linear, there.h, numbers))
+    return found
+
+
+def added(flown: Sequence[Flight], found: FloatArray, as_given: FloatArray) -> tuple[Increments, ...]:
+    """What effects add to the simulator in every manoeuvre.
+
+    Parameters
+    ----------
+    flown
+        The manoeuvres as the simulator flew them without the effects.
+    found
+        Shape (manoeuvres, entries): the surrogate with the effects.
+    as_given
+        Shape (6,): the surrogate's derivatives, as the simulator has them.
+    """
+    plain = np.zeros(found.shape[1])
+    plain[: len(as_given)] = as_given
+    increments = []
+    for there, with_effects in zip(flown, found, strict=True):
+        changed, unchanged = (entries_of(trimmed_at(p, there)) for p in (with_effects, plain))
+        increments.append(Added(changed, unchanged, there.alpha_trim, float(there.trim[REFERENCE])))
+    return tuple(increments)
+
+
+def without_servo(p: FloatArray, surrogate: Surrogate) -> FloatArray:
+    """Driving numbers, shape (manoeuvres, entries), without the simulator's own lag and delay."""
+    out = p.copy()
+    for name, own in (("lag_s", surrogate.lag_s), ("delay_s", surrogate.delay_s)):
+        out[:, INDEX[name]] = np.maximum(out[:, INDEX[name]] - own, 0.0)
+    return out
+
+
+def _refuse_broken(replay: Replay, description: str, flight: Flight) -> None:
+    """Refuse a replay with a number missing, or one that ends long before the manoeuvre does."""
+    series = (
+        replay.t,
+        replay.alpha,
+        replay.q,
+        replay.theta,
+        replay.a_z,
+        replay.airspeed_m_s,
+        replay.height_m,
+    )
+    whole = len(replay.t) > 1 and all(len(y) == len(replay.t) and np.all(np.isfinite(y)) for y in series)
+    if not whole or replay.t[-1] < flight.duration_s - 0.1 or np.min(replay.airspeed_m_s) <= 0.0:
+        raise UnusableInputError(
+            "simulator_replay",
+            f"{description} does not fly manoeuvre {flight.number} to its end: numbers are missing.",
+            "Check that the model flies at the speed and height of the flight.",
+        )
+    if np.ptp(replay.alpha) >= DEPARTED_RAD:
+        raise UnusableInputError(
+            "simulator_departs",
+            f"{description} departs in manoeuvre {flight.number}: its angle of attack swings by "
+            f"{np.degrees(np.ptp(replay.alpha)):.0f} deg.",
+            "Check the sign and the calibration of the elevator, and that the model is stable at this speed.",
+        )
+
+
+def refuse_unmoved(description: str, replays: Sequence[Replay], flights: Flights) -> None:
+    """Refuse a simulator whose pitch rate moves by less than the flight's instrument can tell.
+
+    Raises
+    ------
+    UnusableInputError
+        It does in every manoeuvre.
+    """
+    noise = float(flights.white[flights.channels.index("q")])
+    if max(float(np.ptp(replay.q)) for replay in replays) < noise:
+        raise UnusableInputError(
+            "simulator_elevator",
+            f"{description} does not answer the elevator: its pitch rate stays as it is.",
+            "Check which input of the model the elevator is, and its unit.",
+        )

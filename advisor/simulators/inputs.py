@@ -1,0 +1,97 @@
+"""What a simulator is given of a flown manoeuvre, and the replay as a manoeuvre on the gap's own grid."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.records.flights import Flight, Flights, Measured
+from advisor.gap.simulator.layout import (
+    A_X,
+    ALPHA_TRIM,
+    BANK,
+    HEIGHT,
+    REFERENCE,
+    SPEED,
+    THETA_FROM,
+    THROTTLE,
+    THRUST,
+    TURN,
+)  # fmt: skip
+from advisor.gap.simulator.surface import surface
+from advisor.gravity import GRAVITY_M_S2
+from advisor.simulators.protocol import Condition, Inputs, Replay
+
+_RATE_S = 0.02
+"""Interval of the stamps at which a replay is read where nothing was measured."""
+
+
+def condition_of(flight: Flight, flights: Flights, mass_kg: float | None) -> Condition:
+    """The steady flight in which a manoeuvre begins: mean speed and height before the first step."""
+    before = max(int(flight.first_step_s / flight.h), 1)
+    speed = float(np.mean(flight.slow[SPEED, :before]))
+    height = float(np.mean(flight.slow[HEIGHT, :before])) if "height" in flights.has else 0.0
+    steep = float(flight.trim[THETA_FROM]) - flight.alpha_trim if "theta" in flight.outputs else 0.0
+    return Condition(speed, height, steep, mass_kg)
+
+
+def inputs_of(flight: Flight, flights: Flights, p: FloatArray, held: bool) -> Inputs:
+    """The recorded command after what lies between command and surface in ``p``, shape (entries,)."""
+    stamps = flight.t_held if held else flight.t_u
+    elevator = surface(flight.h, flight.n, stamps, flight.u, held, flight.u_trim, p)
+    others = {"throttle": flight.slow[THROTTLE]} if "throttle" in flights.has else {}
+    t: FloatArray = (np.arange(flight.n, dtype=np.float64) + 0.5) * flight.h
+    return Inputs(t, elevator, others)
+
+
+def as_flight(flight: Flight, replay: Replay, reference_m_s: float) -> Flight:
+    """The manoeuvre as the simulator flew it: the same command, with the simulator's own speed and trim.
+
+    Bank and turn are none, and thrust is taken to be drag.
+    """
+    middles = (np.arange(flight.n) + 0.5) * flight.h
+    slow = np.zeros_like(flight.slow)
+    slow[SPEED] = np.interp(middles, replay.t, replay.airspeed_m_s)
+    slow[A_X] = np.interp(middles, replay.t, replay.a_x if replay.a_x is not None else _pull_along(replay))
+    slow[BANK], slow[TURN], slow[THRUST] = 0.0, 0.0, 0.0
+    slow[THROTTLE] = flight.slow[THROTTLE]
+    slow[HEIGHT] = np.interp(middles, replay.t, replay.height_m)
+    trim = flight.trim.copy()
+    trim[ALPHA_TRIM], trim[THETA_FROM] = float(replay.alpha[0]), float(replay.theta[0])
+    trim[REFERENCE] = reference_m_s
+    return replace(flight, slow=slow, trim=trim, edges=np.empty((0, 4)), speed_doubt=np.empty((0, 0)))
+
+
+def at_reference(flight: Flight, reference_m_s: float) -> Flight:
+    """The manoeuvre with derivatives that hold at another speed."""
+    trim = flight.trim.copy()
+    trim[REFERENCE] = reference_m_s
+    return replace(flight, trim=trim)
+
+
+def on_grid(replay: Replay, flight: Flight) -> FloatArray:
+    """Shape (4, n + 1): α, q, a_z and θ of a replay at the ends of the steps."""
+    t = np.arange(flight.n + 1) * flight.h
+    series = (replay.alpha, replay.q, replay.a_z, replay.theta)
+    return np.stack([np.interp(t, replay.t, y) for y in series])
+
+
+def read_from(flight: Flight, grid: FloatArray, channels: tuple[str, ...]) -> Flight:
+    """The manoeuvre with a series on the grid, shape (4, n + 1), in place of what was measured."""
+    t = np.arange(flight.n + 1) * flight.h
+    stamps = np.arange(0.0, t[-1], _RATE_S)
+    names = ("alpha", "q", "a_z", "theta")
+    outputs = {
+        name: Measured(stamps, np.interp(stamps, t, grid[c]))
+        for c, name in enumerate(names)
+        if name in channels
+    }
+    output = np.repeat([names.index(name) for name in channels], len(stamps)).astype(np.int64)
+    return replace(flight, outputs=outputs, stamps=np.tile(stamps, len(channels)), output=output)
+
+
+def _pull_along(replay: Replay) -> FloatArray:
+    """Specific force along body x, m/s², of a motion in the vertical plane, shape (m,)."""
+    path = replay.theta - replay.alpha
+    along = np.gradient(replay.airspeed_m_s, replay.t) + GRAVITY_M_S2 * np.sin(path)
+    return np.asarray((along - replay.a_z * np.sin(replay.alpha)) / np.cos(replay.alpha))

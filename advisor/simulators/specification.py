@@ -1,0 +1,97 @@
+"""Which simulator a specification names: ``linear``, or a kind, a colon and what the kind needs."""
+
+from collections.abc import Callable
+from importlib import import_module
+from importlib.metadata import entry_points
+from importlib.util import find_spec
+from pathlib import Path
+
+from advisor.aircraft import Aircraft
+from advisor.flight.maneuver import Maneuver
+from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.problems import ConfigurationError
+from advisor.simulators.by_log import from_log
+from advisor.simulators.linear import LinearSimulator
+from advisor.simulators.protocol import Factory, Simulator
+
+GROUP = "inflight_advisor.simulators"
+"""Entry points of other packages: a kind, and an ``advisor.simulators.protocol.Factory``."""
+_OURS = {
+    "jsbsim": "advisor.simulators.jsbsim:make_jsbsim",
+    "fmu": "advisor.simulators.fmu:make_fmu",
+    "python": "advisor.simulators.by_python:make_python",
+}
+_NEEDS = {"jsbsim": ("jsbsim", "jsbsim"), "fmu": ("fmpy", "fmu")}
+"""Kind to the package that it imports, and the extra of ours that brings the package."""
+_FORMS = "linear, jsbsim:MODEL, fmu:FILE, python:module:factory, log:FILE"
+
+ReadLog = Callable[[Path], list[Maneuver]]
+"""Reads the manoeuvres of a log."""
+
+
+def simulator_of(specification: str, aircraft: Aircraft, read_log: ReadLog) -> Simulator:
+    """Make the simulator that a specification names.
+
+    Parameters
+    ----------
+    specification
+        As a user writes it.
+    aircraft
+        The aircraft file.
+    read_log
+        Reads a log that the simulator wrote.
+
+    Raises
+    ------
+    ConfigurationError
+        The kind is unknown, its package is missing, or what follows the colon names nothing.
+    UnusableInputError
+        The simulator's log cannot serve.
+    """
+    kind, _, rest = specification.partition(":")
+    if kind == "linear":
+        return _of_the_file(rest, aircraft)
+    others = {point.name: point for point in entry_points(group=GROUP)}
+    if kind != "log" and kind not in _OURS and kind not in others:
+        known = ", ".join([_FORMS, *(f"{name}:..." for name in others)])
+        raise ConfigurationError(
+            f"--simulator {specification}: {kind!r} is no kind of simulator; give {known}."
+        )
+    if not rest:
+        form = next((f for f in _FORMS.split(", ") if f.startswith(kind)), f"{kind}:...")
+        raise ConfigurationError(f"--simulator {specification}: nothing follows the colon; write {form}.")
+    if kind == "log":
+        return from_log(Path(rest), aircraft, read_log)
+    _refuse_missing(kind, specification)
+    factory: Factory = others[kind].load() if kind in others else _load(_OURS[kind])
+    return factory(rest, aircraft)
+
+
+def _of_the_file(rest: str, aircraft: Aircraft) -> LinearSimulator:
+    missing = [name for name in DERIVATIVES if name not in aircraft.model]
+    if rest:
+        raise ConfigurationError(
+            f"--simulator linear:{rest}: linear takes nothing; write --simulator linear."
+        )
+    if missing:
+        raise ConfigurationError(
+            f"--simulator linear: the aircraft file's model lacks {', '.join(missing)}; complete `model`."
+        )
+    return LinearSimulator(
+        {name: aircraft.model[name] for name in DERIVATIVES}, aircraft.reference_airspeed_m_s
+    )
+
+
+def _refuse_missing(kind: str, specification: str) -> None:
+    package, extra = _NEEDS.get(kind, ("", ""))
+    if package and find_spec(package) is None:
+        raise ConfigurationError(
+            f"--simulator {specification}: the package {package} is not installed; "
+            f"install inflight-advisor[{extra}]."
+        )
+
+
+def _load(place: str) -> Factory:
+    module, name = place.split(":")
+    factory: Factory = getattr(import_module(module), name)
+    return factory

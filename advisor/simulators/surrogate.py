@@ -1,0 +1,117 @@
+"""A simulator's linear surrogate: derivatives, and what its own servo adds between input and surface."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.input import DELAY, LAG
+from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.regression import regressions
+from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.simulator.layout import (
+    DERIVATIVES,
+    HEIGHT,
+    INDEX,
+    NUISANCES,
+    OUTPUTS,
+    REFERENCE,
+    SPEED,
+    THETA_FROM,
+)  # fmt: skip
+from advisor.simulators.increments import trimmed
+from advisor.simulators.inputs import on_grid, read_from
+from advisor.simulators.protocol import Replay
+
+_STARTS_S = (0.003, 0.03, 0.1)
+"""Where the search for the servo's lag and delay begins: the cost has local minima in a delay."""
+_DIGITS = 4
+"""Of a lag or delay in s: a tenth of a millisecond, which no record shows."""
+
+
+@dataclass(frozen=True)
+class Surrogate:
+    """What a simulator is to first order."""
+
+    derivatives: Mapping[str, float]
+    """Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e at the reference speed."""
+    reference_m_s: float
+    lag_s: float = 0.0
+    """Lag of first order of the simulator's own servo ..."""
+    delay_s: float = 0.0
+    """... and the delay before the servo."""
+
+    def aircraft(self, file: Aircraft) -> Aircraft:
+        """The aircraft file with the surrogate in place of its model, and both servos in a row."""
+        elevator = replace(
+            file.elevator,
+            lag_s=(file.elevator.lag_s or 0.0) + self.lag_s,
+            delay_s=(file.elevator.delay_s or 0.0) + self.delay_s,
+        )
+        known = file.airspeed_m_s or file.reference_airspeed_m_s
+        reference = self.reference_m_s if known is None else file.reference_airspeed_m_s or self.reference_m_s
+        return replace(
+            file, model=dict(self.derivatives), elevator=elevator, reference_airspeed_m_s=reference
+        )
+
+
+def surrogate_of(
+    flights: Flights,
+    flown: Sequence[Flight],
+    replays: Sequence[Replay],
+    command: FloatArray,
+    linearised: Mapping[str, float] | None,
+) -> Surrogate:
+    """Identify the surrogate by output error from the simulator's own replays.
+
+    Parameters
+    ----------
+    flights
+        The manoeuvres as the aircraft flew them.
+    flown, replays
+        The same manoeuvres as the simulator flew them (``advisor.simulators.inputs.as_flight``).
+    command
+        Shape (manoeuvres, entries): what lies between the recorded command and the simulator's input.
+    linearised
+        Derivatives that the simulator hands out, from which the search begins; None: a regression's.
+    """
+    # The simulator's four outputs are known without instruments, whatever the flight has measured.
+    read = tuple(read_from(f, on_grid(r, f), OUTPUTS) for f, r in zip(flown, replays, strict=True))
+    peaks = np.array([float(np.median([np.ptp(f.outputs[c].y) for f in read])) for c in OUTPUTS])
+    seen = replace(
+        flights, flights=read, channels=OUTPUTS, alpha_is_derived=False, alpha_is_smoothed=False,
+        white=1e-3 * peaks, peaks=peaks,
+    )  # fmt: skip
+    problem = Problem(seen, command, smallest_noise=1e-3 * np.maximum(peaks, 1e-9))
+    own = np.zeros((len(read), len(NUISANCES)))
+    own[:, NUISANCES.index("Z_trim")] = [
+        trimmed_at(p, f)[INDEX["Z_trim"]] for p, f in zip(command, read, strict=True)
+    ]
+    guesses = [*regressions(seen)]
+    if linearised is not None:
+        guesses.append(np.array([linearised[name] for name in DERIVATIVES]))
+    plain = min((fit(problem, Point(guess, own)) for guess in guesses), key=_cost)
+    late = [
+        fit(problem, plain.point.with_effect(DELAY, (delay,)).with_effect(LAG, (lag,)), iterations=20)
+        for delay, lag in product(_STARTS_S, _STARTS_S)
+    ]
+    found = min(late, key=_cost)
+    (delay,), (lag,) = found.point.values
+    derivatives = dict(zip(DERIVATIVES, map(float, found.point.derivatives), strict=True))
+    lag_s, delay_s = (max(round(float(x), _DIGITS), 0.0) for x in (lag, delay))
+    return Surrogate(derivatives, flights.reference_m_s, lag_s, delay_s)
+
+
+def trimmed_at(p: FloatArray, flight: Flight) -> FloatArray:
+    """Driving numbers, shape (entries,), with the trim terms of a manoeuvre as the simulator began it."""
+    theta, reference = float(flight.trim[THETA_FROM]), float(flight.trim[REFERENCE])
+    speed, height = float(flight.slow[SPEED, 0]), float(flight.slow[HEIGHT, 0])
+    return trimmed(p, flight.alpha_trim, theta, speed, height, reference)
+
+
+def _cost(fitted: Fitted) -> float:
+    return fitted.cost if np.isfinite(fitted.cost) else np.inf

@@ -1,0 +1,158 @@
+"""A flight against a nonlinear simulator: what is named, and how far the gap shrinks in that simulator."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.flight.messages import FloatArray
+from advisor.gap.diagnose import diagnose
+from advisor.problems import UnusableInputError
+from advisor.simulators.compare import Compared, compare
+from advisor.simulators.linear import LinearSimulator
+from tests.simulators.nonlinear import TRIM_RAD, Nonlinear, flown
+
+PLAIN = Nonlinear()
+
+
+@cache
+def of(aircraft: Nonlinear, simulator: Nonlinear) -> Compared:
+    """The diagnosis of an aircraft against a simulator."""
+    return compare(flown(aircraft), simulator, Aircraft())
+
+
+def scaled(name: str, y: FloatArray) -> FloatArray:
+    """A vane that reads a tenth too much."""
+    return TRIM_RAD + 1.1 * (y - TRIM_RAD) if name == "alpha" else y
+
+
+def test_a_simulators_own_curves_and_speed_are_not_called_missing():
+    found = of(PLAIN, PLAIN).diagnosis
+    assert found.verdict == "none"
+    assert found.in_simulator.before < 0.05
+    assert found.in_simulator.after is None
+
+
+def test_the_same_flight_beside_eight_numbers_does_show_the_curves():
+    numbers = of(PLAIN, PLAIN).aircraft.model
+    assert diagnose(flown(PLAIN), Aircraft(model=dict(numbers))).gap.before > 1.0
+
+
+def test_a_delay_that_the_simulator_lacks_is_named_and_shrinks_the_gap_in_the_simulator():
+    found = of(replace(PLAIN, delay_s=0.05), PLAIN).diagnosis
+    assert found.causes[0].effect == "transport_delay"
+    assert found.causes[0].parameters["delay_s"].value == pytest.approx(0.05, abs=0.006)
+    assert found.in_simulator.percent > 90.0
+    assert found.in_simulator.on_paper == ()
+
+
+def test_an_instrument_that_reads_too_much_is_named_and_carried_around_the_simulator():
+    found = compare(flown(PLAIN, reads=scaled), PLAIN, Aircraft()).diagnosis
+    assert found.causes[0].effect == "alpha_scale"
+    assert found.causes[0].parameters["scale"].value == pytest.approx(0.1, abs=0.01)
+    assert found.in_simulator.after < 0.1 * found.in_simulator.before + 0.05
+
+
+def test_a_delay_that_only_the_simulator_has_is_said_to_be_too_long_and_stays_on_paper():
+    found = of(PLAIN, replace(PLAIN, delay_s=0.06)).diagnosis
+    assert found.causes[0].effect == "transport_delay"
+    assert found.causes[0].parameters["delay_s"].value == pytest.approx(-0.06, abs=0.012)
+    assert "its delay is too long" in found.sentence
+    assert found.in_simulator.on_paper == ("its own servo",)
+
+
+def test_a_servo_that_is_slower_in_the_simulator_alone_is_said_to_be_too_slow():
+    found = of(PLAIN, replace(PLAIN, lag_s=0.1)).diagnosis
+    assert found.causes[0].effect == "actuator_lag"
+    assert found.causes[0].parameters["lag_s"].value == pytest.approx(-0.1, abs=0.02)
+    assert "its servo lags by" in found.sentence
+
+
+def test_wrong_numbers_are_corrected_in_a_simulator_that_takes_increments_and_on_paper_in_another():
+    heavier = replace(PLAIN)
+    maneuvers = flown(heavier)
+    stiff = LinearSimulator(
+        {"Z_alpha": -2.7, "Z_q": 0.0, "Z_delta_e": -0.15, "M_alpha": -35.0, "M_q": -3.4, "M_delta_e": -29.0}
+    )
+    inside = compare(maneuvers, stiff, Aircraft()).diagnosis.in_simulator
+    outside = compare(maneuvers, replace(stiff, takes_increments=False), Aircraft()).diagnosis.in_simulator
+    assert inside.percent > 90.0 > 10.0 > outside.percent
+    assert "derivatives" in outside.on_paper
+
+
+def test_the_linear_simulator_gives_the_diagnosis_that_the_aircraft_file_gives():
+    model = {
+        "Z_alpha": -2.7,
+        "Z_q": 0.0,
+        "Z_delta_e": -0.15,
+        "M_alpha": -23.0,
+        "M_q": -3.4,
+        "M_delta_e": -29.0,
+    }
+    maneuvers = flown(replace(PLAIN, lag_s=0.08))
+    file = Aircraft(model=model)
+    plain, beside = diagnose(maneuvers, file), compare(maneuvers, LinearSimulator(model), file).diagnosis
+    assert beside.causes == plain.causes
+    assert beside.gap == plain.gap
+    assert beside.sentence == plain.sentence
+
+
+def test_a_servo_in_the_aircraft_file_acts_before_the_simulator():
+    servo = Aircraft(elevator=replace(Aircraft().elevator, lag_s=0.08))
+    found = compare(flown(replace(PLAIN, lag_s=0.08)), PLAIN, servo).diagnosis
+    assert found.verdict == "none"
+
+
+def test_a_replay_with_a_missing_number_is_refused_with_the_manoeuvre():
+    class Broken(Nonlinear):
+        def replay(self, condition, inputs, increments=None):
+            motion = super().replay(condition, inputs, increments)
+            return replace(motion, q=np.full_like(motion.q, np.nan))
+
+    with pytest.raises(UnusableInputError, match="does not fly manoeuvre 1 to its end"):
+        compare(flown(maneuvers=3), Broken(), Aircraft())
+
+
+def test_the_qualification_says_which_channels_pass_before_and_after():
+    table = {
+        q.channel: q for q in of(replace(PLAIN, delay_s=0.05), PLAIN).diagnosis.in_simulator.qualification
+    }
+    assert table["q"].limit == pytest.approx(np.radians(2.0))
+    assert table["a_z"].limit == pytest.approx(0.980665)
+    assert table["alpha"].limit is None
+    assert table["q"].after < table["q"].before
+    assert table["q"].passes_after
+
+
+def test_a_simulator_that_departs_is_refused_with_the_manoeuvre():
+    class Departs(Nonlinear):
+        def replay(self, condition, inputs, increments=None):
+            motion = super().replay(condition, inputs, increments)
+            return replace(motion, alpha=motion.alpha * np.exp(motion.t))
+
+    with pytest.raises(UnusableInputError, match="departs in manoeuvre 1"):
+        compare(flown(maneuvers=3), Departs(), Aircraft())
+
+
+def test_a_simulator_that_does_not_answer_the_elevator_is_refused():
+    class Deaf(Nonlinear):
+        def replay(self, condition, inputs, increments=None):
+            return super().replay(condition, replace(inputs, elevator=0.0 * inputs.elevator), increments)
+
+    with pytest.raises(UnusableInputError, match="does not answer the elevator"):
+        compare(flown(maneuvers=3), Deaf(), Aircraft())
+
+
+def test_where_the_simulator_does_not_fly_with_the_effects_the_diagnosis_stands_and_says_why():
+    class Fragile(Nonlinear):
+        def replay(self, condition, inputs, increments=None):
+            if increments is not None:
+                raise UnusableInputError("no_flight", "It does not fly.")
+            return super().replay(condition, inputs)
+
+    found = compare(flown(replace(PLAIN, delay_s=0.05)), Fragile(), Aircraft()).diagnosis
+    assert found.causes[0].effect == "transport_delay"
+    assert found.in_simulator.after is None
+    assert found.notes[0] == "The effects stay on paper: It does not fly."
