@@ -20,19 +20,43 @@ from typing import Any
 PROCESSES = 2
 
 
+class _Parent(multiprocessing.context.ForkProcess):
+    """A process of a pool that may have a child: a simulator lives in a process of its own."""
+
+    @property
+    def daemon(self) -> bool:
+        """Never, for a daemon may have no child."""
+        return False
+
+    @daemon.setter
+    def daemon(self, value: bool) -> None:
+        """Ignore what the pool sets."""
+
+
+class _Parents(multiprocessing.context.ForkContext):
+    """Forked processes that may have children."""
+
+    Process = _Parent
+
+
 def answer(case: Path) -> tuple[str, dict[str, Any], float]:
     """Return the case's name, the document of ``advisor gap --json`` (empty without one), CPU seconds."""
     from advisor.commands.options import read_aircraft
-    from advisor.diagnosis import diagnose_logs
+    from advisor.diagnosis import compare_logs, named_simulator
     from advisor.gap.document import gap_document
     from advisor.problems import UnusableInputError
 
     began = time.process_time()
+    aircraft = read_aircraft(case / "aircraft.yaml")
+    simulator = named_simulator(aircraft)
     try:
-        document = gap_document(diagnose_logs([case / "flight.tlog"], read_aircraft(case / "aircraft.yaml")))
+        document = gap_document(compare_logs([case / "flight.tlog"], aircraft, simulator).diagnosis)
     except UnusableInputError as error:
         print(f"{case.name}: {error.problem}", file=sys.stderr)
         document = {}
+    finally:
+        if simulator is not None:
+            simulator.close()
     return case.name, document, time.process_time() - began
 
 
@@ -49,8 +73,7 @@ def main() -> None:
     # Imported before the fork, so that every process finds it ready.
     import advisor.diagnosis  # noqa: F401
 
-    forked = multiprocessing.get_context("fork")
-    with answers.open("a", encoding="utf-8") as out, forked.Pool(PROCESSES, maxtasksperchild=1) as pool:
+    with answers.open("a", encoding="utf-8") as out, _Parents().Pool(PROCESSES, maxtasksperchild=1) as pool:
         for number, (name, document, seconds) in enumerate(pool.imap_unordered(answer, cases), start=1):
             out.write(json.dumps({"case": name, "answer": document, "cpu_s": round(seconds, 2)}) + "\n")
             out.flush()

@@ -1,7 +1,7 @@
 """Draw a case: aircraft, manoeuvres, air, noise, and what is withheld."""
 
 from dataclasses import asdict, dataclass, field, replace
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -15,10 +15,10 @@ from sim.loading import DepartureError
 from sim.scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
 from sim.trim import TrimError
 
-Group = Literal["clean", "hard", "jsbsim", "none", "parameters", "outside", "two"]
-GROUPS: tuple[Group, ...] = ("clean", "hard", "jsbsim", "none", "parameters", "outside", "two")
-SHARES = (0.34, 0.20, 0.08, 0.18, 0.04, 0.10, 0.06)
-"""How often each group is drawn unless told otherwise."""
+Group = Literal["clean", "hard", "jsbsim", "none", "parameters", "outside", "two", "simulator"]
+GROUPS: tuple[Group, ...] = get_args(Group)
+SHARES = (0.34, 0.20, 0.08, 0.18, 0.04, 0.10, 0.06, 0.0)
+"""How often each group is drawn unless told otherwise; ``simulator`` only where the call asks for it."""
 
 SMALLEST_GAP = 0.05
 """An effect that leaves less above the noise is drawn again: nobody could be asked to see it."""
@@ -66,9 +66,9 @@ def draw_case(group: Group, generator: np.random.Generator) -> Case:
     hard = group == "hard" or (group in ("none", "outside", "two") and generator.random() < 0.3)
     for _ in range(40):
         names = _names(group, generator)
-        scenario, background = _scenario(group, names, hard, generator)
+        scenario, background = scenario_of(group, names, hard, generator)
         try:
-            case = _sized(group, scenario, names, hard, background, generator)
+            case = sized(group, scenario, names, hard, background, generator)
         except TrimError:
             # An airframe, a speed and an effect that do not go together are drawn again.
             continue
@@ -92,7 +92,7 @@ def _names(group: Group, generator: np.random.Generator) -> list[str]:
     return [first, str(generator.choice(others))]
 
 
-def _scenario(
+def scenario_of(
     group: Group, names: list[str], hard: bool, generator: np.random.Generator
 ) -> tuple[Scenario, list[str]]:
     """Draw everything but the sizes."""
@@ -177,7 +177,7 @@ def _airframe(aircraft: str, generator: np.random.Generator) -> dict[str, float]
     return {name: getattr(base, name) * float(generator.uniform(0.82, 1.2)) for name in names}
 
 
-def _sized(
+def sized(
     group: Group,
     scenario: Scenario,
     names: list[str],

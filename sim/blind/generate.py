@@ -10,6 +10,7 @@ import yaml
 
 from sim.blind.draw import GROUPS, SHARES, Case, Group, draw_case
 from sim.blind.seal import seal
+from sim.blind.simulated import SimulatedCase, draw_simulated
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.servo import Calibration
@@ -37,13 +38,15 @@ def generate(
     """
     generator = np.random.default_rng([seed, 2026])
     shares = np.array([SHARES[GROUPS.index(group)] for group in groups])
+    if not shares.any():
+        shares = np.ones(len(groups))
     folder.mkdir(parents=True, exist_ok=True)
     cases: dict[str, Case] = {}
     for number in range(count):
         group = groups[int(generator.choice(len(groups), p=shares / shares.sum()))]
         own = np.random.default_rng([seed, number])
         name = own.bytes(6).hex()
-        cases[name] = draw_case(group, own)
+        cases[name] = draw_simulated(own) if group == "simulator" else draw_case(group, own)
         tell(f"drawn {number + 1} of {count}")
     digest = seal({name: cases[name].key() for name in sorted(cases)}, key_beside(folder), folder)
     for number, name in enumerate(sorted(cases)):
@@ -62,15 +65,23 @@ def write_case(case: Case, folder: Path) -> None:
 
 
 def aircraft_file(case: Case) -> dict[str, Any]:
-    """What the crew believes of the aircraft: the same keys for every case."""
+    """What the crew believes of the aircraft: the same keys for every case of a group."""
+    elevator: dict[str, Any] = {
+        "output": "auto",
+        "calibration": [list(point) for point in Calibration().points],
+        "lag_s": 0.0,
+        "delay_s": 0.0,
+    }
+    if isinstance(case, SimulatedCase):
+        return {
+            "name": "aircraft",
+            "elevator": elevator | dict(case.servo),
+            "accelerometer": {"arm_m": round(case.scenario.instruments.accelerometer_arm_m, 4)},
+            "simulator": case.simulator,
+        }
     return {
         "name": "aircraft",
-        "elevator": {
-            "output": "auto",
-            "calibration": [list(point) for point in Calibration().points],
-            "lag_s": 0.0,
-            "delay_s": 0.0,
-        },
+        "elevator": elevator,
         "accelerometer": {"arm_m": round(case.scenario.instruments.accelerometer_arm_m, 4)},
         "reference_airspeed_m_s": round(case.scenario.airspeed_m_s or 0.0, 3),
         "model": {name: float(f"{value:.6g}") for name, value in case.belief.as_dict().items()},

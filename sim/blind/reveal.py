@@ -52,7 +52,7 @@ def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -
     yield "not right"
     for name, j in zip(key, judged, strict=True):
         expected = {"none": "none", "parameters": "parameters", "outside": "unknown"}.get(j.group)
-        fine = j.verdict == expected if expected else j.right
+        fine = j.verdict == expected if expected else j.right or j.is_left_alone
         if not fine:
             told = f"{j.verdict} {j.named[0] if j.named else ''}".strip()
             sizes = {effect: {k: round(v, 5) for k, v in own.items()} for effect, own in j.sizes.items()}

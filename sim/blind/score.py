@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,8 @@ FAST_S = 5.0
 """Processor time that one diagnosis may take."""
 Z95 = 1.959964
 BINS = 10
+_FINE = ("none", "parameters")
+"""Verdicts on an unchanged simulator that are no false alarm."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,8 @@ class Judged:
     ties: tuple[str, ...]
     block: str
     shrink_percent: float
+    simulator_percent: float
+    """Shrink in the user's own simulator; NaN without one."""
 
     @property
     def right(self) -> bool:
@@ -70,6 +74,11 @@ class Judged:
     def is_there(self) -> bool:
         """The first cause acted on the flight: the effect that was drawn, or the air it was flown in."""
         return self.right or (self.verdict == "effect" and set(self.named[:1]) <= set(self.background))
+
+    @property
+    def is_left_alone(self) -> bool:
+        """A simulator without an effect too little or too much is called right, or wrong in numbers only."""
+        return self.group == "simulator" and not self.truth and self.verdict in _FINE
 
     @property
     def right_or_tie(self) -> bool:
@@ -84,7 +93,8 @@ def judge(key: Mapping[str, Any], answers: Mapping[str, Mapping[str, Any]]) -> l
         answer = answers.get(name, {})
         causes = answer.get("causes") or []
         first = causes[0] if causes else {}
-        shrink = (answer.get("shrink") or {}).get("percent")
+        shrunk = answer.get("shrink") or {}
+        shrink, simulated = shrunk.get("percent"), (shrunk.get("in_simulator") or {}).get("percent")
         judged.append(
             Judged(
                 group=truth["group"],
@@ -102,6 +112,7 @@ def judge(key: Mapping[str, Any], answers: Mapping[str, Mapping[str, Any]]) -> l
                 ties=tuple(first.get("cannot_be_told_from") or ()),
                 block=str((answer.get("where") or {}).get("block", "")),
                 shrink_percent=math.nan if shrink is None else float(shrink),
+                simulator_percent=math.nan if simulated is None else float(simulated),
             )
         )
     return judged
@@ -143,9 +154,26 @@ def score(judged: Sequence[Judged]) -> list[Rate]:
         _median("held-out shrink, right cause, clean (median %)", [j for j in clean if j.right], ">= 97"),
         _median("held-out shrink, right cause, hard (median %)", [j for j in hard if j.right], ">= 90"),
         _share("size within its stated 95 % interval", covered, "92..98"),
+        *_own_simulator([j for j in judged if j.group == "simulator"]),
         _calibration_error([j for j in judged if j.verdict == "effect" and j.group != "two"]),
         _shuffled(single),
     ]
+
+
+def _own_simulator(judged: Sequence[Judged]) -> list[Rate]:
+    """Figures of the cases that name a simulator of the user's own."""
+    withheld, none = [j for j in judged if j.truth], [j for j in judged if not j.truth]
+    shrunk = [replace(j, shrink_percent=j.simulator_percent) for j in withheld if j.right and _adds(j)]
+    return [
+        _share("own simulator: right cause first", [j.right for j in withheld], ">= 90"),
+        _share("own simulator, unchanged: none or numbers", [j.is_left_alone for j in none], ">= 98"),
+        _median("own simulator: held-out shrink in it (median %)", shrunk, ">= 90"),
+    ]
+
+
+def _adds(j: Judged) -> bool:
+    """Whether the truth adds to the simulator, and does not take a servo away from it."""
+    return all(value >= 0.0 for name, value in j.sizes[j.truth[0]].items() if name in ("lag_s", "delay_s"))
 
 
 def by_effect(judged: Sequence[Judged]) -> list[Rate]:

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 import yaml
 
+from sim.blind import simulated
 from sim.blind.draw import SMALLEST_GAP, draw_case
 from sim.blind.generate import aircraft_file, generate, key_beside
 from sim.blind.reveal import report
 from sim.blind.score import judge, score
 from sim.blind.seal import SEAL, SealError, commit, unseal
+from sim.blind.simulated import draw_simulated
 from sim.blind.sizes import INSIDE, OUTSIDE
 from sim.blind.visibility import structural_gap
 from sim.effects import catalogue, outside
@@ -220,3 +222,21 @@ def test_an_interval_is_wilsons():
     rate = figures(key, {case: answer("none") for case in key})["false alarms without an effect"]
     assert (rate.value, rate.low) == (0.0, 0.0)
     assert rate.high == pytest.approx(16.1, abs=0.1)
+
+
+def test_a_case_of_the_group_simulator_names_jsbsim_and_no_model():
+    case = draw_simulated(np.random.default_rng(3))
+    file = aircraft_file(case)
+    assert file["simulator"] == f"jsbsim:{case.scenario.aircraft}"
+    assert "model" not in file
+
+
+def test_an_effect_of_the_simulator_alone_stands_in_its_servo_and_not_in_the_aircraft(monkeypatch):
+    monkeypatch.setattr(simulated, "WITHOUT", 0.0)
+    monkeypatch.setattr(simulated, "MIRRORED", 1.0)
+    case = draw_simulated(np.random.default_rng(4))
+    ((effect, sizes),) = case.effects.items()
+    key = simulated.SERVO[effect]
+    assert sizes[key] < 0.0
+    assert aircraft_file(case)["elevator"][key] == -sizes[key]
+    assert case.scenario.effects == {}
