@@ -15,6 +15,7 @@ from advisor.aircraft import PARAMETERS, Aircraft, Elevator
 from advisor.config import load_aircraft
 from advisor.gap.result import Diagnosis, Value
 from advisor.report.exports.write import Order, carry_out, order_of
+from advisor.simulators.compare import Compared
 from tests.exports.cases import CALIBRATION, MODEL, REFERENCE
 from tests.gap.test_report_screen import diagnosis
 
@@ -39,7 +40,8 @@ def gap(folder: Path, monkeypatch, *arguments: str, content: object = FILE, answ
     (folder / "mine.yaml").write_text(yaml.safe_dump(content))
     (folder / "flight.tlog").write_bytes(b"")
     if answer is not None:
-        monkeypatch.setattr(reading, "diagnose_logs", lambda *_: answer)
+        monkeypatch.setattr(reading, "named_simulator", lambda *_: None)
+        monkeypatch.setattr(reading, "compare_logs", lambda _, aircraft, *__: Compared(answer, aircraft))
     given = ["gap", "flight.tlog", "--aircraft", "mine.yaml", *arguments]
     return CliRunner().invoke(cli.advisor, given, standalone_mode=False)
 
