@@ -21,7 +21,7 @@ TABLE = ROOM / "candidates"
 """Where names of effects belong."""
 BLOCKS = frozenset(trait.block for trait in TRAITS.values()) | {"attitude_sensor"}
 NAMES = frozenset(TRAITS) | BLOCKS
-LIMITS = {"lines": 11343, "constants": 340, "names compared": 20, "complex functions": 5}
+LIMITS = {"lines": 11487, "constants": 340, "names compared": 20, "complex functions": 5}
 MOST_COMPLEX = 15
 _BRANCHES = (ast.If, ast.IfExp, ast.For, ast.While, ast.ExceptHandler, ast.comprehension, ast.match_case)
 

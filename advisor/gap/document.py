@@ -54,10 +54,7 @@ def gap_document(
             "by_numbers_percent": d.shrink.by_numbers_percent,
             "in_simulator": _in_simulator(d.in_simulator),
         },
-        "simulator": None if d.in_simulator is None else d.in_simulator.simulator,
-        "qualification": None if d.in_simulator is None else {
-            q.channel: _qualification(q) for q in d.in_simulator.qualification
-        },
+        **_with_simulator(d.in_simulator),
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "cannot_see": [
             {"effect": u.effect, "because": u.because, "would_need": u.would_need} for u in d.cannot_see
@@ -94,6 +91,14 @@ def _cause(c: Cause) -> dict[str, Any]:
         "cannot_be_told_from": list(c.cannot_be_told_from), "tell_apart_by": c.tell_apart_by,
         "gap_after": c.gap_after, "in_model": c.present,
     }  # fmt: skip
+
+
+def _with_simulator(found: InSimulator | None) -> dict[str, Any]:
+    """The user's simulator, and its tolerances by channel; both null without a simulator."""
+    if found is None:
+        return {"simulator": None, "qualification": None}
+    by_channel = {q.channel: _qualification(q) for q in found.qualification}
+    return {"simulator": found.simulator, "qualification": by_channel}
 
 
 def _in_simulator(found: InSimulator | None) -> dict[str, Any] | None:
