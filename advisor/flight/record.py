@@ -25,6 +25,8 @@ UNITS = {
     "climb_rate": "m/s",
     "height": "m",
 }
+AIR_UNITS = {"altitude": "m", "static_pressure": "Pa", "air_temperature": "K"}
+"""Channels that only tell the density of the air; the altitude is above mean sea level."""
 
 
 @dataclass(frozen=True, slots=True)
