@@ -109,6 +109,8 @@ class Reference:
     """Pitching moment of inertia about the centre of gravity."""
     cg_percent_chord: float | None = None
     """Centre of gravity behind the leading edge of the mean aerodynamic chord."""
+    air_temperature_c: float | None = None
+    """Temperature of the air flown in; None: that of the standard atmosphere."""
 
 
 @dataclass(frozen=True)

@@ -166,6 +166,9 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     cg = aircraft.reference.cg_percent_chord
     if cg is not None and abs(cg) > _FARTHEST_CG_PERCENT:
         yield f"reference.cg_percent_chord: {cg} is outside ±{_FARTHEST_CG_PERCENT:.0f} percent of the chord"
+    temperature = aircraft.reference.air_temperature_c
+    if temperature is not None and not -80.0 <= temperature <= 60.0:
+        yield f"reference.air_temperature_c: {temperature} is outside -80..60 degrees Celsius"
     for name in aircraft.model:
         if name not in PARAMETERS:
             yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"

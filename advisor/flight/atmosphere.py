@@ -18,13 +18,17 @@ from advisor.flight.maneuver import Maneuver
 SEA_LEVEL_DENSITY_KG_M3 = 1.225
 """International Standard Atmosphere (ISO 2533)."""
 _SEA_LEVEL_K = 288.15
+_SEA_LEVEL_PA = 101_325.0
+_CELSIUS_K = 273.15
 _LAPSE_K_M = 0.0065
 _EXPONENT = 4.255876
 """g/(R·lapse) - 1 of the standard atmosphere below 11 km."""
 _GAS_CONSTANT = 287.05287
 """Of dry air, J/(kg·K)."""
 
-DensitySource = Literal["pressure", "height", "sea level"]
+DensitySource = Literal[
+    "pressure and temperature", "height and temperature", "pressure", "height", "sea level"
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +37,7 @@ class AirFlown:
 
     density_kg_m3: float
     source: DensitySource
-    """What tells the density: static pressure and temperature, height in the standard atmosphere, nothing."""
+    """What tells the density; without a temperature the standard atmosphere's is taken."""
     speed_kind: Literal["indicated", "true"]
     """What the log's air speed is; one from the aircraft file counts as true."""
 
@@ -47,7 +51,9 @@ class AirFlown:
     def sentence(self) -> str:
         """Where density and air speed come from, for people."""
         told = {
-            "pressure": "from static pressure and the temperature at its sensor",
+            "pressure and temperature": "from static pressure and the aircraft file's temperature",
+            "height and temperature": "from the height flown and the aircraft file's temperature",
+            "pressure": "of the standard atmosphere at the static pressure flown in",
             "height": "of the standard atmosphere at the height flown",
             "sea level": "of the standard atmosphere at sea level, for neither pressure nor height is logged",
         }[self.source]
@@ -58,32 +64,42 @@ class AirFlown:
         return f"air density {self.density_kg_m3:.3f} kg/m³ {told}; {kind}"
 
 
-def standard_density(height_m: float) -> float:
-    """Density of the standard atmosphere in kg/m³ at a height above mean sea level, below 11 km."""
-    return float(SEA_LEVEL_DENSITY_KG_M3 * (1.0 - _LAPSE_K_M * height_m / _SEA_LEVEL_K) ** _EXPONENT)
+def standard_pressure(height_m: float) -> float:
+    """Pressure of the standard atmosphere in Pa at a height above mean sea level, below 11 km."""
+    return float(_SEA_LEVEL_PA * (1.0 - _LAPSE_K_M * height_m / _SEA_LEVEL_K) ** (_EXPONENT + 1.0))
 
 
-def air_flown(maneuvers: Sequence[Maneuver]) -> AirFlown:
-    """Mean air of manoeuvres: from pressure and temperature, else from height, else at sea level.
+def standard_density(pressure_pa: float) -> float:
+    """Density of the standard atmosphere in kg/m³ where the pressure is this, below 11 km."""
+    return float(SEA_LEVEL_DENSITY_KG_M3 * (pressure_pa / _SEA_LEVEL_PA) ** (_EXPONENT / (_EXPONENT + 1.0)))
+
+
+def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None) -> AirFlown:
+    """Mean air of manoeuvres: from static pressure, else from height, else that at sea level.
 
     Parameters
     ----------
     maneuvers
-        Their channels ``static_pressure`` (Pa), ``air_temperature`` (K), ``altitude`` (m above mean sea
-        level) and ``airspeed`` are used, as far as the log has them.
+        Their channels ``static_pressure`` (Pa), ``altitude`` (m above mean sea level) and ``airspeed`` are
+        used, as far as the log has them.
+    temperature_c
+        Temperature of the air. The one that a barometer reports is not used: the board warms the sensor.
     """
-    pressure, temperature, altitude = (
-        _mean(maneuvers, name) for name in ("static_pressure", "air_temperature", "altitude")
-    )
+    measured, altitude = _mean(maneuvers, "static_pressure"), _mean(maneuvers, "altitude")
     given = any(
         m.channels["airspeed"].source == GIVEN_AIRSPEED for m in maneuvers if "airspeed" in m.channels
     )
     kind: Literal["indicated", "true"] = "true" if given else "indicated"
-    if pressure is not None and temperature is not None:
-        return AirFlown(pressure / (_GAS_CONSTANT * temperature), "pressure", kind)
-    if altitude is not None:
-        return AirFlown(standard_density(altitude), "height", kind)
-    return AirFlown(SEA_LEVEL_DENSITY_KG_M3, "sea level", kind)
+    if measured is not None:
+        pressure, source = measured, "pressure"
+    elif altitude is not None:
+        pressure, source = standard_pressure(altitude), "height"
+    else:
+        return AirFlown(SEA_LEVEL_DENSITY_KG_M3, "sea level", kind)
+    if temperature_c is None:
+        return AirFlown(standard_density(pressure), source, kind)  # type: ignore[arg-type]
+    density = pressure / (_GAS_CONSTANT * (temperature_c + _CELSIUS_K))
+    return AirFlown(density, f"{source} and temperature", kind)  # type: ignore[arg-type]
 
 
 def _mean(maneuvers: Sequence[Maneuver], name: str) -> float | None:
@@ -94,10 +110,5 @@ def _mean(maneuvers: Sequence[Maneuver], name: str) -> float | None:
     return float(np.mean(real)) if real else None
 
 
-_REAL = {
-    "static_pressure": (2e4, 1.1e5),
-    "air_temperature": (190.0, 340.0),
-    "altitude": (-500.0, 11_000.0),
-}
-"""What can be: below the tropopause, from the coldest air to a sensor in the sun. Zero is a sensor that is
-not there."""
+_REAL = {"static_pressure": (2.2e4, 1.1e5), "altitude": (-500.0, 11_000.0)}
+"""What can be below the tropopause. Zero is a sensor that is not there."""

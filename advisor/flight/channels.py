@@ -41,10 +41,6 @@ def _scaled(factor: float) -> Callable[[NDArray[Any]], FloatArray]:
     return lambda raw: np.asarray(raw, dtype=np.float64) * factor
 
 
-def _from_centidegrees(raw: NDArray[Any]) -> FloatArray:
-    return np.asarray(raw, dtype=np.float64) * 0.01 + 273.15
-
-
 READINGS = (
     Reading("q", "ATTITUDE", "pitchspeed", _scaled(1.0)),
     Reading("p", "ATTITUDE", "rollspeed", _scaled(1.0)),
@@ -71,7 +67,6 @@ READINGS = (
     Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
     Reading("altitude", "GLOBAL_POSITION_INT", "alt", _scaled(1e-3)),
     Reading("static_pressure", "SCALED_PRESSURE", "press_abs", _scaled(100.0)),
-    Reading("air_temperature", "SCALED_PRESSURE", "temperature", _from_centidegrees),
     Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
     Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
     Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & _ARMED > 0).astype(np.float64)),

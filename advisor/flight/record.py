@@ -25,7 +25,7 @@ UNITS = {
     "climb_rate": "m/s",
     "height": "m",
 }
-AIR_UNITS = {"altitude": "m", "static_pressure": "Pa", "air_temperature": "K"}
+AIR_UNITS = {"altitude": "m", "static_pressure": "Pa"}
 """Channels that only tell the density of the air; the altitude is above mean sea level."""
 
 

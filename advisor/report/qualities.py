@@ -24,17 +24,18 @@ NAMES: Mapping[str, str] = {
 
 def qualities_of(state: CampaignState, reference: Reference) -> FlyingQualities | None:
     """Flying qualities of the joint estimate; None without an estimate."""
-    return None if state.model is None else flying_qualities(state.model, _air(state), reference)
+    return None if state.model is None else flying_qualities(state.model, _air(state, reference), reference)
 
 
 def coefficients_of(state: CampaignState, reference: Reference) -> Mapping[str, Coefficient]:
     """Non-dimensional coefficients of the joint estimate; empty without an estimate."""
-    return {} if state.model is None else coefficients(state.model, reference, _air(state))
+    return {} if state.model is None else coefficients(state.model, reference, _air(state, reference))
 
 
-def _air(state: CampaignState) -> AirFlown:
+def _air(state: CampaignState, reference: Reference) -> AirFlown:
     joined = set(state.estimate_from)
-    return air_flown([j.maneuver for j in state.maneuvers if j.maneuver.number in joined])
+    flown = [j.maneuver for j in state.maneuvers if j.maneuver.number in joined]
+    return air_flown(flown, reference.air_temperature_c)
 
 
 def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:

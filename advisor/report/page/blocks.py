@@ -1,6 +1,6 @@
 """What a page is made of: sections of paragraphs, lists, tables and figures, whatever the format."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -37,7 +37,8 @@ class Table:
 class Figure:
     """A picture with its words."""
 
-    svg: str
+    svg: Callable[[], str]
+    """Draws the picture, where the format shows one."""
     caption: str
     """What the picture shows, for those who cannot see it too."""
     size: Literal["wide", "half", "third", "quarter"] = "wide"

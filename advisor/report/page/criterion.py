@@ -9,7 +9,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from advisor.decision.verdict import limit_percent
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table
 from advisor.report.page.content import Content
-from advisor.report.page.drawing import BLACK, BLUE, draw
+from advisor.report.page.drawing import BLACK, BLUE, picture
 
 _EXPLAINED = (
     "The rules continuous and separate weigh the scatter of the newest estimates (Eq. 12), the rule "
@@ -46,7 +46,7 @@ def _value(history: Sequence[float | None], i: int) -> str:
 
 
 def _figure(rule: str, one: Mapping[str, Any], limit: float) -> Figure:
-    svg = draw(f"criterion-{rule}", 3.2, 2.4, lambda d: _paint(d, one, limit))
+    svg = picture(f"criterion-{rule}", 3.2, 2.4, _paint, one, limit)
     stopped = one["stopped_at"]
     said = "does not say stop" if stopped is None else f"says stop after manoeuvre {stopped}"
     return Figure(svg, f"Rule {rule}: {said}.", "third")

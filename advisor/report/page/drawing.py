@@ -3,10 +3,9 @@
 import io
 import re
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVarTuple
 
 import matplotlib as mpl
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure as Drawing
 
@@ -33,10 +32,28 @@ _STYLE: dict[str, Any] = {
     "path.simplify": True,
     "path.simplify_threshold": 0.2,
 }
+Shown = TypeVarTuple("Shown")
 _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
 
-def draw(name: str, width_in: float, height_in: float, paint: Callable[[Drawing], None]) -> str:
+def picture(
+    name: str,
+    width_in: float,
+    height_in: float,
+    paint: Callable[[Drawing, *Shown], None],
+    *shown: *Shown,
+) -> Callable[[], str]:
+    """A picture that is drawn when it is asked for; parameters as those of :func:`draw`."""
+    return lambda: draw(name, width_in, height_in, paint, *shown)
+
+
+def draw(
+    name: str,
+    width_in: float,
+    height_in: float,
+    paint: Callable[[Drawing, *Shown], None],
+    *shown: *Shown,
+) -> str:
     """Draw a figure as an SVG element.
 
     Parameters
@@ -45,11 +62,13 @@ def draw(name: str, width_in: float, height_in: float, paint: Callable[[Drawing]
         Of the figure in its page: makes the ids within the picture the page's only ones.
     paint
         Puts axes and lines on the empty figure.
+    shown
+        What ``paint`` needs besides the figure.
     """
     with mpl.rc_context({**_STYLE, "svg.hashsalt": name}):
         figure = Drawing(figsize=(width_in, height_in), layout="constrained")
         FigureCanvasSVG(figure)
-        paint(figure)
+        paint(figure, *shown)
         out = io.StringIO()
         figure.savefig(out, format="svg", metadata=_NO_METADATA)
     return _inline(out.getvalue(), width_in)
@@ -63,9 +82,3 @@ def _inline(svg: str, width_in: float) -> str:
     used = set(re.findall(r'(?:url\(|href=")#([^")]+)', element))
     element = re.sub(r' id="([^"]+)"', lambda m: m.group(0) if m.group(1) in used else "", element)
     return element.replace("<svg ", f'<svg style="max-width:{width_in:g}in" ', 1)
-
-
-def label_axes(axes: Axes, x: str, y: str) -> None:
-    """Name both axes; units stand in the words."""
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)

@@ -9,7 +9,7 @@ from advisor.aircraft import PARAMETERS
 from advisor.report.digits import decimals_for, signed, with_half
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table
 from advisor.report.page.content import Content
-from advisor.report.page.drawing import BLACK, BLUE, ORANGE, draw
+from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
 from advisor.report.text import SYMBOLS, UNITS, shown
 
 _NORMAL_95 = 1.959963984540054
@@ -38,9 +38,7 @@ def _blocks(content: Content) -> Iterator[Block]:
     yield Table(
         "by-maneuver", "Estimate of each accepted manoeuvre by itself, ± half the 95 % interval.",
         ("no.", *(f"{SYMBOLS[name]} [{UNITS[name]}]" for name in PARAMETERS)),
-        tuple(
-            (str(m["number"]), *(_cell(name, m["estimates"][name]) for name in PARAMETERS)) for m in accepted
-        ),
+        tuple(map(_alone, accepted)),
         frozenset(range(len(PARAMETERS) + 1)),
     )  # fmt: skip
 
@@ -62,12 +60,22 @@ def _cell(name: str, entry: Mapping[str, Any]) -> str:
     return with_half(shown(name, entry["value"]), shown(name, _NORMAL_95 * entry["std"]))
 
 
+def _alone(maneuver: Mapping[str, Any]) -> tuple[str, ...]:
+    cells = (_narrow(_cell(name, maneuver["estimates"][name])) for name in PARAMETERS)
+    return str(maneuver["number"]), *cells
+
+
+def _narrow(cell: str) -> str:
+    """The cell with one place to break its line, before the interval."""
+    return cell.replace("± ", "±\N{NO-BREAK SPACE}")
+
+
 def _forest(
     name: str, accepted: list[Mapping[str, Any]], joint: Mapping[str, Any], believed: float | None
 ) -> Figure:
     rows = [(str(m["number"]), m["estimates"][name]) for m in accepted] + [("joint", joint)]
     known = [(label, one) for label, one in rows if one["value"] is not None and one["std"] is not None]
-    svg = draw(f"forest-{name}", 2.4, 0.9 + 0.15 * len(rows), lambda d: _paint(d, name, known, believed))
+    svg = picture(f"forest-{name}", 2.4, 0.9 + 0.15 * len(rows), _paint, name, known, believed)
     told = "" if believed is None else " Dashes: the file's model."
     return Figure(
         svg, f"{SYMBOLS[name]}: each manoeuvre and the joint estimate with 95 % intervals.{told}", "quarter"

@@ -1,23 +1,17 @@
 """Measured against fitted of each accepted manoeuvre, with the residual and its 95 % band."""
 
 from collections.abc import Iterator
-from math import degrees
 
 from matplotlib.figure import Figure as Drawing
 
 from advisor.campaign_state import JudgedManeuver
+from advisor.flight.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
-from advisor.report.page.drawing import BLACK, BLUE, GREY, ORANGE, draw
+from advisor.report.page.drawing import BLACK, BLUE, GREY, ORANGE, picture
+from advisor.report.page.quantities import QUANTITIES
 
-_DEG = degrees(1.0)
-_LABELS = {
-    "alpha": ("α", "deg", _DEG),
-    "q": ("q", "deg/s", _DEG),
-    "theta": ("θ", "deg", _DEG),
-    "a_z": ("a_z", "m/s²", 1.0),
-}
 _NORMAL_95 = 1.959963984540054
 _EXPLAINED = (
     "Grey: measured. Dark dashes: the short-period model fitted to this manoeuvre alone. "
@@ -43,13 +37,11 @@ def _blocks(content: Content) -> Iterator[Block]:
 def _figures(judged: JudgedManeuver, estimate: Estimate) -> Iterator[Figure]:
     number, span = judged.maneuver.number, judged.maneuver.span
     elevator = judged.maneuver.channels["elevator"]
-    svg = draw(
-        f"input-{number}", 4.4, 2.7, lambda d: _paint_input(d, elevator.t - span.start_s, elevator.y * _DEG)
-    )
+    svg = picture(f"input-{number}", 4.4, 2.7, _paint_input, elevator, span.start_s)
     yield Figure(svg, f"Manoeuvre {number}, {span.kind}: elevator command δe.", "half")
     for name, fit in estimate.fits[0].items():
-        symbol, unit, factor = _LABELS[name]
-        svg = draw(f"fit-{number}-{name}", 4.4, 2.7, lambda d, f=fit: _paint(d, f, span.start_s))  # type: ignore[misc]
+        quantity = QUANTITIES[name]
+        svg = picture(f"fit-{number}-{name}", 4.4, 2.7, _paint, fit, span.start_s)
         band = estimate.prediction.get(name)
         told = (
             ""
@@ -58,25 +50,27 @@ def _figures(judged: JudgedManeuver, estimate: Estimate) -> Iterator[Figure]:
         )
         yield Figure(
             svg,
-            f"Manoeuvre {number}, {symbol}: R² {fit.r2:.3f}, Theil {fit.tic:.3f}, "
-            f"rms of the residual {fit.rms * factor:.3g} {unit}.{told}",
+            f"Manoeuvre {number}, {quantity.symbol}: R² {fit.r2:.3f}, Theil {fit.tic:.3f}, "
+            f"rms of the residual {fit.rms * quantity.factor:.3g} {quantity.unit}.{told}",
             "half",
         )
 
 
-def _paint_input(drawing: Drawing, t: object, y: object) -> None:
+def _paint_input(drawing: Drawing, elevator: Channel, start_s: float) -> None:
     axes = drawing.subplots()
-    axes.plot(t, y, color=BLACK)  # type: ignore[arg-type]
-    axes.set(xlabel="time since the first step [s]", ylabel="δe [deg]")
+    quantity = QUANTITIES["elevator"]
+    axes.plot(elevator.t - start_s, elevator.y * quantity.factor, color=BLACK)
+    axes.set(xlabel="time since the first step [s]", ylabel=quantity.label)
 
 
 def _paint(drawing: Drawing, fit: ChannelFit, start_s: float) -> None:
-    symbol, unit, factor = _LABELS[fit.name]
+    quantity = QUANTITIES[fit.name]
+    factor, unit = quantity.factor, quantity.unit
     above, below = drawing.subplots(2, 1, sharex=True, height_ratios=[2.2, 1.0])
     t = fit.t - start_s
     above.plot(t, fit.measured * factor, color=GREY, linewidth=1.8, label="measured")
     above.plot(t, fit.fitted * factor, color=BLUE, linestyle=(0, (4, 1.5)), label="fitted")
-    above.set_ylabel(f"{symbol} [{unit}]")
+    above.set_ylabel(quantity.label)
     above.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=2)
     half = _NORMAL_95 * fit.noise * factor
     below.axhspan(-half, half, facecolor="#cfe0ef", edgecolor=BLUE, linewidth=0.5, linestyle=":")

@@ -1,7 +1,6 @@
 """The flight in one picture: elevator, angle of attack, pitch rate, air speed, height; manoeuvres marked."""
 
 from collections.abc import Iterator, Sequence
-from math import degrees
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,16 +11,9 @@ from advisor.flight.record import Channel
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.course import SHOWN, Course, thinned
-from advisor.report.page.drawing import BLUE, ORANGE, draw
+from advisor.report.page.drawing import BLUE, ORANGE, picture
+from advisor.report.page.quantities import QUANTITIES
 
-_DEG = degrees(1.0)
-_LABELS = {
-    "elevator": ("δe [deg]", _DEG),
-    "alpha": ("α [deg]", _DEG),
-    "q": ("q [deg/s]", _DEG),
-    "airspeed": ("V [m/s]", 1.0),
-    "height": ("h [m]", 1.0),
-}
 _BINS = 500
 _EXPLAINED = (
     "Elevator δe (trailing edge down positive), angle of attack α, pitch rate q, air speed V as logged, "
@@ -43,7 +35,7 @@ def _blocks(content: Content) -> Iterator[Block]:
             continue
         drawn = True
         name = f"flight-{course.flight}-{course.boot}"
-        svg = draw(name, 7.4, 5.4, lambda drawing, c=course, h=here: _paint(drawing, c, h))  # type: ignore[misc]
+        svg = picture(name, 7.4, 5.4, _paint, course, here)
         power_on = f", power-on {course.boot + 1}" if course.boot else ""
         where = f"{content.names[course.flight]}{power_on}"
         yield Gallery((Figure(svg, f"{where}. {_EXPLAINED}"),))
@@ -56,11 +48,11 @@ def _paint(drawing: Drawing, course: Course, judged: Sequence[JudgedManeuver]) -
     shown = [name for name in SHOWN if name in channels]
     rows = drawing.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
     for axes, name in zip(rows, shown, strict=True):
-        label, factor = _LABELS[name]
+        quantity = QUANTITIES[name]
         channel = _as_judged(channels[name], judged)
         t, y = thinned(channel, _BINS)
-        axes.plot(t, y * factor, color=BLUE, linewidth=0.7)
-        axes.set_ylabel(label)
+        axes.plot(t, y * quantity.factor, color=BLUE, linewidth=0.7)
+        axes.set_ylabel(quantity.label)
         _mark(axes, judged)
     drawing.align_ylabels(list(rows))
     rows[-1].set_xlabel("time since boot [s]")

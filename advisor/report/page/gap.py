@@ -4,11 +4,17 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FuncFormatter
 
 from advisor.gap.result import spelled
+from advisor.gap.verdict.text import place
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table, listing
 from advisor.report.page.content import Content, Document
-from advisor.report.page.drawing import BLUE, draw
+from advisor.report.page.drawing import BLUE, picture
+from advisor.report.page.quantities import QUANTITIES
+
+_LINEAR = 10.0
+"""Largest gap on a linear axis."""
 
 
 def gap(content: Content) -> Section | None:
@@ -30,20 +36,17 @@ def _blocks(found: Document) -> Iterator[Block]:
         f"Before {size['before']:.3g}, after {size['after']:.3g}." + _shrink(shrink)
     )
     yield Table(
-        "gap-channels", "Gap by channel.", ("channel", "before", "after", "noise floor (SI)"),
-        tuple(
-            (c, f"{v:.3g}", f"{size['by_channel_after'].get(c, float('nan')):.3g}", f"{size['floor'][c]:.3g}")
-            for c, v in size["by_channel"].items()
-        ),
-        frozenset({1, 2, 3}),
+        "gap-channels", "Gap by channel.", ("channel", "before", "after", "noise floor"),
+        tuple(_channel(name, size) for name in size["by_channel"]), frozenset({1, 2, 3}),
     )  # fmt: skip
-    if found["waterfall"]:
-        steps = [
-            ("as it is", size["before"]),
-            *((f"+ {spelled(s['effect'])}", s["after"]) for s in found["waterfall"]),
-        ]
-        svg = draw("waterfall", 5.0, 0.7 + 0.28 * len(steps), lambda d: _paint(d, steps))
-        yield Gallery((Figure(svg, "Gap left as effects are added, one after another."),))
+    where = found["where"]
+    if found["verdict"] in ("effect", "unknown"):
+        yield Paragraph(f"Where: {place(where['block'])}, {100.0 * where['share']:.0f} % of the gap.")
+    steps = [(spelled(s["effect"]), s["after"]) for s in found["waterfall"] if s["after"] != size["before"]]
+    if steps:
+        rows = [("as it is", size["before"]), *((f"+ {name}", after) for name, after in steps)]
+        svg = picture("waterfall", 4.4, 0.8 + 0.28 * len(rows), _paint, rows)
+        yield Gallery((Figure(svg, "Gap left as effects are added, one after another.", "half"),))
     if found["causes"]:
         yield Table(
             "causes", "Causes, the most probable first.",
@@ -54,6 +57,12 @@ def _blocks(found: Document) -> Iterator[Block]:
         [f"Cannot be seen: {spelled(u['effect'])}, {u['because']}." for u in found["cannot_see"]]
     )
     yield from listing(list(found["notes"]))
+
+
+def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:
+    after, quantity = size["by_channel_after"].get(name), QUANTITIES[name]
+    floor = f"{size['floor'][name] * quantity.factor:.2g} {quantity.unit}"
+    return quantity.symbol, f"{size['by_channel'][name]:.3g}", "–" if after is None else f"{after:.3g}", floor
 
 
 def _shrink(shrink: Mapping[str, Any] | None) -> str:
@@ -80,12 +89,18 @@ def _cause(cause: Mapping[str, Any]) -> tuple[str, ...]:
     )
 
 
-def _paint(drawing: Drawing, steps: list[tuple[str, float]]) -> None:
+def _paint(drawing: Drawing, rows: list[tuple[str, float]]) -> None:
     axes = drawing.subplots()
-    axes.barh(range(len(steps)), [max(value, 0.0) for _, value in steps], color=BLUE, height=0.6)
-    axes.set_yticks(range(len(steps)), [name for name, _ in steps])
-    for row, (_, value) in enumerate(steps):
+    axes.set_axisbelow(True)
+    axes.barh(range(len(rows)), [max(value, 0.0) for _, value in rows], color=BLUE, height=0.6)
+    axes.set_yticks(range(len(rows)), [name for name, _ in rows])
+    for row, (_, value) in enumerate(rows):
         axes.annotate(f" {value:.3g}", (max(value, 0.0), row), va="center")
     axes.invert_yaxis()
-    axes.set_xscale("symlog", linthresh=1.0)
-    axes.set_xlabel("gap, times the noise floor's power")
+    axes.grid(visible=False, axis="y")
+    largest = max(value for _, value in rows)
+    if largest > _LINEAR:
+        axes.set_xscale("symlog", linthresh=1.0)
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.set_xlim(0.0, largest * (3.0 if largest > _LINEAR else 1.15))
+    axes.set_xlabel("gap [times the noise floor's power]")

@@ -16,7 +16,7 @@ def maneuvers(content: Content) -> Section:
     found = content.analysis["maneuvers"]
     rows = tuple(_row(maneuver, len(content.names) > 1) for maneuver in found)
     table = Table(
-        "maneuvers", "Every manoeuvre in the order flown; times are seconds since boot.", _HEAD, rows,
+        "maneuver-list", "Every manoeuvre in the order flown; times are seconds since boot.", _HEAD, rows,
         frozenset({0, 1}),
     )  # fmt: skip
     return Section("maneuvers", "Manoeuvres", (table, *listing(caution_lines(content.state.maneuvers))))
