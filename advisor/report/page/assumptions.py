@@ -15,7 +15,7 @@ def _blocks(content: Content) -> Iterator[Block]:
     analysis = content.analysis
     model = analysis["model"]
     said = [*analysis.get("notes", ()), *analysis["log"]["notes"], *(model["notes"] if model else ())]
-    yield from listing(said) or (Paragraph("Nothing beyond the aircraft file."),)
+    yield from listing(said) or (Paragraph("Neither the logs nor the joint estimate leave a note."),)
     logs = analysis.get("logs", [analysis["log"]])
     for flight, (name, log) in enumerate(zip(content.names, logs, strict=True)):
         rows = tuple(

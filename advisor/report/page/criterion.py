@@ -26,6 +26,9 @@ def criterion(content: Content) -> Section:
 def _blocks(content: Content) -> Iterator[Block]:
     by_rule = content.analysis["flight_test"]["by_rule"]
     limits = {rule: limit_percent(rule, content.aircraft.campaign) for rule in by_rule}
+    if all(value is None for one in by_rule.values() for value in one["history_percent"]):
+        yield Paragraph("No rule's criterion has a value yet: too few manoeuvres are accepted.")
+        return
     yield Paragraph(_EXPLAINED)
     yield Gallery(tuple(_figure(rule, one, limits[rule]) for rule, one in by_rule.items()))
     flown = max((len(one["history_percent"]) for one in by_rule.values()), default=0)
@@ -70,5 +73,5 @@ def _paint(drawing: Drawing, one: Mapping[str, Any], limit: float) -> None:
     values = [limit, *(v for _, v in history)]
     axes.set_ylim(0.6 * min(values), 1.8 * max(values))
     axes.set_xlim(0.5, len(one["history_percent"]) + 0.5)
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     axes.set(xlabel="manoeuvres flown", ylabel="criterion [%]")

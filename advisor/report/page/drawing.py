@@ -11,7 +11,7 @@ from matplotlib.figure import Figure as Drawing
 
 BLUE, ORANGE, GREY, BLACK = "#0b5394", "#b45f06", "#9a9a9a", "#222222"
 """Differ in lightness, too; every line that differs in colour differs in style."""
-_STYLE: dict[str, Any] = {
+_STYLE: Any = {
     "svg.fonttype": "none",
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
@@ -25,6 +25,7 @@ _STYLE: dict[str, Any] = {
     "grid.linewidth": 0.4,
     "grid.color": "#dddddd",
     "lines.linewidth": 1.1,
+    "hatch.linewidth": 0.4,
     "xtick.major.width": 0.5,
     "ytick.major.width": 0.5,
     "legend.frameon": False,
@@ -65,7 +66,7 @@ def draw(
     shown
         What ``paint`` needs besides the figure.
     """
-    with mpl.rc_context({**_STYLE, "svg.hashsalt": name}):
+    with mpl.rc_context(_STYLE), mpl.rc_context({"svg.hashsalt": name}):
         figure = Drawing(figsize=(width_in, height_in), layout="constrained")
         FigureCanvasSVG(figure)
         paint(figure, *shown)

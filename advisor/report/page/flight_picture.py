@@ -70,7 +70,7 @@ def _mark(axes: Axes, judged: Sequence[JudgedManeuver]) -> None:
         span, accepted = one.maneuver.span, one.verdict.accepted
         look = {"facecolor": "#d7e6d5", "edgecolor": "none"}
         if not accepted:
-            look = {"facecolor": "#f3dfcf", "edgecolor": ORANGE, "hatch": "////"}
+            look = {"facecolor": "#f3dfcf", "edgecolor": ORANGE, "hatch": "//"}
         axes.axvspan(span.start_s, span.end_s, linewidth=0.0, zorder=0, **look)  # type: ignore[arg-type]
 
 
