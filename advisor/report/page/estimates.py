@@ -7,12 +7,11 @@ from matplotlib.figure import Figure as Drawing
 
 from advisor.aircraft import PARAMETERS
 from advisor.report.digits import decimals_for, signed, with_half
+from advisor.report.document import NORMAL_95
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
 from advisor.report.text import SYMBOLS, UNITS, shown
-
-_NORMAL_95 = 1.959963984540054
 
 
 def estimates(content: Content) -> Section:
@@ -46,18 +45,18 @@ def _blocks(content: Content) -> Iterator[Block]:
 def _joint(name: str, entry: Mapping[str, Any], believed: float | None) -> tuple[str, ...]:
     known = "–"
     if believed is not None:
-        half = 0.0 if entry["std"] is None else shown(name, _NORMAL_95 * entry["std"])
+        half = 0.0 if entry["std"] is None else shown(name, NORMAL_95 * entry["std"])
         known = signed(shown(name, believed), decimals_for(half))
     if entry["value"] is None:
         return SYMBOLS[name], f"– ({entry['reason']})", "–", known, UNITS[name]
-    white = shown(name, _NORMAL_95 * entry["std_cr"])
+    white = shown(name, NORMAL_95 * entry["std_cr"])
     return SYMBOLS[name], _cell(name, entry), f"{white:.2g}", known, UNITS[name]
 
 
 def _cell(name: str, entry: Mapping[str, Any]) -> str:
     if entry["value"] is None or entry["std"] is None:
         return "–"
-    return with_half(shown(name, entry["value"]), shown(name, _NORMAL_95 * entry["std"]))
+    return with_half(shown(name, entry["value"]), shown(name, NORMAL_95 * entry["std"]))
 
 
 def _alone(maneuver: Mapping[str, Any]) -> tuple[str, ...]:
@@ -89,7 +88,7 @@ def _paint(
     for row, (label, one) in enumerate(known):
         joint = label == "joint"
         axes.errorbar(
-            shown(name, one["value"]), row, xerr=shown(name, _NORMAL_95 * one["std"]),
+            shown(name, one["value"]), row, xerr=shown(name, NORMAL_95 * one["std"]),
             fmt="D" if joint else "o", color=BLACK if joint else BLUE, markersize=5 if joint else 3.5,
             linewidth=1.6 if joint else 0.9, capsize=2,
         )  # fmt: skip

@@ -7,12 +7,12 @@ from matplotlib.figure import Figure as Drawing
 from advisor.campaign_state import JudgedManeuver
 from advisor.flight.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.report.document import NORMAL_95
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, GREY, ORANGE, picture
 from advisor.report.page.quantities import QUANTITIES
 
-_NORMAL_95 = 1.959963984540054
 _EXPLAINED = (
     "Grey: measured. Dark dashes: the short-period model fitted to this manoeuvre alone. "
     "Below: the residual, measured minus fitted. "
@@ -41,19 +41,23 @@ def _figures(judged: JudgedManeuver, estimate: Estimate) -> Iterator[Figure]:
     yield Figure(svg, f"Manoeuvre {number}, {span.kind}: elevator command δe.", "half")
     for name, fit in estimate.fits[0].items():
         quantity = QUANTITIES[name]
+        rms = f"{fit.rms * quantity.factor:.3g} {quantity.unit}"
         svg = picture(f"fit-{number}-{name}", 4.4, 2.7, _paint, fit, span.start_s)
-        band = estimate.prediction.get(name)
-        told = (
-            ""
-            if band is None
-            else f" The predicted response is known to {100.0 * band:.1f} % of its peak (95 %)."
-        )
         yield Figure(
             svg,
             f"Manoeuvre {number}, {quantity.symbol}: R² {fit.r2:.3f}, Theil {fit.tic:.3f}, "
-            f"rms of the residual {fit.rms * quantity.factor:.3g} {quantity.unit}.{told}",
+            f"rms of the residual {rms}.{_prediction(estimate, name)}",
             "half",
         )
+
+
+def _prediction(estimate: Estimate, name: str) -> str:
+    band = estimate.prediction.get(name)
+    return (
+        ""
+        if band is None
+        else f" The predicted response is known to {100.0 * band:.1f} % of its peak (95 %)."
+    )
 
 
 def _paint_input(drawing: Drawing, elevator: Channel, start_s: float) -> None:
@@ -72,7 +76,7 @@ def _paint(drawing: Drawing, fit: ChannelFit, start_s: float) -> None:
     above.plot(t, fit.fitted * factor, color=BLUE, linestyle=(0, (4, 1.5)), label="fitted")
     above.set_ylabel(quantity.label)
     above.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=2)
-    half = _NORMAL_95 * fit.noise * factor
+    half = NORMAL_95 * fit.noise * factor
     below.axhspan(-half, half, facecolor="#cfe0ef", edgecolor=BLUE, linewidth=0.5, linestyle=":")
     below.plot(t, fit.residual * factor, color=ORANGE, linewidth=0.7)
     below.set(xlabel="time since the first step [s]", ylabel=f"residual [{unit}]")

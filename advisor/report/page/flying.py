@@ -3,11 +3,10 @@
 from collections.abc import Iterator
 
 from advisor.report.digits import with_half
+from advisor.report.document import NORMAL_95
 from advisor.report.page.blocks import Block, Paragraph, Section, Table, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.qualities import NAMES
-
-_NORMAL_95 = 1.959963984540054
 
 
 def flying(content: Content) -> Section:
@@ -52,4 +51,4 @@ def _blocks(content: Content) -> Iterator[Block]:
 
 
 def _with_interval(one: Document) -> str:
-    return with_half(one["value"], _NORMAL_95 * one["std"])
+    return with_half(one["value"], NORMAL_95 * one["std"])

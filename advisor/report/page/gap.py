@@ -8,11 +8,15 @@ from matplotlib.ticker import FuncFormatter
 
 from advisor.gap.result import spelled
 from advisor.gap.verdict.text import place
+from advisor.report.digits import with_half
+from advisor.report.document import NORMAL_95
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
 from advisor.report.page.quantities import QUANTITIES
 
+_ROUNDING = 1e-9
+"""Smaller gaps are 0."""
 _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
@@ -31,10 +35,7 @@ def _blocks(found: Document) -> Iterator[Block]:
         return
     yield Paragraph(found["sentence"], "verdict")
     size, shrink = found["gap"], found["shrink"]
-    yield Paragraph(
-        "Gap: mean square of the simulator's error over the noise floor's, minus 1. "
-        f"Before {size['before']:.3g}, after {size['after']:.3g}." + _shrink(shrink)
-    )
+    yield Paragraph(_size(size, untested=found["verdict"] is None) + _shrink(shrink))
     yield Table(
         "gap-channels", "Gap by channel.", ("channel", "before", "after", "noise floor"),
         tuple(_channel(name, size) for name in size["by_channel"]), frozenset({1, 2, 3}),
@@ -59,34 +60,50 @@ def _blocks(found: Document) -> Iterator[Block]:
     yield from listing(list(found["notes"]))
 
 
+def _size(size: Mapping[str, Any], untested: bool) -> str:
+    what = "mean square of the simulator's error over the noise floor's, minus 1"
+    if untested:
+        return f"The fitted model leaves {_short(size['after'])} ({what})."
+    return f"Gap ({what}): before {_short(size['before'])}, after {_short(size['after'])}."
+
+
+def _short(value: float) -> str:
+    """Three digits; what is only rounding is 0."""
+    return f"{value:.3g}" if abs(value) > _ROUNDING else "0"
+
+
 def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:
     after, quantity = size["by_channel_after"].get(name), QUANTITIES[name]
     floor = f"{size['floor'][name] * quantity.factor:.2g} {quantity.unit}"
-    return quantity.symbol, f"{size['by_channel'][name]:.3g}", "–" if after is None else f"{after:.3g}", floor
+    return quantity.symbol, _short(size["by_channel"][name]), "–" if after is None else _short(after), floor
 
 
 def _shrink(shrink: Mapping[str, Any] | None) -> str:
     if shrink is None:
         return ""
     low, high = shrink["ci95_percent"]
+    interval = "" if low is None or high is None else f" (95 %: {low:.1f} to {high:.1f})"
     held_out = ", ".join(map(str, shrink["holdout"]))
-    return (
-        f" {shrink['percent']:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out manoeuvres {held_out}."
-    )
+    return f" {shrink['percent']:.1f} % less{interval} on held-out manoeuvres {held_out}."
 
 
 def _cause(cause: Mapping[str, Any]) -> tuple[str, ...]:
-    values = ", ".join(
-        f"{n} {v['value']:.4g} ± {1.96 * v['std']:.2g}" for n, v in cause["parameters"].items()
-    )
+    values = ", ".join(f"{name} {_with_interval(one)}" for name, one in cause["parameters"].items())
     after = cause["gap_after"]
     return (
         spelled(cause["effect"]),
         f"{cause['probability']:.2f}",
         values,
-        "–" if after is None else f"{after:.3g}",
+        "–" if after is None else _short(after),
         ", ".join(map(spelled, cause["cannot_be_told_from"])) or "–",
     )
+
+
+def _with_interval(one: Mapping[str, Any]) -> str:
+    value, std = one["value"], one["std"]
+    if value is None:
+        return "–"
+    return f"{value:.4g}" if std is None else with_half(value, NORMAL_95 * std)
 
 
 def _paint(drawing: Drawing, rows: list[tuple[str, float]]) -> None:
@@ -95,7 +112,7 @@ def _paint(drawing: Drawing, rows: list[tuple[str, float]]) -> None:
     axes.barh(range(len(rows)), [max(value, 0.0) for _, value in rows], color=BLUE, height=0.6)
     axes.set_yticks(range(len(rows)), [name for name, _ in rows])
     for row, (_, value) in enumerate(rows):
-        axes.annotate(f" {value:.3g}", (max(value, 0.0), row), va="center")
+        axes.annotate(f" {_short(value)}", (max(value, 0.0), row), va="center")
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
     largest = max(value for _, value in rows)
