@@ -7,6 +7,7 @@ import pytest
 
 from advisor.aircraft import PARAMETERS
 from advisor.report.page.render import page
+from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from tests.report.conftest import Reported
 from tests.report.page_reader import with_interval
 
@@ -108,3 +109,18 @@ def test_the_markdown_says_the_same(reported: Reported) -> None:
     for name in ("joint", "maneuver-list", "criterion-values", "qualities", "files"):
         for row in reported.page.tables[name][1:]:
             assert f"| {' | '.join(row)} |" in lines
+
+
+def test_the_text_of_analyze_says_the_flying_qualities_and_their_conventions(reported: Reported) -> None:
+    reference = reported.content.aircraft.reference
+    qualities = qualities_of(reported.content.state, reference)
+    assert qualities is not None
+    said = "\n".join(quality_lines(qualities, coefficients_of(reported.content.state, reference)))
+    found = reported.analysis["flying_qualities"]
+    for name in ("natural_frequency", "n_alpha", "neutral_point"):
+        assert f"{found[name]['value']:.4g} ±" in said
+    for level in found["levels"].values():
+        assert level["text"] in said
+    assert f"C_m_alpha {reported.analysis['coefficients']['C_m_alpha']['value']:.4g}" in said
+    for convention in ("m/s indicated", "m/s true", "q·c/(2·V)", "written for manned aeroplanes"):
+        assert convention in said
