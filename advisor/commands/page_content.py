@@ -14,7 +14,7 @@ from advisor.by_hand import NOTHING, ByHand
 from advisor.campaign import Campaign
 from advisor.campaign_state import CampaignState
 from advisor.commands.doctor import examine_log
-from advisor.diagnosis import diagnose_logs
+from advisor.diagnosis import compare_logs, named_simulator
 from advisor.doctor.document import doctor_document
 from advisor.gap.document import gap_document
 from advisor.log_series import LogSeries
@@ -105,11 +105,16 @@ def _gap(
 ) -> Document:
     usable = [flight for flight in range(len(series.logs)) if flight not in left_out]
     logs, decided = [series.logs[f] for f in usable], [by_hand.on_flight(f) for f in usable]
+    simulator = None
     try:
-        found = diagnose_logs(logs, aircraft, target_system=target_system, by_hand=decided)
+        simulator = named_simulator(aircraft, target_system)
+        compared = compare_logs(logs, aircraft, simulator, target_system=target_system, by_hand=decided)
     except UnusableInputError as error:
         return gap_document(None, error.problems)
-    return gap_document(found)
+    finally:
+        if simulator is not None:
+            simulator.close()
+    return gap_document(compared.diagnosis)
 
 
 def _hashes(series: LogSeries, aircraft_file: Path | None) -> Mapping[str, str]:
