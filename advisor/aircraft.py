@@ -104,7 +104,13 @@ class Reference:
     mass_kg: float | None = None
     wing_area_m2: float | None = None
     chord_m: float | None = None
+    """Mean aerodynamic chord."""
     iyy_kg_m2: float | None = None
+    """Pitching moment of inertia about the centre of gravity."""
+    cg_percent_chord: float | None = None
+    """Centre of gravity behind the leading edge of the mean aerodynamic chord."""
+    air_temperature_c: float | None = None
+    """Temperature of the air flown in; None: that of the standard atmosphere."""
 
 
 @dataclass(frozen=True)

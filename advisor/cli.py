@@ -26,6 +26,7 @@ COMMANDS = {
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
     "export": "Channels, manoeuvres, estimates and residuals for other tools.",
     "batch": "Many flights: every log analyzed once, tables and changes over all of them.",
+    "report": "One self-contained page of a flight, for people who were not there.",
     "doctor": "Is this telemetry good enough, before flying; what to change if not.",
     "study": "The paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
     "locate": "Where settings and recordings are kept.",

@@ -130,6 +130,8 @@ _MOST_POINTS = 500
 """Points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
 """Manoeuvres in Eq. (12): more than any flight has."""
+_FARTHEST_CG_PERCENT = 200.0
+"""Centre of gravity from the leading edge: canards fly ahead of the wing, none flies two chords away."""
 _OUTPUTS = 32
 """Servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
 _LONGEST_STEP_S = 0.1
@@ -161,6 +163,12 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     for path, value in positive.items():
         if value is not None and value <= 0.0:
             yield f"{path}: must be above 0, is {value}"
+    cg = aircraft.reference.cg_percent_chord
+    if cg is not None and abs(cg) > _FARTHEST_CG_PERCENT:
+        yield f"reference.cg_percent_chord: {cg} is outside ±{_FARTHEST_CG_PERCENT:.0f} percent of the chord"
+    temperature = aircraft.reference.air_temperature_c
+    if temperature is not None and not -80.0 <= temperature <= 60.0:
+        yield f"reference.air_temperature_c: {temperature} is outside -80..60 degrees Celsius"
     for name in aircraft.model:
         if name not in PARAMETERS:
             yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"

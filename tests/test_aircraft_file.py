@@ -22,7 +22,8 @@ alpha: {source: auto, vane_arm_m: null}
 accelerometer: {arm_m: null}
 airspeed_m_s: null
 reference_airspeed_m_s: null
-reference: {mass_kg: null, wing_area_m2: null, chord_m: null, iyy_kg_m2: null}
+reference: {mass_kg: null, wing_area_m2: null, chord_m: null, iyy_kg_m2: null,
+            cg_percent_chord: null, air_temperature_c: null}
 model: {Z_0: 0.04, Z_alpha: -1.0, Z_q: 0.0, Z_delta_e: -0.1, M_0: 0.47,
         M_alpha: -4.9, M_q: -1.5, M_delta_e: -7.2}
 campaign: {rule: continuous, window: 3, limit_percent: 25}
@@ -135,6 +136,8 @@ def test_effects_of_a_file_are_those_of_the_gap_analysis_and_the_simulator_flies
         ([1, 2], "must hold keys"),
         ("text", "must hold keys"),
         ({"elevator": 5}, "elevator: must hold keys"),
+        ({"reference": {"cg_percent_chord": 2500}}, "reference.cg_percent_chord: 2500"),
+        ({"reference": {"air_temperature_c": 288.15}}, "reference.air_temperature_c: 288.15"),
         ({"elevator": {"calibration": [[1100]]}}, "elevator.calibration[0]"),
         ({"elevator": {"calibration": [[1100, 1.0], [1500, 1.0]]}}, "rise all the way or fall"),
         ({"elevator": {"output": 40}}, "elevator.output"),

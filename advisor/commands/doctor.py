@@ -56,7 +56,7 @@ def command(
     findings, problem = None, None
     try:
         if _is_log(target):
-            findings = _examine_log(Path(target), aircraft, target_system)
+            findings = examine_log(Path(target), aircraft, target_system)
         else:
             findings = _examine_link(target, aircraft, target_system, seconds, request_rates)
     except UnusableInputError as error:
@@ -91,7 +91,14 @@ def _first_obstacle(findings: "Examination | None") -> Problem | None:
     )
 
 
-def _examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Examination":
+def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Examination":
+    """Examine the telemetry of a log.
+
+    Raises
+    ------
+    UnusableInputError
+        The log cannot be read.
+    """
     from advisor.doctor.examiner import Examiner
     from advisor.mavlink.frames import FrameScanner, Received
     from advisor.mavlink.logs import open_log

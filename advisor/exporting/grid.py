@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.exporting.table import Column, Table
 from advisor.flight.messages import FloatArray
-from advisor.flight.record import UNITS, Channel
+from advisor.flight.record import ALL_UNITS, Channel
 from advisor.flight.segmentation import GAP_S, MANY_INTERVALS
 
 GRID = (
@@ -21,7 +21,8 @@ def on_one_grid(channels: Mapping[str, Channel]) -> Table:
     """All channels at the times of ``GRID``; a table without rows where no channel has two samples."""
     t = grid_times(channels)
     columns = [
-        Column(name, on_grid(c, t), UNITS[name], f"{name} from {c.source}") for name, c in channels.items()
+        Column(name, on_grid(c, t), ALL_UNITS[name], f"{name} from {c.source}")
+        for name, c in channels.items()
     ]
     time = Column("t_boot_s", t, "s", "vehicle time since boot")
     return Table("grid", f"All channels on one grid: {GRID}.", (time, *columns))

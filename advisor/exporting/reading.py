@@ -17,7 +17,7 @@ from advisor.exporting.grid import GRID, on_one_grid
 from advisor.exporting.table import Column, Dataset, Recording, Table, numbers, texts
 from advisor.flight.marks import Mark
 from advisor.flight.power_on import PowerOn
-from advisor.flight.record import UNITS
+from advisor.flight.record import ALL_UNITS
 from advisor.flight.stream import FlightStream
 from advisor.log_series import LogSeries
 from advisor.problems import UnusableInputError
@@ -123,7 +123,9 @@ def _recording(number: int, power_on: PowerOn) -> Recording:
             f"{name} at its own stamps.",
             (
                 Column("t_boot_s", channel.t, "s", "vehicle time since boot"),
-                Column(name, channel.y, UNITS[name], f"{name} from {channel.source}, {channel.provenance}"),
+                Column(
+                    name, channel.y, ALL_UNITS[name], f"{name} from {channel.source}, {channel.provenance}"
+                ),
             ),
         )
         for name, channel in power_on.channels.items()
@@ -143,7 +145,7 @@ def _channels(flights: WholeFlights) -> Table:
         Column("log", texts([str(log) for _, log, _, _ in rows]), "", "file of the log"),
         Column("boot", np.array([boot for *_, boot, _ in rows], np.int64), "", "power-on in the log, from 0"),
         Column("channel", texts([c.name for c in found]), "", "name of the channel"),
-        Column("unit", texts([UNITS[c.name] for c in found]), "", "SI unit of the channel"),
+        Column("unit", texts([ALL_UNITS[c.name] for c in found]), "", "SI unit of the channel"),
         Column("source", texts([c.source for c in found]), "", "message and field"),
         Column("provenance", texts([c.provenance for c in found]), "", "how the quantity is known"),
         Column("samples", np.array([len(c) for c in found], np.int64), "1", "number of samples"),

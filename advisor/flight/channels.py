@@ -65,6 +65,8 @@ READINGS = (
         for channel, field in (("a_x", "xacc"), ("a_z", "zacc"))
     ),
     Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
+    Reading("altitude", "GLOBAL_POSITION_INT", "alt", _scaled(1e-3)),
+    Reading("static_pressure", "SCALED_PRESSURE", "press_abs", _scaled(100.0)),
     Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
     Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
     Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & _ARMED > 0).astype(np.float64)),
@@ -79,6 +81,7 @@ _STAMPS = {
     "SCALED_IMU": _BOOT_MS,
     "SCALED_IMU2": _BOOT_MS,
     "SCALED_IMU3": _BOOT_MS,
+    "SCALED_PRESSURE": _BOOT_MS,
     "HIGHRES_IMU": _USEC,
     "GLOBAL_POSITION_INT": _BOOT_MS,
     "SERVO_OUTPUT_RAW": _USEC,

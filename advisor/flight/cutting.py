@@ -14,7 +14,7 @@ from advisor.flight.marked_input import marked_span
 from advisor.flight.marks import Mark
 from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.purpose import not_an_input
-from advisor.flight.record import UNITS
+from advisor.flight.record import AIR_UNITS, UNITS
 from advisor.flight.segmentation import LEAD_IN_S
 from advisor.flight.sense import Sense, turned
 from advisor.flight.tracks import Tracks
@@ -112,6 +112,9 @@ class Cutting:
             if still.channel == "a_z":
                 # An estimate can do without a specific force, and is spoiled by one that stands still.
                 del channels["a_z"]
+        for name in AIR_UNITS:
+            if (air := self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)) is not None:
+                channels[name] = air
         mode = self._stay(_middle_s(span))[1]
         return Maneuver(self.maneuvers + 1, boot, span, channels, mode, tuple(distrusts))
 

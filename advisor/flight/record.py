@@ -25,6 +25,10 @@ UNITS = {
     "climb_rate": "m/s",
     "height": "m",
 }
+AIR_UNITS = {"altitude": "m", "static_pressure": "Pa"}
+"""Channels that only tell the density of the air; the altitude is above mean sea level."""
+ALL_UNITS = UNITS | AIR_UNITS
+"""Every channel that a manoeuvre or a whole flight may hold."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,7 @@ from advisor.flight.mixing import Mixing
 from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.pieces import pieces
 from advisor.flight.power_on import PowerOn
-from advisor.flight.record import UNITS, Channel
+from advisor.flight.record import ALL_UNITS, Channel
 from advisor.flight.senders import SenderWatch
 from advisor.flight.sense import SAID
 from advisor.flight.service import Service
@@ -252,7 +252,7 @@ class FlightStream:
 
     def _power_on(self) -> PowerOn:
         """Everything that was heard since the vehicle's clock began."""
-        found = {name: self._tracks.cut(name, -np.inf, np.inf) for name in UNITS}
+        found = {name: self._tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
         channels = {
             name: replace(c, provenance=self._who.provenance(c.source, c.provenance))
             for name, c in found.items()

@@ -1,7 +1,7 @@
 """Non-dimensional coefficients from the derivatives, when geometry and mass are known.
 
-With the dynamic pressure q̄ = ½·ρ·V² and drag's part in the lift direction neglected (Etkin & Reid,
-*Dynamics of Flight*, Table 4.4):
+With the true air speed V, the dynamic pressure q̄ = ½·ρ·V², rates made non-dimensional by c/(2·V), and drag's
+part in the lift direction neglected (Etkin & Reid, *Dynamics of Flight*, Table 4.4):
 
     Z_α = -q̄·S·C_Lα/(m·V)          M_α = q̄·S·c·C_mα/I_yy
     Z_q = -q̄·S·c·C_Lq/(2·m·V²)     M_q = q̄·S·c²·C_mq/(2·V·I_yy)
@@ -14,10 +14,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from advisor.aircraft import PARAMETERS, Reference
+from advisor.flight.atmosphere import SEA_LEVEL_DENSITY_KG_M3, AirFlown
 from advisor.oem.estimate import Estimate
 
-SEA_LEVEL_DENSITY_KG_M3 = 1.225
-"""International Standard Atmosphere."""
+CONVENTION = "per radian; rates as q·c/(2·V) with the true air speed V"
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +28,7 @@ class Coefficient:
     std: float
 
 
-def coefficients(
-    estimate: Estimate, reference: Reference, density_kg_m3: float = SEA_LEVEL_DENSITY_KG_M3
-) -> Mapping[str, Coefficient]:
+def coefficients(estimate: Estimate, reference: Reference, air: AirFlown) -> Mapping[str, Coefficient]:
     """Coefficients by name, as many as the reference data allow; empty without air speed.
 
     Parameters
@@ -39,17 +37,17 @@ def coefficients(
         Derivatives at ``estimate.airspeed_m_s``.
     reference
         Mass, wing area, chord and pitching inertia; those missing leave their coefficients out.
-    density_kg_m3
-        Of the air flown in.
+    air
+        Density, and the true air speed for the logged one.
     """
-    speed = estimate.airspeed_m_s
-    if speed is None:
+    if estimate.airspeed_m_s is None:
         return {}
+    speed = air.true_speed(estimate.airspeed_m_s)
     return {
         name: Coefficient(
             factor * estimate.value(parameter), abs(factor) * float(estimate.std[PARAMETERS.index(parameter)])
         )
-        for name, (parameter, factor) in scales(speed, reference, density_kg_m3).items()
+        for name, (parameter, factor) in scales(speed, reference, air.density_kg_m3).items()
         if parameter not in estimate.not_identifiable
     }
 

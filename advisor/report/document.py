@@ -9,9 +9,9 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, RuleResult
 from advisor.flight.flights import FlightHeard
-from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.problems import Problem
+from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
 
 SCHEMA = "advisor.analyze/1"
 NORMAL_95 = 1.959963984540054
@@ -68,10 +68,11 @@ def analysis_document(
         "model": _model(state.model) if state else None,
         "coefficients": {
             name: {"value": number(coefficient.value), "std": number(coefficient.std)}
-            for name, coefficient in coefficients(state.model, aircraft.reference).items()
+            for name, coefficient in coefficients_of(state, aircraft.reference).items()
         }
-        if state and state.model
+        if state
         else {},
+        "flying_qualities": qualities_document(qualities_of(state, aircraft.reference)) if state else None,
         "estimate_from": list(state.estimate_from) if state else [],
         "activity": [
             {

@@ -13,8 +13,8 @@ from advisor.campaign_state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.events import Activity
 from advisor.flight.track import ChannelStatus
-from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate
+from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 
 SYMBOLS = {
     "Z_0": "Z_0",
@@ -115,11 +115,9 @@ class AnalysisText:
         yield Text()
         if self.state.model is not None:
             yield self._parameters(self.state.model)
-            found = coefficients(self.state.model, self.aircraft.reference)
-            if found:
-                listed = "  ".join(f"{name} {c.value:.4g} ± {1.96 * c.std:.2g}" for name, c in found.items())
-                yield Text(f"at sea-level density: {listed}")
             yield from (Text(f"note: {note}") for note in self.state.model.notes)
+            yield Text()
+            yield from self._qualities()
             yield Text()
         yield from self._decision()
 
@@ -189,6 +187,13 @@ class AnalysisText:
                 UNITS[name],
             )
         return table
+
+    def _qualities(self) -> Iterator[Text]:
+        reference = self.aircraft.reference
+        found = qualities_of(self.state, reference)
+        if found is not None:
+            lines = quality_lines(found, coefficients_of(self.state, reference))
+            yield from (Text(line, style="bold" if line[0] in "FC" else "") for line in lines)
 
     def _decision(self) -> Iterator[Text]:
         verdict = self.state.flight_test

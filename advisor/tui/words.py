@@ -2,7 +2,9 @@
 
 import re
 from dataclasses import dataclass
-from math import degrees, floor, isfinite, log10
+from math import degrees, isfinite
+
+from advisor.report.digits import with_half
 
 _DEG = degrees(1.0)
 
@@ -22,9 +24,7 @@ class Quantity:
 
     def with_interval(self, value: float, std: float) -> str:
         """An SI value with its 95 % interval, in digits that mean something: ``-48.3 ± 2.1``."""
-        half = 1.96 * std * self.factor
-        decimals = decimals_for(half)
-        return f"{signed(value * self.factor, decimals)} ± {half:.{decimals}f}"
+        return with_half(value * self.factor, 1.96 * std * self.factor)
 
 
 CHANNELS = {
@@ -50,20 +50,6 @@ PARAMETERS = {
 def channel(name: str) -> Quantity:
     """How a channel is written; one without an entry keeps its own name and SI."""
     return CHANNELS.get(name, Quantity(name, "SI"))
-
-
-def decimals_for(spread: float) -> int:
-    """Decimals that show two significant digits of ``spread``, between 0 and 6."""
-    if not (isfinite(spread) and spread > 0.0):
-        return 3
-    return min(max(1 - floor(log10(spread)), 0), 6)
-
-
-def signed(value: float, decimals: int) -> str:
-    """A number with a real minus sign, never "-0"."""
-    if not isfinite(value):
-        return "-"
-    return f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")
 
 
 def without_word(sentence: str) -> str:

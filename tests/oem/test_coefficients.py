@@ -1,13 +1,17 @@
 """Non-dimensional coefficients: there and back again."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from advisor.aircraft import Reference
+from advisor.flight.atmosphere import AirFlown
 from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate
 
 SPEED, DENSITY = 25.0, 1.1
+AIR = AirFlown(DENSITY, "pressure", "true")
 WHOLE = Reference(mass_kg=10.0, wing_area_m2=0.8, chord_m=0.3, iyy_kg_m2=0.9)
 LIFT = {"C_L_alpha": 5.1, "C_L_q": 6.0, "C_L_delta_e": 0.45}
 MOMENT = {"C_m_alpha": -0.6, "C_m_q": -11.0, "C_m_delta_e": -1.1}
@@ -35,7 +39,7 @@ def flown() -> Estimate:
 
 
 def test_the_coefficients_that_made_the_derivatives_come_back_with_their_relative_errors() -> None:
-    found = coefficients(flown(), WHOLE, DENSITY)
+    found = coefficients(flown(), WHOLE, AIR)
     for name, true in (LIFT | MOMENT).items():
         if name != "C_L_q":
             assert found[name].value == pytest.approx(true)
@@ -43,12 +47,20 @@ def test_the_coefficients_that_made_the_derivatives_come_back_with_their_relativ
 
 
 def test_a_derivative_that_cannot_be_told_has_no_coefficient() -> None:
-    assert "C_L_q" not in coefficients(flown(), WHOLE)
+    assert "C_L_q" not in coefficients(flown(), WHOLE, AIR)
 
 
 def test_missing_geometry_leaves_out_what_needs_it() -> None:
-    assert set(coefficients(flown(), Reference(mass_kg=10.0, wing_area_m2=0.8))) == {
+    assert set(coefficients(flown(), Reference(mass_kg=10.0, wing_area_m2=0.8), AIR)) == {
         "C_L_alpha",
         "C_L_delta_e",
     }
-    assert not coefficients(flown(), Reference(mass_kg=10.0))
+    assert not coefficients(flown(), Reference(mass_kg=10.0), AIR)
+
+
+def test_an_indicated_air_speed_gives_the_coefficients_that_the_true_air_speed_gives() -> None:
+    indicated = replace(flown(), airspeed_m_s=SPEED * (DENSITY / 1.225) ** 0.5)
+    by_true = coefficients(flown(), WHOLE, AIR)
+    by_indicated = coefficients(indicated, WHOLE, AirFlown(DENSITY, "height", "indicated"))
+    for name, one in by_indicated.items():
+        assert one.value == pytest.approx(by_true[name].value)

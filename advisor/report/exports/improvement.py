@@ -5,10 +5,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from advisor.aircraft import Aircraft, Elevator, Reference
+from advisor.flight.atmosphere import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis, Value
 from advisor.gravity import GRAVITY_M_S2
-from advisor.oem.coefficients import SEA_LEVEL_DENSITY_KG_M3, Coefficient, scales
+from advisor.oem.coefficients import Coefficient, scales
 from advisor.problems import ConfigurationError
 from advisor.report.exports.servo import OF_THE_SERVO, Servo, servo_of
 

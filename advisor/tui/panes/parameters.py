@@ -6,11 +6,12 @@ from textual.widgets import DataTable
 
 from advisor.aircraft import PARAMETERS as NAMES
 from advisor.oem.estimate import Estimate
+from advisor.report.digits import decimals_for, signed
 from advisor.tui.panes.history import history_chart
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.view import View
-from advisor.tui.words import PARAMETERS, decimals_for, signed
+from advisor.tui.words import PARAMETERS
 
 # Name and width: what grows must not push the others about.
 _COLUMNS = (("parameter", 10), ("model ± 95 %", 17), ("prior", 8), ("off by", 7), ("selected ± 95 %", 17))

@@ -6,11 +6,12 @@ from textual.containers import VerticalScroll
 from advisor.beside import beside
 from advisor.campaign_state import JudgedManeuver
 from advisor.oem.estimate import Estimate
+from advisor.report.digits import signed
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.view import View
-from advisor.tui.words import channel, signed, without_word
+from advisor.tui.words import channel, without_word
 
 
 class Verdict(Pane):

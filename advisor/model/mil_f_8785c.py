@@ -1,0 +1,123 @@
+"""The short-period requirements of MIL-F-8785C, *Flying Qualities of Piloted Airplanes* (5 November 1980).
+
+Paragraph 3.2.2.1.1 (Figures 1 to 3) bounds the natural frequency ω_n against the acceleration sensitivity
+n/α: lines of constant ω_n²/(n/α), the control anticipation parameter CAP, with least values of ω_n and, in
+Category C, of n/α. Paragraph 3.2.2.1.2 (Table IV) bounds the damping ratio. The least values in Category C
+are those of Classes I, II-C and IV, as MIL-STD-1797A prints them.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import astuple, dataclass
+from math import inf
+from typing import Literal
+
+SOURCE = "MIL-F-8785C, paragraph 3.2.2.1, Classes I, II-C and IV"
+MANNED = (
+    "The criterion was written for manned aeroplanes; for small unmanned aircraft it is a comparison only."
+)
+Category = Literal["A", "B", "C"]
+CATEGORIES: Mapping[Category, str] = {
+    "A": "rapid manoeuvring, precise tracking",
+    "B": "gradual manoeuvres: climb, cruise, loiter",
+    "C": "take-off, approach, landing",
+}
+WORSE = 4
+"""Stands for worse than Level 3."""
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class ShortPeriodLimits:
+    """What one level of one category asks for."""
+
+    damping: Range
+    """Damping ratio, 1."""
+    cap: Range
+    """ω_n²/(n/α), rad²/s² per g/rad."""
+    frequency: Range
+    """ω_n, rad/s."""
+    load: Range
+    """n/α, g/rad."""
+
+
+_ANY = (0.0, inf)
+LIMITS: Mapping[Category, tuple[ShortPeriodLimits, ShortPeriodLimits, ShortPeriodLimits]] = {
+    "A": (
+        ShortPeriodLimits((0.35, 1.30), (0.28, 3.6), (1.0, inf), _ANY),
+        ShortPeriodLimits((0.25, 2.00), (0.16, 10.0), (0.6, inf), _ANY),
+        ShortPeriodLimits((0.15, inf), (0.16, inf), _ANY, _ANY),
+    ),
+    "B": (
+        ShortPeriodLimits((0.30, 2.00), (0.085, 3.6), _ANY, _ANY),
+        ShortPeriodLimits((0.20, 2.00), (0.038, 10.0), _ANY, _ANY),
+        ShortPeriodLimits((0.15, inf), (0.038, inf), _ANY, _ANY),
+    ),
+    "C": (
+        ShortPeriodLimits((0.35, 1.30), (0.16, 3.6), (0.87, inf), (2.7, inf)),
+        ShortPeriodLimits((0.25, 2.00), (0.096, 10.0), (0.6, inf), (1.8, inf)),
+        ShortPeriodLimits((0.15, inf), (0.096, inf), _ANY, _ANY),
+    ),
+}
+"""Levels 1 to 3 of each category of flight phases."""
+
+
+@dataclass(frozen=True, slots=True)
+class LevelFound:
+    """The level that a short period reaches in one category of flight phases; 4: worse than Level 3."""
+
+    category: Category
+    level: int
+    """By the values themselves."""
+    best_level: int
+    """The best level that the 95 % intervals reach."""
+    worst_level: int
+    """The worst level that the 95 % intervals reach."""
+
+    @property
+    def sentence(self) -> str:
+        """The level in words, with those that the intervals do not exclude."""
+        spoken = f"Category {self.category}: {_spoken(self.level)}"
+        others = [level for level in (self.best_level, self.worst_level) if level != self.level]
+        if not others:
+            return spoken
+        return f"{spoken}; the 95 % intervals reach {' and '.join(map(_spoken, others))}"
+
+
+def _spoken(level: int) -> str:
+    return "worse than Level 3" if level == WORSE else f"Level {level}"
+
+
+@dataclass(frozen=True, slots=True)
+class ShortPeriodFound:
+    """The four numbers that the requirements are about, each with its 95 % interval; units as the limits'."""
+
+    values: ShortPeriodLimits
+    """Both ends of each range are the value."""
+    intervals: ShortPeriodLimits
+
+
+def assess(category: Category, found: ShortPeriodFound) -> LevelFound:
+    """The level of a short period, and the best and the worst level within its intervals."""
+    return LevelFound(
+        category,
+        _first(category, found.values, _lies_within),
+        _first(category, found.intervals, _overlaps),
+        _first(category, found.intervals, _lies_within),
+    )
+
+
+def _first(category: Category, found: ShortPeriodLimits, agrees: Callable[[Range, Range], bool]) -> int:
+    """The first level whose four ranges agree with those found; every level allows what better ones do."""
+    for level, limits in enumerate(LIMITS[category], start=1):
+        if all(map(agrees, astuple(found), astuple(limits))):
+            return level
+    return WORSE
+
+
+def _lies_within(found: Range, limit: Range) -> bool:
+    return limit[0] <= found[0] and found[1] <= limit[1]
+
+
+def _overlaps(found: Range, limit: Range) -> bool:
+    return limit[0] <= found[1] and found[0] <= limit[1]

@@ -1,0 +1,171 @@
+"""Flying qualities of the short period from an estimate, with 95 % intervals by the delta method.
+
+With A and B of Eqs. (1)-(3), V the true air speed, and the elevator held after a step:
+
+    ω_n = √det A        ζ = -tr A/(2·ω_n)        1/T_θ2 = (M_α·Z_δe - M_δe·Z_α)/M_δe
+    n/α = V/g·(M_δe·Z_α - M_α·Z_δe)/(M_q·Z_δe - (1 + Z_q)·M_δe)        CAP = ω_n²/(n/α)
+
+T_θ2 is the zero of pitch rate to elevator, n/α the ratio of the steady load factor to the steady angle of
+attack. The static margin is -C_mα/C_Lα = M_α·I_yy/(Z_α·m·V·c), drag's part in the lift direction neglected.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.aircraft import PARAMETERS, Reference
+from advisor.flight.atmosphere import AirFlown
+from advisor.gravity import GRAVITY_M_S2
+from advisor.model.mil_f_8785c import CATEGORIES, LevelFound, ShortPeriodFound, ShortPeriodLimits, assess
+from advisor.oem.estimate import Estimate
+
+NORMAL_95 = 1.959963984540054
+UNITS: Mapping[str, str] = {
+    "natural_frequency": "rad/s",
+    "damping": "1",
+    "t_theta_2": "s",
+    "n_alpha": "g/rad",
+    "cap": "rad²/s² per g/rad",
+    "static_margin": "% chord",
+    "neutral_point": "% chord",
+}
+_STEP = 1e-30
+"""Of the complex-step derivative, which has no cancellation: any step that does not underflow."""
+
+_Function = Callable[[NDArray[np.complex128]], np.complex128]
+
+
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """One number of the flying qualities, in the unit of ``UNITS``."""
+
+    value: float
+    std: float
+
+    @property
+    def ci95(self) -> tuple[float, float]:
+        """Both ends of the 95 % interval."""
+        return self.value - NORMAL_95 * self.std, self.value + NORMAL_95 * self.std
+
+
+@dataclass(frozen=True, slots=True)
+class FlyingQualities:
+    """What an estimate says of the flying qualities."""
+
+    qualities: Mapping[str, Quality]
+    """By the names of ``UNITS``, as many as the estimate and the reference data allow."""
+    levels: tuple[LevelFound, ...]
+    """MIL-F-8785C, by category; empty where a number is missing that the requirement is about."""
+    air: AirFlown
+    airspeed_m_s: float | None
+    """As the log gives it; the derivatives are given at this air speed."""
+    true_airspeed_m_s: float | None
+    """As used in n/α, CAP and the coefficients."""
+    left_out: Mapping[str, str] = field(default_factory=dict)
+    """Why a number of ``UNITS`` is missing, by name."""
+
+
+def flying_qualities(estimate: Estimate, air: AirFlown, reference: Reference) -> FlyingQualities:
+    """Flying qualities of an estimate.
+
+    Parameters
+    ----------
+    estimate
+        Derivatives with the covariance that is corrected for coloured residuals.
+    air
+        Turns the logged air speed into the true one.
+    reference
+        Mass, chord, pitching inertia and centre of gravity, for static margin and neutral point.
+    """
+    logged = estimate.airspeed_m_s
+    speed = air.true_speed(logged) if logged is not None else None
+    found: dict[str, Quality] = {}
+    left_out: dict[str, str] = {}
+    for name, function in _functions(speed, reference).items():
+        quality = function if isinstance(function, str) else _with_error(function, estimate)
+        if isinstance(quality, Quality):
+            found[name] = quality
+        else:
+            left_out[name] = quality
+    return FlyingQualities(found, _levels(found), air, logged, speed, left_out)
+
+
+def _levels(found: Mapping[str, Quality]) -> tuple[LevelFound, ...]:
+    names = ("damping", "cap", "natural_frequency", "n_alpha")
+    if any(name not in found for name in names):
+        return ()
+    values = ShortPeriodLimits(*((found[name].value, found[name].value) for name in names))
+    intervals = ShortPeriodLimits(*(found[name].ci95 for name in names))
+    return tuple(assess(category, ShortPeriodFound(values, intervals)) for category in CATEGORIES)
+
+
+def _functions(speed: float | None, reference: Reference) -> dict[str, _Function | str]:
+    """Each number as a function of the eight parameters, or why there is none."""
+    without_speed = "no air speed is known"
+    functions: dict[str, _Function | str] = {
+        "natural_frequency": _frequency,
+        "damping": lambda t: -(t[1] + t[6]) / (2.0 * _frequency(t)),
+        "t_theta_2": lambda t: t[7] / (t[5] * t[3] - t[7] * t[1]),
+        "n_alpha": without_speed,
+        "cap": without_speed,
+    }
+    margin = _margin(speed, reference)
+    if speed is not None:
+        per_g = speed / GRAVITY_M_S2
+        functions["n_alpha"] = lambda t: per_g * _turn_per_alpha(t)
+        functions["cap"] = lambda t: _stiffness(t) / (per_g * _turn_per_alpha(t))
+    functions["static_margin"] = functions["neutral_point"] = margin
+    cg = reference.cg_percent_chord
+    if not isinstance(margin, str):
+        functions["neutral_point"] = (
+            "reference.cg_percent_chord is not given" if cg is None else lambda t: cg + margin(t)
+        )
+    return functions
+
+
+def _margin(speed: float | None, reference: Reference) -> _Function | str:
+    """Static margin in percent of the chord."""
+    mass, chord, inertia = reference.mass_kg, reference.chord_m, reference.iyy_kg_m2
+    known = {"mass_kg": mass, "chord_m": chord, "iyy_kg_m2": inertia}
+    missing = [f"reference.{name}" for name, value in known.items() if value is None]
+    if mass is None or chord is None or inertia is None:
+        return f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} not given"
+    if speed is None:
+        return "no air speed is known"
+    factor = 100.0 * inertia / (mass * speed * chord)
+    return lambda t: factor * t[5] / t[1]
+
+
+def _stiffness(t: NDArray[np.complex128]) -> np.complex128:
+    return np.complex128(t[1] * t[6] - (1.0 + t[2]) * t[5])
+
+
+def _frequency(t: NDArray[np.complex128]) -> np.complex128:
+    """ω_n; NaN where the aircraft is statically unstable."""
+    stiffness = _stiffness(t)
+    return np.complex128(np.sqrt(stiffness) if stiffness.real > 0.0 else np.nan)
+
+
+def _turn_per_alpha(t: NDArray[np.complex128]) -> np.complex128:
+    """Steady pitch rate over steady angle of attack with the elevator held, 1/s."""
+    return np.complex128((t[7] * t[1] - t[5] * t[3]) / (t[6] * t[3] - (1.0 + t[2]) * t[7]))
+
+
+def _with_error(function: _Function, estimate: Estimate) -> Quality | str:
+    """Value and standard deviation by the delta method, or why there is none."""
+    theta = estimate.theta.astype(np.complex128)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value = float(function(theta).real)
+        gradient = np.array([function(theta + 1j * _STEP * unit).imag / _STEP for unit in np.eye(len(theta))])
+    unknown = [
+        n for n, g in zip(PARAMETERS, gradient, strict=True) if g != 0.0 and n in estimate.not_identifiable
+    ]
+    if unknown:
+        return f"{', '.join(unknown)} cannot be told by these manoeuvres"
+    variance = float(gradient @ estimate.covariance @ gradient)
+    if not (isfinite(value) and isfinite(variance)):
+        return "the short period is statically unstable (det A ≤ 0)"
+    return Quality(value, variance**0.5)

@@ -1,0 +1,1 @@
+"""The page of a flight: one self-contained document for people who were not there."""

@@ -1,0 +1,77 @@
+"""The stop criterion against the number of manoeuvres, rule by rule: the paper's Figure 5 for this flight."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+
+from advisor.decision.verdict import limit_percent
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table
+from advisor.report.page.content import Content
+from advisor.report.page.drawing import BLACK, BLUE, picture
+
+_EXPLAINED = (
+    "The rules continuous and separate weigh the scatter of the newest estimates (Eq. 12), the rule "
+    "information the tolerances that the aircraft file asks for (100 %: met). Dashes: the limit. Diamond: "
+    "the rule says stop."
+)
+
+
+def criterion(content: Content) -> Section:
+    """A figure a rule, and the same as numbers."""
+    return Section("criterion", "Stop criterion", tuple(_blocks(content)))
+
+
+def _blocks(content: Content) -> Iterator[Block]:
+    by_rule = content.analysis["flight_test"]["by_rule"]
+    limits = {rule: limit_percent(rule, content.aircraft.campaign) for rule in by_rule}
+    if all(value is None for one in by_rule.values() for value in one["history_percent"]):
+        yield Paragraph("No rule's criterion has a value yet: too few manoeuvres are accepted.")
+        return
+    yield Paragraph(_EXPLAINED)
+    yield Gallery(tuple(_figure(rule, one, limits[rule]) for rule, one in by_rule.items()))
+    flown = max((len(one["history_percent"]) for one in by_rule.values()), default=0)
+    yield Table(
+        "criterion-values", "Criterion in percent after each manoeuvre; – where it has no value yet.",
+        ("flown", *(f"{rule} (limit {limits[rule]:g})" for rule in by_rule)),
+        tuple(
+            (str(i + 1), *(_value(one["history_percent"], i) for one in by_rule.values()))
+            for i in range(flown)
+        ),
+        frozenset(range(len(by_rule) + 1)),
+    )  # fmt: skip
+
+
+def _value(history: Sequence[float | None], i: int) -> str:
+    value = history[i] if i < len(history) else None
+    return "–" if value is None else f"{value:.1f}"
+
+
+def _figure(rule: str, one: Mapping[str, Any], limit: float) -> Figure:
+    svg = picture(f"criterion-{rule}", 3.2, 2.4, _paint, one, limit)
+    stopped = one["stopped_at"]
+    said = "does not say stop" if stopped is None else f"says stop after manoeuvre {stopped}"
+    return Figure(svg, f"Rule {rule}: {said}.", "third")
+
+
+def _paint(drawing: Drawing, one: Mapping[str, Any], limit: float) -> None:
+    axes = drawing.subplots()
+    history = [(i, v) for i, v in enumerate(one["history_percent"], start=1) if v is not None and v > 0.0]
+    axes.plot([i for i, _ in history], [v for _, v in history], color=BLUE, marker="o", markersize=3.5)
+    axes.axhline(limit, color=BLACK, linestyle="--", linewidth=1.0)
+    axes.annotate(
+        f"limit {limit:g} %", (1.0, limit), xycoords=("axes fraction", "data"), ha="right", va="bottom"
+    )
+    stopped = [(i, v) for i, v in history if i == one["stopped_at"]]
+    if stopped:
+        axes.plot(*stopped[0], marker="D", markersize=9, markerfacecolor="none", markeredgecolor=BLACK)
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    values = [limit, *(v for _, v in history)]
+    axes.set_ylim(0.6 * min(values), 1.8 * max(values))
+    axes.set_xlim(0.5, len(one["history_percent"]) + 0.5)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+    axes.set(xlabel="manoeuvres flown", ylabel="criterion [%]")

@@ -1,0 +1,88 @@
+"""The flight in one picture: elevator, angle of attack, pitch rate, air speed, height; manoeuvres marked."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+from advisor.campaign_state import JudgedManeuver
+from advisor.flight.record import Channel
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
+from advisor.report.page.content import Content
+from advisor.report.page.course import SHOWN, Course, thinned
+from advisor.report.page.drawing import BLUE, ORANGE, picture
+from advisor.report.page.quantities import QUANTITIES
+
+_BINS = 500
+_EXPLAINED = (
+    "Elevator δe (trailing edge down positive), angle of attack α, pitch rate q, air speed V as logged, "
+    "height h above take-off. "
+    "Shaded: manoeuvres with their numbers, accepted ones plain, rejected ones hatched."
+)
+
+
+def flight_picture(content: Content) -> Section:
+    """A picture of each power-on that holds a manoeuvre."""
+    return Section("flight", "The flight in one picture", tuple(_blocks(content)))
+
+
+def _blocks(content: Content) -> Iterator[Block]:
+    drawn = False
+    for course in content.courses:
+        here = [j for j in content.state.maneuvers if j.maneuver.power_on == (course.flight, course.boot)]
+        if not here:
+            continue
+        drawn = True
+        name = f"flight-{course.flight}-{course.boot}"
+        svg = picture(name, 7.4, 5.4, _paint, course, here)
+        power_on = f", power-on {course.boot + 1}" if course.boot else ""
+        where = f"{content.names[course.flight]}{power_on}"
+        yield Gallery((Figure(svg, f"{where}. {_EXPLAINED}"),))
+    if not drawn:
+        yield Paragraph("No manoeuvre was found, so there is nothing to mark.")
+
+
+def _paint(drawing: Drawing, course: Course, judged: Sequence[JudgedManeuver]) -> None:
+    channels = {c.name: c for c in course.channels if len(c) > 1}
+    shown = [name for name in SHOWN if name in channels]
+    rows = drawing.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, name in zip(rows, shown, strict=True):
+        quantity = QUANTITIES[name]
+        channel = _as_judged(channels[name], judged)
+        t, y = thinned(channel, _BINS)
+        axes.plot(t, y * quantity.factor, color=BLUE, linewidth=0.7)
+        axes.set_ylabel(quantity.label)
+        _mark(axes, judged)
+    drawing.align_ylabels(list(rows))
+    rows[-1].set_xlabel("time since boot [s]")
+    for one in judged:
+        middle = 0.5 * (one.maneuver.span.start_s + one.maneuver.span.end_s)
+        sign = "✓" if one.verdict.accepted else "✗"
+        rows[0].annotate(
+            f"{one.maneuver.number}{sign}", (middle, 1.0), xycoords=("data", "axes fraction"),
+            ha="center", va="bottom", fontsize=8, annotation_clip=False,
+        )  # fmt: skip
+
+
+def _mark(axes: Axes, judged: Sequence[JudgedManeuver]) -> None:
+    for one in judged:
+        span, accepted = one.maneuver.span, one.verdict.accepted
+        look = {"facecolor": "#d7e6d5", "edgecolor": "none"}
+        if not accepted:
+            look = {"facecolor": "#f3dfcf", "edgecolor": ORANGE, "hatch": "//"}
+        axes.axvspan(span.start_s, span.end_s, linewidth=0.0, zorder=0, **look)  # type: ignore[arg-type]
+
+
+def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
+    """The elevator turned the way the manoeuvres have it, where the sense was found only from them."""
+    flown = [j.maneuver.channels["elevator"] for j in judged if "elevator" in j.maneuver.channels]
+    if channel.name != "elevator" or not flown:
+        return channel
+    alike = sum(
+        float(np.dot(e.y - e.y.mean(), np.interp(e.t, channel.t, channel.y) - channel.y.mean()))
+        for e in flown
+    )
+    if alike >= 0.0:
+        return channel
+    return Channel(channel.name, channel.t, -channel.y, channel.source, channel.provenance)

@@ -1,0 +1,123 @@
+"""The sim-to-real gap, where it was asked for: verdict, size, steps, causes."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FuncFormatter
+
+from advisor.gap.result import spelled
+from advisor.gap.verdict.text import place
+from advisor.report.digits import with_half
+from advisor.report.document import NORMAL_95
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table, listing
+from advisor.report.page.content import Content, Document
+from advisor.report.page.drawing import BLUE, picture
+from advisor.report.page.quantities import QUANTITIES
+
+_ROUNDING = 1e-9
+"""Smaller gaps are 0."""
+_LINEAR = 10.0
+"""Largest gap on a linear axis."""
+
+
+def gap(content: Content) -> Section | None:
+    """The diagnosis; None where it was not asked for."""
+    if content.gap is None:
+        return None
+    return Section("gap", "Sim-to-real gap", tuple(_blocks(content.gap)))
+
+
+def _blocks(found: Document) -> Iterator[Block]:
+    if not found["usable"]:
+        yield Paragraph("The gap could not be diagnosed.")
+        yield from listing([f"{p['text']} {p['fix']}" for p in found["problems"]])
+        return
+    yield Paragraph(found["sentence"], "verdict")
+    size, shrink = found["gap"], found["shrink"]
+    yield Paragraph(_size(size, untested=found["verdict"] is None) + _shrink(shrink))
+    yield Table(
+        "gap-channels", "Gap by channel.", ("channel", "before", "after", "noise floor"),
+        tuple(_channel(name, size) for name in size["by_channel"]), frozenset({1, 2, 3}),
+    )  # fmt: skip
+    where = found["where"]
+    if found["verdict"] in ("effect", "unknown"):
+        yield Paragraph(f"Where: {place(where['block'])}, {100.0 * where['share']:.0f} % of the gap.")
+    steps = [(spelled(s["effect"]), s["after"]) for s in found["waterfall"] if s["after"] != size["before"]]
+    if steps:
+        rows = [("as it is", size["before"]), *((f"+ {name}", after) for name, after in steps)]
+        svg = picture("waterfall", 4.4, 0.8 + 0.28 * len(rows), _paint, rows)
+        yield Gallery((Figure(svg, "Gap left as effects are added, one after another.", "half"),))
+    if found["causes"]:
+        yield Table(
+            "causes", "Causes, the most probable first.",
+            ("effect", "probability", "values ± 95 %", "gap after", "cannot be told from"),
+            tuple(_cause(cause) for cause in found["causes"]), frozenset({1, 3}),
+        )  # fmt: skip
+    yield from listing(
+        [f"Cannot be seen: {spelled(u['effect'])}, {u['because']}." for u in found["cannot_see"]]
+    )
+    yield from listing(list(found["notes"]))
+
+
+def _size(size: Mapping[str, Any], untested: bool) -> str:
+    what = "mean square of the simulator's error over the noise floor's, minus 1"
+    if untested:
+        return f"The fitted model leaves {_short(size['after'])} ({what})."
+    return f"Gap ({what}): before {_short(size['before'])}, after {_short(size['after'])}."
+
+
+def _short(value: float) -> str:
+    """Three digits; what is only rounding is 0."""
+    return f"{value:.3g}" if abs(value) > _ROUNDING else "0"
+
+
+def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:
+    after, quantity = size["by_channel_after"].get(name), QUANTITIES[name]
+    floor = f"{size['floor'][name] * quantity.factor:.2g} {quantity.unit}"
+    return quantity.symbol, _short(size["by_channel"][name]), "–" if after is None else _short(after), floor
+
+
+def _shrink(shrink: Mapping[str, Any] | None) -> str:
+    if shrink is None:
+        return ""
+    low, high = shrink["ci95_percent"]
+    interval = "" if low is None or high is None else f" (95 %: {low:.1f} to {high:.1f})"
+    held_out = ", ".join(map(str, shrink["holdout"]))
+    return f" {shrink['percent']:.1f} % less{interval} on held-out manoeuvres {held_out}."
+
+
+def _cause(cause: Mapping[str, Any]) -> tuple[str, ...]:
+    values = ", ".join(f"{name} {_with_interval(one)}" for name, one in cause["parameters"].items())
+    after = cause["gap_after"]
+    return (
+        spelled(cause["effect"]),
+        f"{cause['probability']:.2f}",
+        values,
+        "–" if after is None else _short(after),
+        ", ".join(map(spelled, cause["cannot_be_told_from"])) or "–",
+    )
+
+
+def _with_interval(one: Mapping[str, Any]) -> str:
+    value, std = one["value"], one["std"]
+    if value is None:
+        return "–"
+    return f"{value:.4g}" if std is None else with_half(value, NORMAL_95 * std)
+
+
+def _paint(drawing: Drawing, rows: list[tuple[str, float]]) -> None:
+    axes = drawing.subplots()
+    axes.set_axisbelow(True)
+    axes.barh(range(len(rows)), [max(value, 0.0) for _, value in rows], color=BLUE, height=0.6)
+    axes.set_yticks(range(len(rows)), [name for name, _ in rows])
+    for row, (_, value) in enumerate(rows):
+        axes.annotate(f" {_short(value)}", (max(value, 0.0), row), va="center")
+    axes.invert_yaxis()
+    axes.grid(visible=False, axis="y")
+    largest = max(value for _, value in rows)
+    if largest > _LINEAR:
+        axes.set_xscale("symlog", linthresh=1.0)
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.set_xlim(0.0, largest * (3.0 if largest > _LINEAR else 1.15))
+    axes.set_xlabel("gap [times the noise floor's power]")

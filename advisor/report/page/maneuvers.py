@@ -1,0 +1,39 @@
+"""Verdict and reason of each manoeuvre."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from advisor.report.page.blocks import Section, Table, listing
+from advisor.report.page.content import Content
+from advisor.report.text import caution_lines
+
+_HYPHEN, _SPACE = "\N{NON-BREAKING HYPHEN}", "\N{NO-BREAK SPACE}"
+_HEAD = ("no.", "start [s]", "input", "mode", "verdict", "why")
+
+
+def maneuvers(content: Content) -> Section:
+    """One row a manoeuvre, then what does not reject one but belongs on its verdict."""
+    found = content.analysis["maneuvers"]
+    rows = tuple(_row(maneuver, len(content.names) > 1) for maneuver in found)
+    table = Table(
+        "maneuver-list", "Every manoeuvre in the order flown; times are seconds since boot.", _HEAD, rows,
+        frozenset({0, 1}),
+    )  # fmt: skip
+    return Section("maneuvers", "Manoeuvres", (table, *listing(caution_lines(content.state.maneuvers))))
+
+
+def _row(maneuver: Mapping[str, Any], several: bool) -> tuple[str, ...]:
+    accepted = maneuver["verdict"] == "accepted"
+    why = [maneuver["sentence"], *(f"note: {note}" for note in maneuver["notes"])]
+    if maneuver["excluded_because"] is not None:
+        why.append(f"excluded by hand: {maneuver['excluded_because']}")
+    if several:
+        why.append(f"({maneuver['log']})")
+    return (
+        str(maneuver["number"]),
+        f"{maneuver['start_boot_s']:.2f}",
+        maneuver["input"].replace("-", _HYPHEN).replace(" ", _SPACE),
+        maneuver["mode"],
+        f"✓{_SPACE}accepted" if accepted else f"✗{_SPACE}rejected",
+        " ".join(why),
+    )

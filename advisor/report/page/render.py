@@ -1,0 +1,60 @@
+"""From what is known of a flight to the page, as HTML or Markdown."""
+
+from importlib.resources import files
+from typing import Literal
+
+from jinja2 import Environment, FunctionLoader, StrictUndefined
+from markupsafe import Markup
+
+from advisor.report.page.assumptions import assumptions
+from advisor.report.page.blocks import Block, Section
+from advisor.report.page.content import Content
+from advisor.report.page.criterion import criterion
+from advisor.report.page.estimates import estimates
+from advisor.report.page.fits import fits
+from advisor.report.page.flight_picture import flight_picture
+from advisor.report.page.flying import flying
+from advisor.report.page.gap import gap
+from advisor.report.page.headline import headline
+from advisor.report.page.maneuvers import maneuvers
+from advisor.report.page.provenance import provenance
+from advisor.report.page.telemetry import telemetry
+
+PageFormat = Literal["html", "md"]
+_PARTS = (
+    headline, flight_picture, maneuvers, fits, estimates, criterion, flying, gap, telemetry, assumptions,
+    provenance,
+)  # fmt: skip
+
+
+def sections(content: Content) -> list[Section]:
+    """All sections in the order of the page."""
+    found = (part(content) for part in _PARTS)
+    return [section for section in found if section is not None]
+
+
+def page(content: Content, form: PageFormat) -> str:
+    """The whole page as text."""
+    environment = Environment(
+        autoescape=form == "html", trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
+        undefined=StrictUndefined, loader=FunctionLoader(_read),
+    )  # fmt: skip
+    environment.filters |= {"kind": _kind, "drawn": Markup, "cell": _cell}
+    return environment.get_template(f"page.{form}.j2").render(
+        title=f"{content.aircraft.name}: {', '.join(content.names)}",
+        sections=sections(content),
+        css=Markup(_read("page.css")) if form == "html" else "",
+    )
+
+
+def _read(name: str) -> str:
+    return (files("advisor.report.page") / name).read_text(encoding="utf-8")
+
+
+def _kind(block: Block) -> str:
+    return type(block).__name__
+
+
+def _cell(text: str) -> str:
+    """A cell of a Markdown table."""
+    return text.replace("|", "\\|").replace("\n", " ")

@@ -1,0 +1,67 @@
+"""The boundaries of Figures 1 to 3 and of Table IV of MIL-F-8785C, each passed from one side to the other."""
+
+from dataclasses import replace
+
+import pytest
+
+from advisor.model.mil_f_8785c import CATEGORIES, ShortPeriodFound, ShortPeriodLimits, assess
+
+
+def levels_of(*numbers: float) -> str:
+    """Damping, CAP, frequency, n/α to the levels in the categories A, B and C."""
+    one = ShortPeriodLimits(*((number, number) for number in numbers))
+    return "".join(str(assess(category, ShortPeriodFound(one, one)).level) for category in CATEGORIES)
+
+
+BELOW, ABOVE = 1.0 - 1e-9, 1.0 + 1e-9
+
+
+@pytest.mark.parametrize(
+    ("cap", "frequency", "load", "levels"),
+    [
+        (0.28 * ABOVE, 2.0, 10.0, "111"),
+        (0.28 * BELOW, 2.0, 10.0, "211"),
+        (3.6 * ABOVE, 2.0, 10.0, "222"),
+        (10.0 * ABOVE, 2.0, 10.0, "333"),
+        (0.16 * BELOW, 2.0, 10.0, "412"),
+        (0.096 * BELOW, 2.0, 10.0, "414"),
+        (0.085 * BELOW, 2.0, 10.0, "424"),
+        (0.038 * BELOW, 2.0, 10.0, "444"),
+        (1.0, 1.0 * BELOW, 10.0, "211"),
+        (1.0, 0.87 * BELOW, 10.0, "212"),
+        (1.0, 0.6 * BELOW, 10.0, "313"),
+        (1.0, 2.0, 2.7 * BELOW, "112"),
+        (1.0, 2.0, 1.8 * BELOW, "113"),
+    ],
+)
+def test_frequency_against_acceleration_sensitivity(
+    cap: float, frequency: float, load: float, levels: str
+) -> None:
+    assert levels_of(0.7, cap, frequency, load) == levels
+
+
+@pytest.mark.parametrize(
+    ("damping", "levels"),
+    [
+        (0.35, "111"), (0.35 * BELOW, "212"), (0.30 * BELOW, "222"), (0.25 * BELOW, "323"),
+        (0.20 * BELOW, "333"), (0.15 * BELOW, "444"), (1.30 * ABOVE, "212"), (2.00 * ABOVE, "333"),
+    ],
+)  # fmt: skip
+def test_damping(damping: float, levels: str) -> None:
+    assert levels_of(damping, 1.0, 2.0, 10.0) == levels
+
+
+def test_the_levels_that_the_intervals_reach_on_either_side_are_said() -> None:
+    cap = 3.64
+    values = ShortPeriodLimits((0.7, 0.7), (cap, cap), (9.0, 9.0), (23.0, 23.0))
+    sure = replace(values, cap=(3.62, 3.66))
+    unsure = replace(values, cap=(3.4, 10.5))
+    assert assess("A", ShortPeriodFound(values, sure)).sentence == "Category A: Level 2"
+    assert assess("A", ShortPeriodFound(values, unsure)).sentence == (
+        "Category A: Level 2; the 95 % intervals reach Level 1 and Level 3"
+    )
+
+
+def test_what_no_level_allows_is_worse_than_the_third() -> None:
+    one = ShortPeriodLimits((0.1, 0.1), (1.0, 1.0), (2.0, 2.0), (10.0, 10.0))
+    assert assess("B", ShortPeriodFound(one, one)).sentence == "Category B: worse than Level 3"

@@ -1,0 +1,77 @@
+"""The page in a real browser: it asks for nothing and overflows nowhere, on a screen and on a phone."""
+
+import html
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.report.conftest import Reported
+
+BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
+WIDTHS = (1280, 390)
+pytestmark = pytest.mark.xdist_group("report")
+_HARNESS = """<!DOCTYPE html><meta charset="utf-8"><body style="margin:0">
+{frames}<script>
+function looked(frame) {{
+  const inside = frame.contentWindow, page = inside.document, width = frame.clientWidth;
+  const named = e => e.tagName + " " + (e.id || e.textContent.slice(0, 40));
+  const wide = [...page.body.querySelectorAll("*")]
+    .filter(e => !e.closest("svg") || e.tagName === "svg")
+    .filter(e => e.getBoundingClientRect().right > width + 0.5
+      || e.clientWidth && e.scrollWidth > e.clientWidth + 1)
+    .map(named);
+  const cut = [...page.querySelectorAll("svg text")].filter(e => {{
+    const t = e.getBoundingClientRect(), s = e.closest("svg").getBoundingClientRect();
+    return t.left < s.left - 2 || t.right > s.right + 2 || t.top < s.top - 2 || t.bottom > s.bottom + 2;
+  }}).map(named);
+  return {{
+    width: inside.innerWidth, wide, cut, figures: page.querySelectorAll("svg").length,
+    loaded: inside.performance.getEntriesByType("resource").map(entry => entry.name),
+    least_height: Math.min(...[...page.querySelectorAll("svg")].map(e => e.getBoundingClientRect().height)),
+  }};
+}}
+addEventListener("load", () => {{
+  const found = [...document.querySelectorAll("iframe")].map(looked);
+  document.body.innerHTML = "";
+  document.body.append(Object.assign(document.createElement("pre"), {{textContent: JSON.stringify(found)}}));
+}});
+</script>"""
+
+
+def opened(page: str, folder: Path) -> list[dict[str, Any]]:
+    """What a browser makes of a page at each width."""
+    source = html.escape(page, quote=True)
+    frames = "".join(
+        f'<iframe style="width:{width}px;height:900px;border:0" srcdoc="{source}"></iframe>'
+        for width in WIDTHS
+    )
+    harness = folder / "harness.html"
+    harness.write_text(_HARNESS.format(frames=frames), encoding="utf-8")
+    assert BROWSER is not None
+    words = [
+        BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
+        f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=10000", "--dump-dom",
+        harness.as_uri(),
+    ]  # fmt: skip
+    dom = subprocess.run(words, capture_output=True, text=True, check=True, timeout=60).stdout
+    found = re.search(r"<pre>(.*)</pre>", dom, re.DOTALL)
+    assert found is not None
+    seen: list[dict[str, Any]] = json.loads(html.unescape(found.group(1)))
+    return seen
+
+
+@pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
+def test_the_page_asks_for_nothing_and_overflows_nowhere(reported: Reported, tmp_path: Path) -> None:
+    seen = opened(reported.html, tmp_path)
+    assert [one["width"] for one in seen] == list(WIDTHS)
+    for one in seen:
+        assert one["loaded"] == []
+        assert one["wide"] == []
+        assert one["cut"] == []
+        assert one["figures"] > 10
+        assert one["least_height"] > 60.0

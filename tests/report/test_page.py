@@ -1,0 +1,120 @@
+"""The page stands alone, repeats to the byte, and is whole or not there."""
+
+import re
+import resource
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.commands.page_content import gather
+from advisor.report.page.drawing import draw
+from advisor.report.page.render import page
+from tests.conftest import Advisor
+from tests.flights import SHIPPED
+from tests.report.conftest import Reported
+
+USELESS = SHIPPED / "arduplane-default-rates.tlog"
+pytestmark = pytest.mark.xdist_group("report")
+
+
+def test_the_page_loads_nothing_and_runs_nothing(reported: Reported) -> None:
+    assert "script" not in reported.page.tags
+    loading = {"src", "href", "xlink:href", "data", "action", "poster"}
+    loaded = [value for _, name, value in reported.page.attributes if name in loading]
+    assert loaded
+    assert all(value.startswith("#") for value in loaded)
+    assert not [name for _, name, _ in reported.page.attributes if name.startswith("on")]
+    assert not re.search(r"url\((?!#)|@import|@font-face", reported.html)
+
+
+def test_names_from_outside_are_text_and_no_markup(reported: Reported) -> None:
+    assert 'paper> & "twin"' in reported.page.text
+    assert "paper" not in reported.page.tags
+
+
+def test_every_reference_within_the_page_has_its_one_target(reported: Reported) -> None:
+    ids = [value for _, name, value in reported.page.attributes if name == "id"]
+    wanted = {v[1:] for _, n, v in reported.page.attributes if n in ("href", "xlink:href")}
+    wanted |= set(re.findall(r"url\(#([^)]+)\)", reported.html))
+    assert len(ids) == len(set(ids))
+    assert wanted <= set(ids)
+
+
+def test_the_same_flight_gives_the_same_page_to_the_byte(reported: Reported) -> None:
+    assert page(replace(reported.content, gap=None), "html") == reported.written
+
+
+def test_the_page_names_the_command_that_made_it(reported: Reported) -> None:
+    command = re.search(r"<pre>([^<]+)</pre>", reported.written)
+    assert command is not None
+    assert command.group(1).startswith(f"advisor report {reported.log} --aircraft {reported.aircraft} -o ")
+
+
+def test_a_figure_names_no_date_and_no_program() -> None:
+    svg = draw("one", 2.0, 1.0, lambda drawing: drawing.suptitle("one").set_color("black"))
+    assert svg.startswith("<svg ")
+    assert "metadata" not in svg
+    assert "Matplotlib" not in svg
+
+
+def test_a_log_that_cannot_be_used_leaves_no_page(advisor: Advisor, tmp_path: Path) -> None:
+    answer = advisor("report", USELESS, "-o", tmp_path / "page.html")
+    assert answer.returncode == 3
+    assert "too slow to identify a short period" in answer.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_log_next_to_a_good_one_is_left_out_and_said(reported: Reported) -> None:
+    content, said = gather((reported.short_log, USELESS), Aircraft(), None, None, False, False)
+    assert any("arduplane-default-rates.tlog" in one and "too slow to identify" in one for one in said)
+    assert said[-1] in page(content, "md")
+
+
+def test_the_page_does_not_replace_an_input(advisor: Advisor, reported: Reported) -> None:
+    for given in (reported.log, reported.aircraft):
+        answer = advisor("report", reported.log, "--aircraft", reported.aircraft, "-o", given)
+        assert answer.returncode == 2
+        assert "is an input of the report" in answer.stderr
+
+
+def test_a_place_that_does_not_exist_is_refused_before_the_work(
+    advisor: Advisor, reported: Reported, tmp_path: Path
+) -> None:
+    answer = advisor("report", reported.log, "-o", tmp_path / "nowhere" / "page.html")
+    assert answer.returncode == 2
+    assert "there is no folder" in answer.stderr
+
+
+def test_a_missing_library_is_named_with_the_line_that_installs_it(
+    advisor: Advisor, reported: Reported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    answer = advisor("report", reported.log, "-o", tmp_path / "page.html")
+    assert answer.returncode == 2
+    assert answer.stderr.strip() == "advisor report needs jinja2: pip install 'inflight-advisor[report]'."
+
+
+@pytest.fixture
+def full_disk() -> Iterator[None]:
+    """No file may grow beyond five kilobytes."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.usefixtures("full_disk")
+def test_a_full_disk_leaves_the_old_page_and_no_half_one(
+    advisor: Advisor, reported: Reported, tmp_path: Path
+) -> None:
+    out = tmp_path / "page.md"
+    out.write_text("the page of yesterday", encoding="utf-8")
+    answer = advisor("report", reported.short_log, "-o", out)
+    assert answer.returncode == 70
+    assert "The system refused" in answer.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["page.md"]
+    assert out.read_text(encoding="utf-8") == "the page of yesterday"
