@@ -1,7 +1,9 @@
-"""What tests of every folder may ask for."""
+"""What tests of every folder may ask for, and the limit of what they may take."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from subprocess import CompletedProcess
+from typing import Any
 
 import pytest
 
@@ -9,6 +11,9 @@ from advisor import cli
 
 Advisor = Callable[..., "CompletedProcess[str]"]
 """Called with the words that follow ``advisor`` on the command line."""
+
+MOST_DIAGNOSES = 20
+"""Whole diagnoses of flights that all tests without the mark ``study`` may make, seconds each."""
 
 
 @pytest.fixture
@@ -23,3 +28,36 @@ def advisor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str])
         return CompletedProcess("advisor", ended.value.code, *capsys.readouterr())
 
     return call
+
+
+@pytest.fixture(scope="session", autouse=True)
+def few_diagnoses(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Let the whole diagnosis fail that is one too many, in whichever process of this run.
+
+    Every diagnosis adds a byte to a file that all processes share. Runs of studies have no limit.
+    """
+    if request.config.getoption("markexpr") != "not study":
+        yield
+        return
+    from advisor.gap import diagnose
+
+    own = tmp_path_factory.getbasetemp()
+    made = (own.parent if hasattr(request.config, "workerinput") else own) / "diagnoses"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(diagnose, "answer", counted(diagnose.answer, made))
+        yield
+
+
+def counted(answer: Callable[..., Any], made: Path) -> Callable[..., Any]:
+    """The answer that ends a diagnosis, counted in the file before."""
+
+    def one_more(*arguments: Any) -> Any:
+        with made.open("ab", buffering=0) as file:
+            file.write(b".")
+            count = file.tell()
+        assert count <= MOST_DIAGNOSES, (
+            f"The tests make more than {MOST_DIAGNOSES} whole diagnoses: mark this one with study."
+        )
+        return answer(*arguments)
+
+    return one_more

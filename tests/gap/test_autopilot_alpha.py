@@ -10,6 +10,9 @@ from advisor.gap.candidates.traits import OF_ONE_IMU
 from advisor.gap.diagnose import diagnose
 from tests.gap.generator import Setup, fly
 
+# One diagnosis serves two tests.
+pytestmark = pytest.mark.xdist_group("autopilot alpha")
+
 
 def estimated(maneuvers, late_s=0.025):
     """The manoeuvres with an angle of attack of 10 Hz, late and smooth, from an estimator."""
@@ -40,6 +43,7 @@ def test_what_one_imu_cannot_show_of_itself_is_said_to_be_unseen(alike):
     assert {effect: unseen[effect] for effect in OF_ONE_IMU} == dict.fromkeys(OF_ONE_IMU, "a vane")
 
 
+@pytest.mark.study
 def test_a_lag_of_the_servo_is_told_beside_it():
     flown = estimated(fly(Setup(maneuvers=6, switches={"lag": 0.08}, seed=71)))
     found = diagnose(flown, Aircraft())

@@ -16,6 +16,9 @@ from advisor.problems import ConfigurationError
 from advisor.report.improved import improved_file, write_improved
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
+# One diagnosis serves several tests.
+pytestmark = pytest.mark.xdist_group("diagnosis")
+
 MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0), strict=True))
 
 
@@ -48,6 +51,7 @@ def test_effects_of_every_kind_are_named_in_noise_with_memory_and_jitter(effect,
     assert found.verdict == "effect"
 
 
+@pytest.mark.study
 def test_when_the_autopilot_was_booted_is_no_part_of_the_answer():
     flown = fly(Setup(maneuvers=6, mass_step=0.12, noise=0.03, seed=12))
     early, late = diagnose(flown, Aircraft()), diagnose([booted_before(m, 7200.0) for m in flown], Aircraft())
@@ -76,6 +80,7 @@ def booted_before(maneuver, seconds):
     return replace(maneuver, span=later, channels=channels)
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     ("mass", "inertia_of_mass"), [(0.4, 0.6), pytest.param(-0.25, 0.4, marks=pytest.mark.study)]
 )
@@ -87,6 +92,7 @@ def test_a_load_that_adds_less_to_the_inertia_than_to_the_mass_is_a_mass_and_no_
     assert found.causes[0].parameters["inertia"].value == pytest.approx(inertia_of_mass * mass, rel=0.08)
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("late_s", [0.05, -0.03])
 def test_a_message_that_is_late_shifts_attitude_and_pitch_rate_together(late_s):
     skew = {"q": late_s, "theta": late_s}
@@ -97,6 +103,7 @@ def test_a_message_that_is_late_shifts_attitude_and_pitch_rate_together(late_s):
     assert found.sentence.startswith("Attitude and pitch rate are stamped")
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("scale", [0.12, pytest.param(-0.28, marks=pytest.mark.study)])
 def test_a_scale_error_of_the_vane_is_not_taken_for_an_offset(scale):
     found = diagnose(fly(Setup(maneuvers=6, alpha_scale=scale, seed=5)), Aircraft())
@@ -147,6 +154,7 @@ def test_what_fitted_numbers_do_does_not_pass_for_the_work_of_the_effect_beside_
     assert diagnose(flown, Aircraft()).shrink.by_numbers_percent is None
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     "wrong",
     [
@@ -167,6 +175,7 @@ def test_a_sign_or_a_unit_that_is_wrong_in_the_file_does_not_hide_the_cause(wron
     assert found.model[name].value == pytest.approx(MODEL[name], rel=0.1)
 
 
+@pytest.mark.study
 def test_numbers_that_are_right_to_a_per_cent_are_no_gap_to_mend_and_the_sentence_says_what_they_leave():
     nearly = {**MODEL, "M_alpha": 1.02 * MODEL["M_alpha"], "M_delta_e": 0.985 * MODEL["M_delta_e"]}
     found = diagnose(fly(Setup(maneuvers=6, noise=0.01, seed=4)), Aircraft(model=nearly))
@@ -175,6 +184,7 @@ def test_numbers_that_are_right_to_a_per_cent_are_no_gap_to_mend_and_the_sentenc
     assert "its numbers are right to a few per cent" in found.sentence
 
 
+@pytest.mark.study
 def test_numbers_that_are_off_by_a_few_per_cent_each_are_told_where_they_leave_a_gap():
     names = ("M_alpha", "Z_alpha", "M_delta_e", "M_q")
     wrong = {**MODEL, **{n: f * MODEL[n] for n, f in zip(names, (0.94, 1.07, 0.93, 1.05), strict=True)}}
@@ -190,6 +200,7 @@ def test_an_arm_that_the_file_leaves_open_comes_first_where_next_to_nothing_else
     assert found.causes[0].effect == "accelerometer_offset"
 
 
+@pytest.mark.study
 def test_a_faint_error_of_an_instrument_is_named_when_it_is_certain_in_still_air():
     found = diagnose(fly(Setup(maneuvers=6, alpha_scale=0.03, noise=0.03, seed=5)), Aircraft())
     assert found.gap.before < 0.05
@@ -205,6 +216,7 @@ def test_of_two_effects_each_has_the_size_it_has_beside_the_other():
     assert found["accelerometer_skew"]["skew_s"].value == pytest.approx(0.047, abs=0.003)
 
 
+@pytest.mark.study
 def test_an_angle_of_attack_that_comes_early_is_no_vane_that_lags():
     found = diagnose(fly(Setup(maneuvers=6, skew={"alpha": -0.015}, seed=31)), Aircraft())
     assert found.causes[0].effect == "alpha_skew"
@@ -212,6 +224,7 @@ def test_an_angle_of_attack_that_comes_early_is_no_vane_that_lags():
     assert all(c.effect != "alpha_lag" for c in found.causes)
 
 
+@pytest.mark.study
 def test_a_slow_servo_is_not_taken_for_a_late_one_though_its_response_has_kinks():
     setup = Setup(maneuvers=6, switches={"rate_limit": 0.7}, seed=5)
     found = diagnose(fly(setup), Aircraft())
@@ -237,6 +250,7 @@ def test_the_document_is_json_without_nan_and_has_every_key_of_the_contract(dela
     assert document["shrink"]["before"] == pytest.approx(document["gap"]["before"])
 
 
+@pytest.mark.study
 def test_the_waterfall_ends_at_the_gap_that_stays_whatever_the_manoeuvres_lengths():
     flown = fly(Setup(maneuvers=6, switches={"vane_lag": 0.06, "cl_a2": 12.0}, seed=4))
     for k in (1, 4):

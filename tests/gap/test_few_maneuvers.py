@@ -7,6 +7,9 @@ from advisor.gap.diagnose import diagnose
 from advisor.problems import UnusableInputError
 from tests.gap.generator import Setup, fly
 
+# One diagnosis serves two tests.
+pytestmark = pytest.mark.xdist_group("few manoeuvres")
+
 MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0), strict=True))
 
 
@@ -27,6 +30,7 @@ def test_one_manoeuvre_shows_whether_its_channels_agree(once):
     assert once.kinematics.finding == "consistent"
 
 
+@pytest.mark.study
 def test_one_manoeuvre_that_the_simulator_flies_alike_shows_no_gap():
     assert diagnose(fly(Setup(maneuvers=3, seed=4))[:1], Aircraft(model=MODEL)).verdict == "none"
 

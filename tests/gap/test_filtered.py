@@ -68,6 +68,7 @@ def test_a_channel_behind_a_filter_is_unknown_in_its_instrument_and_not_merely_l
     assert said == pytest.approx(1e3 * late_s, abs=8.0)
 
 
+@pytest.mark.study
 def test_a_channel_that_is_late_and_nothing_else_keeps_its_name():
     found = diagnose(fly(Setup(maneuvers=6, skew={"q": 0.05}, seed=52)), Aircraft())
     assert (found.verdict, found.causes[0].effect) == ("effect", "pitch_rate_skew")

@@ -42,12 +42,12 @@ def later(by):
 @pytest.mark.parametrize(
     ("channel", "change", "effect", "parameter", "size"),
     [
-        ("elevator", later(-0.06), "transport_delay", "delay_s", 0.06),
+        pytest.param("elevator", later(-0.06), "transport_delay", "delay_s", 0.06, marks=pytest.mark.study),
         pytest.param("q", scaled(0.85), "pitch_rate_scale", "scale", -0.15, marks=pytest.mark.study),
         ("q", shifted(np.radians(1.2)), "pitch_rate_bias", "bias_rad_s", np.radians(1.2)),
         pytest.param("a_z", later(0.08), "accelerometer_skew", "skew_s", 0.08, marks=pytest.mark.study),
         pytest.param("alpha", later(0.08), "alpha_skew", "skew_s", 0.09, marks=pytest.mark.study),
-        ("alpha", shifted(np.radians(1.5)), "alpha_bias", "bias_rad", np.radians(1.5)),
+        pytest.param("alpha", shifted(0.026), "alpha_bias", "bias_rad", 0.026, marks=pytest.mark.study),
     ],
 )
 def test_an_effect_put_into_a_recorded_flight_is_named_with_its_size(
@@ -59,12 +59,14 @@ def test_an_effect_put_into_a_recorded_flight_is_named_with_its_size(
     assert found.causes[0].parameters[parameter].value == pytest.approx(size, rel=0.15)
 
 
+@pytest.mark.study
 def test_as_it_was_flown_the_late_estimate_of_the_angle_of_attack_is_its_nature_and_nothing_is_named():
     found = diagnose(list(flown()), Aircraft(elevator=SERVO))
     assert found.kinematics.finding == "late"
     assert not any(c.present for c in found.causes)
 
 
+@pytest.mark.study
 def test_the_servos_lag_is_found_when_the_file_does_not_have_it():
     unknown = replace(SERVO, lag_s=None)
     found = diagnose(list(flown()), Aircraft(elevator=unknown))
@@ -74,6 +76,7 @@ def test_the_servos_lag_is_found_when_the_file_does_not_have_it():
     assert lag.std < 0.02
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("name", ["arduplane-calm.tlog", "arduplane-turbulent.tlog"])
 def test_the_lag_that_a_servo_has_comes_first_where_the_file_lacks_it_whatever_the_air(name):
     """In turbulence of half a metre a second, to which the autopilot's angle of attack is blind, too."""

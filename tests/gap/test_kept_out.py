@@ -58,6 +58,7 @@ def test_what_only_a_manoeuvre_kept_out_could_tell_is_measured_there():
         assert found.shrink.percent > 90.0
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("smoothed", [False, True])
 def test_in_moving_air_the_gap_is_held_against_instruments_and_never_against_next_to_nothing(smoothed):
     flown = []

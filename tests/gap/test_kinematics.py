@@ -99,16 +99,22 @@ def sparse_estimate():
     return Problem(flights, np.zeros(len(ENTRIES)))
 
 
-def test_a_constant_offset_shows_without_an_accelerometer_too():
-    bare = [
-        replace(m, channels={name: c for name, c in m.channels.items() if name != "a_z"})
-        for m in flown(alpha_bias=0.01)
+def without_accelerometer(maneuvers):
+    return [
+        replace(m, channels={name: c for name, c in m.channels.items() if name != "a_z"}) for m in maneuvers
     ]
-    found = combine([check_alpha(m) for m in bare])
+
+
+@pytest.mark.study
+def test_a_constant_offset_has_its_name_without_an_accelerometer_too():
+    named = diagnose(without_accelerometer(flown(alpha_bias=0.01)), Aircraft())
+    assert [c.effect for c in named.causes if c.present] == ["alpha_bias"]
+
+
+def test_a_constant_offset_shows_without_an_accelerometer_too():
+    found = combine([check_alpha(m) for m in without_accelerometer(flown(alpha_bias=0.01))])
     assert found.finding == "not possible"
     assert found.offset.rad == pytest.approx(0.01, abs=0.001)
-    named = diagnose(bare, Aircraft())
-    assert [c.effect for c in named.causes if c.present] == ["alpha_bias"]
 
 
 def test_a_known_accelerometer_arm_is_removed_and_an_unknown_one_is_not():
@@ -195,9 +201,12 @@ def late(maneuver, by_s):
 def test_no_wind_changes_by_most_of_its_own_speed_in_a_metre():
     still = fly(Setup(maneuvers=5, seed=51))
     assert not wind_shear([blown(m, 0.4) for m in still]).is_feigned
-    steep = [blown(m, 0.7) for m in still]
-    assert wind_shear(steep).is_feigned
-    found = diagnose(steep, Aircraft())
+    assert wind_shear([blown(m, 0.7) for m in still]).is_feigned
+
+
+@pytest.mark.study
+def test_a_wind_that_is_steeper_than_any_is_unknown_in_the_air():
+    found = diagnose([blown(m, 0.7) for m in fly(Setup(maneuvers=5, seed=51))], Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "air")
     assert any("more than any wind changes" in note for note in found.notes)
 
@@ -218,11 +227,15 @@ def test_wind_that_changes_with_height_shows_in_the_air_speed_and_nowhere_else()
     assert found.gradient_per_s == pytest.approx(0.2, abs=4.0 * found.std)
     # Three manoeuvres may agree by chance.
     assert wind_shear(sheared[:3]) is None
-    diagnosis = diagnose(sheared, Aircraft())
-    assert diagnosis.verdict == "unknown"
-    assert diagnosis.where.block == "air"
 
 
+@pytest.mark.study
+def test_wind_that_changes_with_height_is_unknown_in_the_air():
+    found = diagnose([blown(m, 0.2) for m in fly(Setup(maneuvers=5, seed=51))], Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "air")
+
+
+@pytest.mark.study
 def test_an_accelerometer_that_does_not_read_in_proportion_feigns_wind_that_changes_with_height():
     bent = []
     for maneuver in (blown(m, 0.2) for m in fly(Setup(maneuvers=6, seed=38))):

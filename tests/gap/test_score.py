@@ -162,12 +162,14 @@ def test_where_an_effect_is_stays_where_only_manoeuvres_kept_out_tell_of_it():
     assert np.sum(kept_out / fitted.noise**2) < 0.1 * np.sum(to_nothing / fitted.noise**2)
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("tiny", [{"switches": {"acc_arm": 0.05}}, {"q_bias": 0.0014}], ids=["arm", "bias"])
 def test_what_every_instrument_has_is_no_cause_however_plain(tiny):
     found = diagnose(fly(Setup(maneuvers=6, noise=0.002, seed=67, **tiny)), Aircraft())
     assert found.verdict == "none"
 
 
+@pytest.mark.study
 def test_what_every_instrument_has_is_not_unknown_where_it_shows_beside_small_motion():
     small = replace(UAV, amplitude_deg=0.2 * UAV.amplitude_deg)
     found = diagnose(fly(Setup(airframe=small, maneuvers=6, q_bias=0.0015, noise=0.01, seed=61)), Aircraft())

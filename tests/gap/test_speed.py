@@ -84,6 +84,7 @@ def test_work_is_what_an_engine_does_and_not_what_drag_takes():
     assert work(glided) == pytest.approx(excess * GRAVITY_M_S2 / rate / np.sqrt(2.0) / 22.0, rel=0.1)
 
 
+@pytest.mark.study
 def test_manoeuvres_flown_at_different_speeds_are_no_cause_where_the_speed_is_measured():
     found = diagnose(fly(Setup(maneuvers=6, speed_change=0.08, heights_m=HEIGHTS, seed=8)), Aircraft())
     assert found.verdict == "none"
@@ -94,6 +95,7 @@ def throttled(**thrust):
     return fly(Setup(maneuvers=6, logs_throttle=True, heights_m=HEIGHTS, seed=202, **thrust))
 
 
+@pytest.mark.study
 def test_an_engine_that_drives_the_speed_up_and_down_of_itself_makes_it_the_cause():
     found = diagnose(throttled(surge=0.8, surge_hz=0.1), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
@@ -102,6 +104,7 @@ def test_an_engine_that_drives_the_speed_up_and_down_of_itself_makes_it_the_caus
     assert left < 0.05 < found.gap.before
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("engine_lag_s", [0.0, 0.6])
 def test_a_speed_that_follows_the_throttle_is_no_cause(engine_lag_s):
     found = diagnose(throttled(thrust_amplitude=0.8, engine_lag_s=engine_lag_s), Aircraft())
@@ -148,6 +151,7 @@ def test_noise_of_an_accelerometer_is_no_thrust_though_the_speed_swings():
     assert abs(np.mean(found)) < 0.1 * noise * GRAVITY_M_S2
 
 
+@pytest.mark.study
 def test_beside_a_named_effect_the_gap_is_what_a_simulator_leaves_that_knows_neither():
     found = diagnose(throttled(surge=0.8, surge_hz=0.1, q_scale=0.08), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["pitch_rate_scale", "airspeed_variation"]
@@ -166,6 +170,7 @@ def test_forces_that_do_not_grow_with_the_speed_squared_are_named_with_their_pow
     assert [effect for effect, _ in found.waterfall] == ["airspeed_variation"]
 
 
+@pytest.mark.study
 def test_moments_that_grow_with_another_power_than_the_lift_have_their_own():
     setup = Setup(maneuvers=6, speed_change=0.12, switches={"moment_power": -1.5}, seed=8)
     found = diagnose(fly(setup), Aircraft())
@@ -216,20 +221,30 @@ def test_without_an_air_speed_in_the_log_the_accelerometers_show_how_it_changes(
 
 
 def test_without_an_air_speed_in_the_log_the_motion_shows_it():
-    flown = without_instrument(fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=51)))
+    flown = without_instrument(fly(Setup(maneuvers=6, seed=51)))
     assert speed_of_the_motion(flown) == pytest.approx(UAV.speed, rel=0.02)
+
+
+@pytest.mark.study
+def test_a_speed_that_the_motion_shows_serves_as_well_as_one_that_the_file_states():
+    flown = without_instrument(fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=51)))
     shown, stated = (diagnose(flown, Aircraft(airspeed_m_s=v)) for v in (None, UAV.speed))
     assert shown.gap.after == pytest.approx(stated.gap.after, abs=0.05)
     assert any("No air speed in the log" in note for note in shown.notes)
     assert [c.effect for c in shown.causes if c.present] == ["transport_delay"]
 
 
-def test_without_an_air_speed_in_the_log_speeds_that_differ_between_manoeuvres_are_the_cause_and_no_mass():
+def test_without_an_air_speed_in_the_log_the_motion_shows_how_the_manoeuvres_speeds_differ():
     logged = fly(Setup(maneuvers=8, speed_change=0.12, seed=52))
     flown = without_instrument(logged)
     measured = [f.slow[SPEED].mean() for f in prepare(logged, Aircraft()).flights]
     shown = [f.slow[SPEED].mean() for f in prepare(flown, Aircraft(airspeed_m_s=UAV.speed)).flights]
     assert np.array(shown) / np.mean(shown) == pytest.approx(np.array(measured) / np.mean(measured), abs=0.02)
+
+
+@pytest.mark.study
+def test_without_an_air_speed_in_the_log_speeds_that_differ_between_manoeuvres_are_the_cause_and_no_mass():
+    flown = without_instrument(fly(Setup(maneuvers=8, speed_change=0.12, seed=52)))
     found = diagnose(flown, Aircraft(airspeed_m_s=UAV.speed))
     assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
     assert any("off by the motion" in note for note in found.notes)
@@ -256,6 +271,7 @@ def test_speeds_that_nothing_measured_come_before_a_smaller_effect_besides():
     assert len(present) > 1
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("off", [0.85, 0.9, 0.95, 1.03])
 def test_an_air_speed_that_is_not_quite_the_true_one_is_no_cause_and_is_said(off):
     setup = Setup(maneuvers=6, speed_change=0.06, seed=53)
@@ -275,6 +291,7 @@ def test_an_air_speed_that_is_not_quite_the_true_one_is_no_cause_and_is_said(off
     assert float(said.split()[5]) == pytest.approx(100.0 / off - 100.0, abs=0.7)
 
 
+@pytest.mark.study
 def test_a_pitot_tube_that_reads_nothing_is_no_air_speed():
     flown = fly(Setup(maneuvers=6, seed=8))
     dead = [
@@ -294,6 +311,7 @@ def test_a_pitot_tube_that_reads_nothing_is_no_air_speed():
     assert found.reference_airspeed_m_s == pytest.approx(22.0, rel=0.05)
 
 
+@pytest.mark.study
 def test_the_files_air_speed_counts_only_where_the_log_has_none():
     found = diagnose(fly(Setup(maneuvers=6, seed=8)), Aircraft(airspeed_m_s=27.0))
     assert found.verdict == "none"

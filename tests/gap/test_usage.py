@@ -119,6 +119,7 @@ def test_two_flights_of_the_same_plan_both_count():
     assert both[-1].span.record_from_s <= both[-1].channels["q"].t[0] < both[-1].span.end_s
 
 
+@pytest.mark.study
 def test_more_manoeuvres_to_keep_out_than_there_are_and_an_unusual_elevator_are_noted():
     canard = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, 52.0), strict=True))
     notes = diagnose(fly(Setup(maneuvers=3)), Aircraft(model=canard), holdout=3).notes
@@ -128,6 +129,7 @@ def test_more_manoeuvres_to_keep_out_than_there_are_and_an_unusual_elevator_are_
     assert any("M_delta_e is 52, above zero: unusual" in note for note in notes)
 
 
+@pytest.mark.study
 def test_what_can_be_kept_out_needs_no_note():
     notes = diagnose(fly(Setup(maneuvers=3)), Aircraft(), holdout=2).notes
     assert not any("kept out" in note for note in notes)
