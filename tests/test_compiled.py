@@ -1,8 +1,14 @@
 """Machine code is kept for as long as all that it was compiled from is the same, and no longer."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
+
+# One compilation comes before what all tests change of its sources.
+pytestmark = pytest.mark.xdist_group("compiled")
 
 ROOT = Path(__file__).parents[1]
 
@@ -14,31 +20,38 @@ print(moved(1.0), sum(moved.stats.cache_hits.values()))
 """
 
 
-def test_a_kernel_is_loaded_where_nothing_changed(tmp_path: Path) -> None:
-    _write(tmp_path, factor=2.0)
-    _call(tmp_path)
-    assert _call(tmp_path) == (2.0, 1)
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the kernel was compiled."""
+    folder = tmp_path_factory.mktemp("compiled")
+    _write(folder, factor=2.0)
+    assert _call(folder) == (2.0, 0)
+    return folder
 
 
-def test_a_kernel_is_compiled_anew_after_a_change_of_a_constant_of_another_module(tmp_path: Path) -> None:
-    _write(tmp_path, factor=2.0)
-    _call(tmp_path)
-    _write(tmp_path, factor=3.0)
-    assert _call(tmp_path) == (3.0, 0)
+@pytest.fixture
+def folder(compiled: Path, tmp_path: Path) -> Path:
+    """That folder with its machine code, for a test to change."""
+    return shutil.copytree(compiled, tmp_path / "copy")
 
 
-def test_a_kernel_is_compiled_anew_after_a_change_two_imports_away(tmp_path: Path) -> None:
-    _write(tmp_path, factor=2.0)
-    _call(tmp_path)
-    _write(tmp_path, factor=2.0, unit=10.0)
-    assert _call(tmp_path) == (20.0, 0)
+def test_a_kernel_is_loaded_where_nothing_changed(folder: Path) -> None:
+    assert _call(folder) == (2.0, 1)
 
 
-def test_a_kernel_is_loaded_after_a_change_of_a_module_that_it_does_not_import(tmp_path: Path) -> None:
-    _write(tmp_path, factor=2.0)
-    _call(tmp_path)
-    (tmp_path / "flown" / "other.py").write_text("ELSEWHERE = 1.0\n")
-    assert _call(tmp_path) == (2.0, 1)
+def test_a_kernel_is_compiled_anew_after_a_change_of_a_constant_of_another_module(folder: Path) -> None:
+    _write(folder, factor=3.0)
+    assert _call(folder) == (3.0, 0)
+
+
+def test_a_kernel_is_compiled_anew_after_a_change_two_imports_away(folder: Path) -> None:
+    _write(folder, factor=2.0, unit=10.0)
+    assert _call(folder) == (20.0, 0)
+
+
+def test_a_kernel_is_loaded_after_a_change_of_a_module_that_it_does_not_import(folder: Path) -> None:
+    (folder / "flown" / "other.py").write_text("ELSEWHERE = 1.0\n")
+    assert _call(folder) == (2.0, 1)
 
 
 def _write(folder: Path, *, factor: float, unit: float = 1.0) -> None:

@@ -46,7 +46,7 @@ def test_the_coloured_product_is_that_with_the_full_matrix():
 
 
 def test_in_coloured_noise_errors_are_at_the_bound_and_only_corrected_intervals_hold_the_truth():
-    row = study(120, 0.95, 1, seed=4)
+    row = study(60, 0.95, 1, seed=4)
     assert row.failed == 0
     assert row.efficiency.mean() < 1.06
     assert 0.91 < row.corrected.mean() < 0.98

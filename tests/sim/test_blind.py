@@ -110,7 +110,7 @@ def test_a_drawn_effect_is_visible_above_the_noise(group):
 
 
 def test_the_same_numbers_draw_the_same_case():
-    assert draw_case("clean", np.random.default_rng(2)) == drawn("clean")
+    assert draw_case("outside", np.random.default_rng(2)) == drawn("outside")
 
 
 PLAIN = Scenario(

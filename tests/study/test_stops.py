@@ -10,7 +10,7 @@ from advisor.study import stops
 from advisor.study.stops import Case, Stops, measure
 
 
-def one(case: Case, campaigns: int = 10) -> Stops:
+def one(case: Case, campaigns: int = 6) -> Stops:
     (found,) = measure(campaigns, seed=5, cases=[case])
     return found
 
