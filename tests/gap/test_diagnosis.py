@@ -40,7 +40,7 @@ def test_a_delay_is_named_sized_and_removed_on_manoeuvres_kept_out(delayed):
     ("effect", "changes"),
     [
         ("alpha_lag", {"switches": {"vane_lag": 0.04}}),
-        ("accelerometer_skew", {"skew": {"a_z": 0.03}}),
+        pytest.param("accelerometer_skew", {"skew": {"a_z": 0.03}}, marks=pytest.mark.study),
         ("nonlinear_pitching_moment", {"switches": {"cm_a2": -3.0}}),
         ("mass_change", {"mass_step": 0.15}),
     ],

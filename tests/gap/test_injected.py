@@ -39,6 +39,7 @@ def later(by):
     return lambda c: replace(c, t=c.t + by)
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     ("channel", "change", "effect", "parameter", "size"),
     [

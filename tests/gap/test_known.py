@@ -31,6 +31,7 @@ def test_a_delay_that_the_file_has_is_no_gap(late):
     assert diagnose(late, Aircraft(effects={"transport_delay": {"delay_s": 0.06}})).verdict == "none"
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     ("in_file_s", "missing_s"), [(0.035, 0.025), pytest.param(0.09, -0.03, marks=pytest.mark.study)]
 )
@@ -199,6 +200,7 @@ def test_too_much_of_an_effect_in_the_file_is_said_so():
     assert "too slow: its servo lags by 5" in found.sentence
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     ("stated", "effect", "missing_s"),
     [

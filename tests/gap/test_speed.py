@@ -160,6 +160,7 @@ def test_beside_a_named_effect_the_gap_is_what_a_simulator_leaves_that_knows_nei
     assert left == sorted(left, reverse=True)
 
 
+@pytest.mark.study
 def test_forces_that_do_not_grow_with_the_speed_squared_are_named_with_their_power():
     setup = Setup(maneuvers=6, speed_change=0.12, switches={"speed_power": -0.8}, seed=8)
     found = diagnose(fly(setup), Aircraft())

@@ -32,6 +32,7 @@ def diagnosed(flight: Path, simulator: Path):
     return compare_logs([flight], Aircraft(), named).diagnosis
 
 
+@pytest.mark.study
 def test_two_logs_of_one_aircraft_show_no_gap_and_the_notes_give_what_was_identified(logs):
     plain, other, _ = logs
     found = diagnosed(plain, other)
@@ -40,6 +41,7 @@ def test_two_logs_of_one_aircraft_show_no_gap_and_the_notes_give_what_was_identi
     assert found.in_simulator.simulator == "the simulator that wrote other.tlog"
 
 
+@pytest.mark.study
 def test_a_lag_that_the_simulators_log_lacks_is_named_and_added_to_the_simulator(logs):
     plain, _, slow = logs
     found = diagnosed(slow, plain)
@@ -48,6 +50,7 @@ def test_a_lag_that_the_simulators_log_lacks_is_named_and_added_to_the_simulator
     assert found.in_simulator.percent > 90.0
 
 
+@pytest.mark.study
 def test_a_servo_that_the_simulators_log_shows_is_the_simulators(logs):
     _, _, slow = logs
     simulator = named_simulator(Aircraft(simulator=f"log:{slow}"))
@@ -56,6 +59,7 @@ def test_a_servo_that_the_simulators_log_shows_is_the_simulators(logs):
     assert shown == pytest.approx(0.12, abs=0.02)
 
 
+@pytest.mark.study
 def test_a_lag_that_only_the_simulator_has_is_said_to_be_too_much(logs):
     plain, _, slow = logs
     found = diagnosed(plain, slow)

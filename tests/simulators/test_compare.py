@@ -28,6 +28,7 @@ def scaled(name: str, y: FloatArray) -> FloatArray:
     return TRIM_RAD + 1.1 * (y - TRIM_RAD) if name == "alpha" else y
 
 
+@pytest.mark.study
 def test_a_simulators_own_curves_and_speed_are_not_called_missing():
     found = of(PLAIN, PLAIN).diagnosis
     assert found.verdict == "none"
@@ -35,11 +36,13 @@ def test_a_simulators_own_curves_and_speed_are_not_called_missing():
     assert found.in_simulator.after is None
 
 
+@pytest.mark.study
 def test_the_same_flight_beside_eight_numbers_does_show_the_curves():
     numbers = of(PLAIN, PLAIN).aircraft.model
     assert diagnose(flown(PLAIN), Aircraft(model=dict(numbers))).gap.before > 1.0
 
 
+@pytest.mark.study
 def test_a_delay_that_the_simulator_lacks_is_named_and_shrinks_the_gap_in_the_simulator():
     found = of(replace(PLAIN, delay_s=0.05), PLAIN).diagnosis
     assert found.causes[0].effect == "transport_delay"
@@ -48,6 +51,7 @@ def test_a_delay_that_the_simulator_lacks_is_named_and_shrinks_the_gap_in_the_si
     assert found.in_simulator.on_paper == ()
 
 
+@pytest.mark.study
 def test_an_instrument_that_reads_too_much_is_named_and_carried_around_the_simulator():
     found = compare(flown(PLAIN, reads=scaled), PLAIN, Aircraft()).diagnosis
     assert found.causes[0].effect == "alpha_scale"
@@ -55,6 +59,7 @@ def test_an_instrument_that_reads_too_much_is_named_and_carried_around_the_simul
     assert found.in_simulator.after < 0.1 * found.in_simulator.before + 0.05
 
 
+@pytest.mark.study
 def test_a_delay_that_only_the_simulator_has_is_said_to_be_too_long_and_stays_on_paper():
     found = of(PLAIN, replace(PLAIN, delay_s=0.06)).diagnosis
     assert found.causes[0].effect == "transport_delay"
@@ -63,6 +68,7 @@ def test_a_delay_that_only_the_simulator_has_is_said_to_be_too_long_and_stays_on
     assert found.in_simulator.on_paper == ("its own servo",)
 
 
+@pytest.mark.study
 def test_a_servo_that_is_slower_in_the_simulator_alone_is_said_to_be_too_slow():
     found = of(PLAIN, replace(PLAIN, lag_s=0.1)).diagnosis
     assert found.causes[0].effect == "actuator_lag"
@@ -70,6 +76,7 @@ def test_a_servo_that_is_slower_in_the_simulator_alone_is_said_to_be_too_slow():
     assert "its servo lags by" in found.sentence
 
 
+@pytest.mark.study
 def test_wrong_numbers_are_corrected_in_a_simulator_that_takes_increments_and_on_paper_in_another():
     heavier = replace(PLAIN)
     maneuvers = flown(heavier)
@@ -82,6 +89,7 @@ def test_wrong_numbers_are_corrected_in_a_simulator_that_takes_increments_and_on
     assert "derivatives" in outside.on_paper
 
 
+@pytest.mark.study
 def test_the_linear_simulator_gives_the_diagnosis_that_the_aircraft_file_gives():
     model = {
         "Z_alpha": -2.7,
@@ -99,6 +107,7 @@ def test_the_linear_simulator_gives_the_diagnosis_that_the_aircraft_file_gives()
     assert beside.sentence == plain.sentence
 
 
+@pytest.mark.study
 def test_a_servo_in_the_aircraft_file_acts_before_the_simulator():
     servo = Aircraft(elevator=replace(Aircraft().elevator, lag_s=0.08))
     found = compare(flown(replace(PLAIN, lag_s=0.08)), PLAIN, servo).diagnosis
@@ -115,6 +124,7 @@ def test_a_replay_with_a_missing_number_is_refused_with_the_manoeuvre():
         compare(flown(maneuvers=3), Broken(), Aircraft())
 
 
+@pytest.mark.study
 def test_the_qualification_says_which_channels_pass_before_and_after():
     table = {
         q.channel: q for q in of(replace(PLAIN, delay_s=0.05), PLAIN).diagnosis.in_simulator.qualification
@@ -145,6 +155,7 @@ def test_a_simulator_that_does_not_answer_the_elevator_is_refused():
         compare(flown(maneuvers=3), Deaf(), Aircraft())
 
 
+@pytest.mark.study
 def test_where_the_simulator_does_not_fly_with_the_effects_the_diagnosis_stands_and_says_why():
     class Fragile(Nonlinear):
         def replay(self, condition, inputs, increments=None):

@@ -13,6 +13,7 @@ pytest.importorskip("jsbsim")
 FOUR = (Maneuver("3211"), Maneuver("rev"), Maneuver("doublet"), Maneuver("3211"))
 
 
+@pytest.mark.study
 def test_noise_that_coloured_instruments_explain_alone_is_no_moving_air(tmp_path):
     log = tmp_path / "j3.tlog"
     record(
@@ -45,6 +46,7 @@ def diagnosed(folder, **effects: dict[str, float]):
         simulator.close()
 
 
+@pytest.mark.study
 def test_the_unchanged_model_is_right(tmp_path):
     assert diagnosed(tmp_path).verdict in ("none", "parameters")
 
