@@ -27,6 +27,7 @@ def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, *a
     return ended.value.code, told.out, told.err
 
 
+@pytest.mark.study
 def test_a_factory_in_a_process_of_its_own_flies_as_the_same_simulator_here():
     late = flown(Nonlinear(delay_s=0.05), maneuvers=3)
     simulator = simulator_of(FACTORY, Aircraft(), nothing_read)
@@ -70,6 +71,7 @@ def test_the_command_writes_the_document_and_the_improved_aircraft_file(capsys, 
     )
 
 
+@pytest.mark.study
 def test_the_screen_says_how_far_in_the_simulator_and_which_channels_pass(capsys, monkeypatch, tmp_path):
     aircraft = tmp_path / "mine.yaml"
     aircraft.write_text(f"simulator: {FACTORY}\n")

@@ -51,6 +51,7 @@ def test_the_unchanged_model_is_right(tmp_path):
     assert diagnosed(tmp_path).verdict in ("none", "parameters")
 
 
+@pytest.mark.study
 def test_a_withheld_delay_is_named_and_the_gap_shrinks_in_jsbsim(tmp_path):
     found = diagnosed(tmp_path, transport_delay={"delay_s": 0.06})
     assert found.causes[0].effect == "transport_delay"
