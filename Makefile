@@ -111,7 +111,7 @@ robustness: .venv/.developed ## the estimator's own start on 2,000 random aircra
 study-quality: .venv/.developed ## good manoeuvres rejected, and other tests marked as studies
 	$(BIN)/python -m pytest -m study --ignore tests/gap
 
-study-gap: .venv/.developed ## whole diagnoses of flights whose cause is known (ten minutes)
+study-gap: .venv/.developed ## whole diagnoses of flights whose cause is known (about fifteen minutes)
 	$(BIN)/python -m pytest -n 2 --dist loadgroup -m study tests/gap
 
 survival: .venv/.developed ## a live campaign in which fifty processes are killed (three minutes)
