@@ -3,8 +3,9 @@
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from datetime import datetime, timedelta
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +19,8 @@ from advisor.problems import ConfigurationError, Problem, UnusableInputError
 
 if TYPE_CHECKING:
     from advisor.batch.flight import Analyzed, Task
+
+    Run = Callable[[Sequence[Task]], Iterator[tuple[Task, Analyzed | Exception]]]
 
 KEPT = "flights"
 """Folder of what came of each log, by its key."""
@@ -41,12 +44,16 @@ _TELL_EVERY_S = 10.0
 @click.option(
     "--workers",
     type=click.IntRange(1),
-    default=lambda: os.cpu_count() or 1,
-    show_default="one a core",
-    help="Processes that analyze at the same time.",
+    help="Processes that analyze at the same time; one a core unless told.",
 )
+@click.option("--scheduler", metavar="ADDRESS", help="Analyze on the Dask cluster at tcp://host:8786.")
 def command(
-    places: tuple[Path, ...], out: Path, aircraft_file: Path | None, map_file: Path | None, workers: int
+    places: tuple[Path, ...],
+    out: Path,
+    aircraft_file: Path | None,
+    map_file: Path | None,
+    workers: int | None,
+    scheduler: str | None,
 ) -> int:
     """Analyze every log once; write one row a flight, one a manoeuvre, and what changed over the flights.
 
@@ -57,18 +64,22 @@ def command(
     Example:
       advisor batch flights/ -o results --aircraft my-aircraft.yaml --workers 8
       advisor batch flights/ -o results --aircraft-map fleet.yaml
+      advisor batch /shared/flights -o results --scheduler tcp://10.0.0.5:8786
     """
     if aircraft_file is not None and map_file is not None:
         raise ConfigurationError("Give --aircraft for one aircraft, or --aircraft-map for several, not both.")
+    if scheduler is not None and workers is not None:
+        raise ConfigurationError("Give --workers for this computer, or --scheduler for a cluster, not both.")
     if out.exists() and not out.is_dir():
         raise ConfigurationError(f"-o: {out} is a file; name a folder.")
     from advisor.batch.logs import find_logs
 
-    logs = find_logs(places, out)
+    run = _here(workers or os.cpu_count() or 1) if scheduler is None else _on_cluster(scheduler)
+    logs = find_logs(places if scheduler is None else [place.absolute() for place in places], out)
     tasks, results = _tasks(logs, aircraft_file, map_file)
     try:
         (out / KEPT).mkdir(parents=True, exist_ok=True)
-        results |= _analyzed(tasks, out, workers)
+        results |= _analyzed(tasks, out, run)
     except OSError as error:
         raise ConfigurationError(
             f"-o: {out} cannot be written to: {error.strerror or error}. Make room or name another place."
@@ -108,10 +119,27 @@ def _tasks(
     return list(tasks.values()), results
 
 
-def _analyzed(tasks: "Sequence[Task]", out: Path, workers: int) -> "dict[Path, Analyzed]":
-    """The result of every task: kept before, or made now and kept."""
-    from advisor.batch.flight import analyze, failed, keep, kept
+def _here(workers: int) -> "Run":
+    """Analyzes in processes of this computer."""
+    from advisor.batch.flight import analyze
     from advisor.batch.runner import run_all
+
+    return partial(run_all, analyze, workers=workers)
+
+
+def _on_cluster(scheduler: str) -> "Run":
+    """Analyzes in the workers of a Dask cluster."""
+    from advisor.batch.cluster import check_address, run_on_cluster
+    from advisor.batch.flight import analyze_shared
+
+    check_address(scheduler)
+    tell = partial(click.echo, err=True)
+    return partial(run_on_cluster, analyze_shared, address=scheduler, tell=tell)
+
+
+def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
+    """The result of every task: kept before, or made now and kept."""
+    from advisor.batch.flight import failed, keep, kept
 
     places = {task.log: out / KEPT / f"{task.key}.json" for task in tasks}
     results = {task.log: known for task in tasks if (known := kept(places[task.log]))}
@@ -119,7 +147,7 @@ def _analyzed(tasks: "Sequence[Task]", out: Path, workers: int) -> "dict[Path, A
     if results:
         click.echo(f"{len(results)} of {len(tasks)} logs were analyzed before.", err=True)
     progress = _Progress(len(to_do))
-    for task, result in run_all(analyze, to_do, workers):
+    for task, result in run(to_do):
         if isinstance(result, Exception):
             results[task.log] = failed(task, [_fault(task, result)])
         else:
@@ -138,7 +166,7 @@ def _fault(task: "Task", error: Exception) -> Problem:
     if isinstance(error, BrokenExecutor):
         return Problem(
             "worker_died",
-            f"The process that analyzed {task.log} was ended twice, as for want of memory.",
+            f"The process that analyzed {task.log} was ended every time, as for want of memory.",
             "Repeat with fewer --workers, or analyze the log alone.",
         )
     return Problem(
