@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     Run = Callable[[Sequence[Task]], Iterator[tuple[Task, Analyzed | Exception]]]
 
+INDEX = "index.html"
+"""Page of all flights."""
 KEPT = "flights"
 """Folder of what came of each log, by its key."""
 _TELL_EVERY_S = 10.0
@@ -178,6 +180,7 @@ def _fault(task: "Task", error: Exception) -> Problem:
 
 def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     """Write the tables, and say what failed and what changed."""
+    from advisor.batch.index import index_page
     from advisor.batch.tables import changes_of, in_order, tables_of
     from advisor.exporting.formats import write_formats
     from advisor.exporting.staging import staged
@@ -186,6 +189,7 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     form = "parquet" if find_spec("pyarrow") else "csv"
     with staged(out) as stage:
         write_formats(tables_of(flights), stage, [form])
+        (stage / INDEX).write_text(index_page(flights), encoding="utf-8")
     failures = [flight for flight in flights if not flight.usable]
     for flight in failures:
         click.echo(printable(f"{flight.log}: {' '.join(flight.reasons)}"), err=True)
@@ -194,7 +198,7 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     maneuvers = sum(len(flight.document["maneuvers"]) for flight in flights)
     click.echo(
         f"{printable(str(out))}: flights: {len(flights)}; manoeuvres: {maneuvers}; logs that cannot be used:"
-        f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}."
+        f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}; page: {INDEX}."
     )
     return UNUSABLE if len(failures) == len(flights) else 0
 
