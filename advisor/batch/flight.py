@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import socket
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from math import nan
@@ -15,7 +16,7 @@ from advisor.aircraft import Aircraft
 from advisor.log_series import began_s
 from advisor.marks_file import path_beside
 from advisor.oem.estimate import Estimate
-from advisor.problems import Problem, UnusableInputError
+from advisor.problems import ConfigurationError, Problem, UnusableInputError
 from advisor.report.document import analysis_document, number
 from advisor.whole_file import write_whole
 
@@ -108,6 +109,25 @@ def analyze(task: Task) -> Analyzed:
         joint["airspeed_m_s"] = number(state.model.airspeed_m_s)
     began = began_s(task.log)
     return Analyzed(str(task.log), task.aircraft_file, task.sha256, began, document, joint)
+
+
+def analyze_shared(task: Task) -> Analyzed:
+    """Analyze a log on another computer, which must see the log under the path of this one.
+
+    Raises
+    ------
+    ConfigurationError
+        The worker sees no such log, or another one there.
+    """
+    try:
+        seen = sha256_of(task.log)
+    except UnusableInputError:
+        seen = ""
+    if seen != task.sha256:
+        host = socket.gethostname()
+        what = f"the worker on {host} sees {'another log' if seen else 'no log'} there"
+        raise ConfigurationError(f"{task.log}: {what}. Share the folder of logs under one path.")
+    return analyze(task)
 
 
 def failed(task: Task, problems: Sequence[Problem]) -> Analyzed:

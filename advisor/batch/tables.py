@@ -13,6 +13,7 @@ from advisor.batch.trend import ChangeOverFlights, change_over_flights
 from advisor.exporting.found import PARAMETER_UNITS
 from advisor.exporting.table import Column, Dataset, Table, numbers, texts
 from advisor.log_series import SINCE_1970_S
+from advisor.oem.estimate import Estimate
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
@@ -22,13 +23,18 @@ def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
     return sorted(results, key=lambda one: one.began_s if one.usable else inf)
 
 
+def estimates_of(flights: Sequence[Analyzed]) -> dict[str, list[tuple[int, Estimate]]]:
+    """Number and joint estimate of each flight that has one, by the name of its aircraft."""
+    by_aircraft: dict[str, list[tuple[int, Estimate]]] = {}
+    for number, flight in enumerate(flights, start=1):
+        if (estimate := flight.estimate) is not None:
+            by_aircraft.setdefault(aircraft_of(flight), []).append((number, estimate))
+    return by_aircraft
+
+
 def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
     """The change over the flights of each aircraft, by the name of its aircraft file and its autopilot."""
-    by_aircraft: dict[str, list[tuple[int, Any]]] = {}
-    for number, flight in enumerate(flights, start=1):
-        if flight.estimate is not None:
-            by_aircraft.setdefault(aircraft_of(flight), []).append((number, flight.estimate))
-    found = {name: change_over_flights(several) for name, several in by_aircraft.items()}
+    found = {name: change_over_flights(several) for name, several in estimates_of(flights).items()}
     return {name: change for name, change in found.items() if change is not None}
 
 

@@ -3,8 +3,9 @@
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from datetime import datetime, timedelta
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +20,10 @@ from advisor.problems import ConfigurationError, Problem, UnusableInputError
 if TYPE_CHECKING:
     from advisor.batch.flight import Analyzed, Task
 
+    Run = Callable[[Sequence[Task]], Iterator[tuple[Task, Analyzed | Exception]]]
+
+INDEX = "index.html"
+"""Page of all flights."""
 KEPT = "flights"
 """Folder of what came of each log, by its key."""
 _TELL_EVERY_S = 10.0
@@ -41,12 +46,16 @@ _TELL_EVERY_S = 10.0
 @click.option(
     "--workers",
     type=click.IntRange(1),
-    default=lambda: os.cpu_count() or 1,
-    show_default="one a core",
-    help="Processes that analyze at the same time.",
+    help="Processes that analyze at the same time; one a core unless told.",
 )
+@click.option("--scheduler", metavar="ADDRESS", help="Analyze on the Dask cluster at tcp://host:8786.")
 def command(
-    places: tuple[Path, ...], out: Path, aircraft_file: Path | None, map_file: Path | None, workers: int
+    places: tuple[Path, ...],
+    out: Path,
+    aircraft_file: Path | None,
+    map_file: Path | None,
+    workers: int | None,
+    scheduler: str | None,
 ) -> int:
     """Analyze every log once; write one row a flight, one a manoeuvre, and what changed over the flights.
 
@@ -57,18 +66,22 @@ def command(
     Example:
       advisor batch flights/ -o results --aircraft my-aircraft.yaml --workers 8
       advisor batch flights/ -o results --aircraft-map fleet.yaml
+      advisor batch /shared/flights -o results --scheduler tcp://10.0.0.5:8786
     """
     if aircraft_file is not None and map_file is not None:
         raise ConfigurationError("Give --aircraft for one aircraft, or --aircraft-map for several, not both.")
+    if scheduler is not None and workers is not None:
+        raise ConfigurationError("Give --workers for this computer, or --scheduler for a cluster, not both.")
     if out.exists() and not out.is_dir():
         raise ConfigurationError(f"-o: {out} is a file; name a folder.")
     from advisor.batch.logs import find_logs
 
-    logs = find_logs(places, out)
+    run = _here(workers or os.cpu_count() or 1) if scheduler is None else _on_cluster(scheduler)
+    logs = find_logs(places if scheduler is None else [place.absolute() for place in places], out)
     tasks, results = _tasks(logs, aircraft_file, map_file)
     try:
         (out / KEPT).mkdir(parents=True, exist_ok=True)
-        results |= _analyzed(tasks, out, workers)
+        results |= _analyzed(tasks, out, run)
     except OSError as error:
         raise ConfigurationError(
             f"-o: {out} cannot be written to: {error.strerror or error}. Make room or name another place."
@@ -108,10 +121,27 @@ def _tasks(
     return list(tasks.values()), results
 
 
-def _analyzed(tasks: "Sequence[Task]", out: Path, workers: int) -> "dict[Path, Analyzed]":
-    """The result of every task: kept before, or made now and kept."""
-    from advisor.batch.flight import analyze, failed, keep, kept
+def _here(workers: int) -> "Run":
+    """Analyzes in processes of this computer."""
+    from advisor.batch.flight import analyze
     from advisor.batch.runner import run_all
+
+    return partial(run_all, analyze, workers=workers)
+
+
+def _on_cluster(scheduler: str) -> "Run":
+    """Analyzes in the workers of a Dask cluster."""
+    from advisor.batch.cluster import check_address, run_on_cluster
+    from advisor.batch.flight import analyze_shared
+
+    check_address(scheduler)
+    tell = partial(click.echo, err=True)
+    return partial(run_on_cluster, analyze_shared, address=scheduler, tell=tell)
+
+
+def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
+    """The result of every task: kept before, or made now and kept."""
+    from advisor.batch.flight import failed, keep, kept
 
     places = {task.log: out / KEPT / f"{task.key}.json" for task in tasks}
     results = {task.log: known for task in tasks if (known := kept(places[task.log]))}
@@ -119,7 +149,7 @@ def _analyzed(tasks: "Sequence[Task]", out: Path, workers: int) -> "dict[Path, A
     if results:
         click.echo(f"{len(results)} of {len(tasks)} logs were analyzed before.", err=True)
     progress = _Progress(len(to_do))
-    for task, result in run_all(analyze, to_do, workers):
+    for task, result in run(to_do):
         if isinstance(result, Exception):
             results[task.log] = failed(task, [_fault(task, result)])
         else:
@@ -138,7 +168,7 @@ def _fault(task: "Task", error: Exception) -> Problem:
     if isinstance(error, BrokenExecutor):
         return Problem(
             "worker_died",
-            f"The process that analyzed {task.log} was ended twice, as for want of memory.",
+            f"The process that analyzed {task.log} was ended every time, as for want of memory.",
             "Repeat with fewer --workers, or analyze the log alone.",
         )
     return Problem(
@@ -150,6 +180,7 @@ def _fault(task: "Task", error: Exception) -> Problem:
 
 def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     """Write the tables, and say what failed and what changed."""
+    from advisor.batch.index import index_page
     from advisor.batch.tables import changes_of, in_order, tables_of
     from advisor.exporting.formats import write_formats
     from advisor.exporting.staging import staged
@@ -158,6 +189,7 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     form = "parquet" if find_spec("pyarrow") else "csv"
     with staged(out) as stage:
         write_formats(tables_of(flights), stage, [form])
+        (stage / INDEX).write_text(index_page(flights), encoding="utf-8")
     failures = [flight for flight in flights if not flight.usable]
     for flight in failures:
         click.echo(printable(f"{flight.log}: {' '.join(flight.reasons)}"), err=True)
@@ -166,7 +198,7 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     maneuvers = sum(len(flight.document["maneuvers"]) for flight in flights)
     click.echo(
         f"{printable(str(out))}: flights: {len(flights)}; manoeuvres: {maneuvers}; logs that cannot be used:"
-        f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}."
+        f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}; page: {INDEX}."
     )
     return UNUSABLE if len(failures) == len(flights) else 0
 

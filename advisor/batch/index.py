@@ -1,0 +1,113 @@
+"""The page of a batch: one row a flight, and the course of each derivative over the flights."""
+
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from html import escape
+from importlib.resources import files
+from math import inf
+
+from advisor import __version__
+from advisor.aircraft import PARAMETERS
+from advisor.batch.flight import Analyzed
+from advisor.batch.picture import Point, trend_svg
+from advisor.batch.tables import aircraft_of, changes_of, estimates_of
+from advisor.batch.trend import ChangeOverFlights
+from advisor.decision.pooling import DERIVATIVES, beliefs_at_one_speed, common_airspeed
+from advisor.exporting.found import PARAMETER_UNITS
+from advisor.log_series import SINCE_1970_S
+from advisor.oem.estimate import Estimate
+from advisor.printable import printable
+from advisor.report.document import NORMAL_95
+
+_COLUMNS = ("Flight", "Log", "Begun, UTC", "Aircraft", "Accepted", "What came of it")
+
+_STYLE = "td:nth-child(3) { white-space: nowrap; }\n"
+"""A date stands on one line."""
+
+
+def index_page(flights: Sequence[Analyzed]) -> str:
+    """Write the page: self-contained HTML without script, the same for the same flights.
+
+    Parameters
+    ----------
+    flights
+        In the order of flying; flights are numbered from 1.
+    """
+    failures = sum(not flight.usable for flight in flights)
+    changes = changes_of(flights)
+    style = files("advisor.report.page").joinpath("page.css").read_text(encoding="utf-8")
+    trends = [_trends(name, several, changes.get(name)) for name, several in estimates_of(flights).items()]
+    return "\n".join(
+        [
+            '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            f"<title>Flights of a batch</title>\n<style>\n{style}{_STYLE}</style></head>\n<body>",
+            "<h1>Flights of a batch</h1>",
+            f"<p>Logs: {len(flights)}. Logs that cannot be used: {failures}.</p>",
+            *trends,
+            "<h2>Flights</h2>",
+            _table(flights),
+            f'<p class="note">Written by the inflight advisor {escape(__version__)}.</p>\n</body></html>\n',
+        ]
+    )
+
+
+def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights | None) -> str:
+    """The sentence of the change test for one aircraft, and a picture a derivative."""
+    estimates = [estimate for _, estimate in flights]
+    beliefs = beliefs_at_one_speed(estimates)
+    speed = common_airspeed(estimates)
+    moved = {one.parameter for one in change.change.moved} if change else set()
+    pictures = []
+    for k in DERIVATIVES:
+        points = [
+            Point(number, float(belief.theta[k]), NORMAL_95 * float(belief.std[k]))
+            for (number, _), belief in zip(flights, beliefs, strict=True)
+        ]
+        since = change.since if change and PARAMETERS[k] in moved else None
+        picture = trend_svg(PARAMETERS[k], PARAMETER_UNITS[PARAMETERS[k]], points, since)
+        pictures.append(f'<figure class="third">{picture}</figure>')
+    at = f" brought to an air speed of {speed:.1f} m/s" if speed is not None else ""
+    return (
+        f"<h2>{_shown(name) or 'Aircraft'}</h2>\n"
+        f'<p class="verdict">{_shown(_sentence(len(flights), change))}</p>\n'
+        f'<p class="note">Joint estimate of each flight{at} with its 95 % interval; a dashed line marks'
+        f' a change.</p>\n<div class="gallery">{"".join(pictures)}</div>'
+    )
+
+
+def _sentence(flights: int, change: ChangeOverFlights | None) -> str:
+    if change is not None:
+        return change.sentence
+    if flights < 3:
+        return f"Flights with a joint estimate: {flights}; a change shows in three or more."
+    return f"The change test over {flights} flights finds no change."
+
+
+def _table(flights: Sequence[Analyzed]) -> str:
+    head = "".join(f"<th>{name}</th>" for name in _COLUMNS)
+    rows = "\n".join(_row(number, flight) for number, flight in enumerate(flights, start=1))
+    return f'<table id="flights"><thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody></table>'
+
+
+def _row(number: int, flight: Analyzed) -> str:
+    verdicts = [maneuver["verdict"] for maneuver in flight.document["maneuvers"]]
+    dated = SINCE_1970_S <= flight.began_s < inf
+    test = flight.document["flight_test"] or {}
+    cells = (
+        str(number),
+        flight.log,
+        f"{datetime.fromtimestamp(flight.began_s, UTC):%Y-%m-%d %H:%M}" if dated else "not dated",
+        aircraft_of(flight),
+        f"{verdicts.count('accepted')} of {len(verdicts)}",
+        test.get("sentence", "") if flight.usable else f"Cannot be used: {' '.join(flight.reasons)}",
+    )
+    told = "".join(
+        f'<td data-label="{name}">{_shown(cell)}</td>' for name, cell in zip(_COLUMNS, cells, strict=True)
+    )
+    return f"<tr>{told}</tr>"
+
+
+def _shown(text: str) -> str:
+    """Text from outside, as a page shows it and never obeys it."""
+    return escape(printable(text))
