@@ -81,7 +81,7 @@ def _sentence(flights: int, change: ChangeOverFlights | None) -> str:
         return change.sentence
     if flights < 3:
         return f"Flights with a joint estimate: {flights}; a change shows in three or more."
-    return f"The change test over {flights} flights finds no change."
+    return f"The change test over {flights} flights finds no change; it cannot judge the first flight alone."
 
 
 def _table(flights: Sequence[Analyzed]) -> str:
