@@ -21,7 +21,7 @@ def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newto
     return Flown(
         estimated,
         judge_quality(maneuver, estimated, aircraft),
-        tuple(_cautions(maneuver, estimated, aircraft)),
+        tuple(cautions_of(maneuver, estimated, aircraft)),
         maneuver=maneuver,
         air_moved=isinstance(estimated, Estimate) and estimated.gust_rad is not None,
         servo=_servo(estimated, aircraft),
@@ -36,7 +36,8 @@ def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
     return Servo(lag_s, aircraft.elevator.delay_s or 0.0)
 
 
-def _cautions(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft) -> list[str]:
+def cautions_of(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft) -> list[str]:
+    """What a reader of the estimate should know, without any effect on the verdict."""
     cautions = []
     if maneuver.span.closed_by in MARKED.values():
         cautions.append(maneuver.span.closed_by)
@@ -51,9 +52,15 @@ def _cautions(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Ai
     if alpha is not None and "alpha" in estimated.outputs:
         cautions.append(f"angle of attack: {alpha.provenance}, from {alpha.source}")
         cautions += _uncertain_alpha(maneuver, estimated, aircraft)
-    if estimated.gust_rad is not None:
+    if estimated.gust_rad is not None and _shows(estimated, estimated.gust_rad):
         cautions.append(_moving_air(estimated, estimated.gust_rad))
     return cautions
+
+
+def _shows(estimated: Estimate, gust_rad: float) -> bool:
+    """Whether gusts are more than nothing in the digits that people read."""
+    size = math.degrees(gust_rad) if estimated.airspeed_m_s is None else gust_rad * estimated.airspeed_m_s
+    return round(size, 1) > 0.0
 
 
 def _uncertain_alpha(maneuver: Maneuver, estimated: Estimate, aircraft: Aircraft) -> list[str]:

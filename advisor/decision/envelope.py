@@ -28,7 +28,12 @@ _SHORTEST_STEP = 0.15
 """Least length of the shortest step, in natural periods; shorter ones the servo smears."""
 _OTHER_CONTROLS_DEG = 5.0
 _THROTTLE_PERCENT = 15.0
-_INTERRUPTIONS = ("gap", "end of log", "mode change")
+_CUT_SHORT_BY = {
+    "gap": "the telemetry breaks off there; check the link",
+    "end of log": "the recording ends there; let it run on for some seconds",
+    "mode change": "the mode changes there; stay in the mode until the motion has died down",
+}
+"""What ended a free response other than the pilot's hand, and the mend."""
 _ASSUMED_STROKE_DEG = 25.0
 """Full travel where the aircraft file has no calibration."""
 
@@ -136,13 +141,14 @@ def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     if free >= least:
         return []
     shown, limit = beside(free, least, 1)
-    text = f"free response too short, {shown} s (at least {limit}); hands still after the last step"
+    mend = _CUT_SHORT_BY.get(maneuver.span.closed_by, "hands still after the last step")
+    text = f"free response too short, {shown} s (at least {limit}); {mend}"
     return [Reason("free_response", text, free, least)]
 
 
 def _is_broken_off(span: Span) -> bool:
     """Whether something ended the record while the elevator was still away from trim."""
-    return span.closed_by in _INTERRUPTIONS and bool(span.steps) and span.steps[-1][1] != 0.0
+    return span.closed_by in _CUT_SHORT_BY and bool(span.steps) and span.steps[-1][1] != 0.0
 
 
 def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:

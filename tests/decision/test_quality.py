@@ -94,6 +94,24 @@ def test_a_free_response_cut_short_is_named():
     assert reason.code == "free_response"
 
 
+@pytest.mark.parametrize(
+    ("closed_by", "mend"),
+    [
+        ("end of log", "let it run on"), ("gap", "check the link"), ("mode change", "stay in the mode"),
+        ("next input", "hands still"),
+    ],
+)  # fmt: skip
+def test_a_free_response_cut_short_is_laid_to_what_ended_it(closed_by, mend):
+    maneuver, _, _ = bad_flight()[0]
+    end_s = maneuver.span.last_step_s + 0.3
+    channels = {name: channel.cut(0.0, end_s) for name, channel in maneuver.channels.items()}
+    steps = (*maneuver.span.steps[:-1], (maneuver.span.last_step_s, 0.0))
+    span = replace(maneuver.span, end_s=end_s, closed_by=closed_by, steps=steps)
+    cut = replace(maneuver, span=span, channels=channels)
+    (reason,) = judge_quality(cut, estimate(cut, AIRCRAFT), AIRCRAFT)
+    assert mend in reason.text
+
+
 @pytest.mark.parametrize(("kind", "cure"), [("3-2-1-1", "1.9 times the stick"), ("pulse", "fly a 3-2-1-1")])
 def test_a_manoeuvre_that_predicts_its_own_response_badly_is_told_the_cure_for_its_input(kind, cure):
     maneuver, estimated, _ = bad_flight()[0]

@@ -8,7 +8,7 @@ import pytest
 from scipy.linalg import expm
 
 from advisor.aircraft import Aircraft, Elevator
-from advisor.assessment import assess
+from advisor.assessment import assess, cautions_of
 from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
@@ -128,6 +128,15 @@ def test_the_verdict_says_that_the_air_moved() -> None:
     rough, calm = assess(flown(0.01, 4), KNOWN_SERVO), assess(flown(0.0, 4), KNOWN_SERVO)
     assert any("moving air, gusts of" in caution for caution in rough.cautions)
     assert not any("moving air" in caution for caution in calm.cautions)
+
+
+def test_gusts_that_read_as_nothing_are_no_caution() -> None:
+    maneuver = flown(0.01, 4)
+    rough = estimate(maneuver, KNOWN_SERVO)
+    assert isinstance(rough, Estimate)
+    for gust_rad, told in ((0.0005, False), (0.01, True)):
+        said = cautions_of(maneuver, replace(rough, gust_rad=gust_rad, airspeed_m_s=25.0), KNOWN_SERVO)
+        assert any("moving air" in caution for caution in said) is told
 
 
 @pytest.mark.parametrize("size", [0.0, 1e-14, 1e9])
