@@ -7,11 +7,6 @@ from advisor.gap.simulator.layout import EFFECT_ENTRIES, INDEX, SKEWS
 
 COMMAND = EFFECT_ENTRIES[: EFFECT_ENTRIES.index("M_delta2")]
 """Entries between command and surface."""
-INSTRUMENTS = (
-    "alpha_lag_s", "alpha_scale", "vane_arm_m", "q_bias", "q_scale", "mode_gain", "mode_rate_gain",
-    "mode_rad_s", "mode_damping", "imu_arm_m", "mode_attitude", *SKEWS,
-)  # fmt: skip
-"""Entries of instruments, all of which are carried around a simulator."""
 
 
 def instruments(

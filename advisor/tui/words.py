@@ -1,46 +1,16 @@
 """How quantities are called and written for people: symbols, degrees, digits that mean something."""
 
 import re
-from dataclasses import dataclass
-from math import degrees, isfinite
+from math import isfinite
 
-from advisor.report.digits import with_half
-
-_DEG = degrees(1.0)
-
-
-@dataclass(frozen=True, slots=True)
-class Quantity:
-    """A name and unit for people, and the factor from SI."""
-
-    symbol: str
-    unit: str
-    factor: float = 1.0
-
-    @property
-    def label(self) -> str:
-        """For an axis: ``q [deg/s]``."""
-        return f"{self.symbol} [{self.unit}]"
-
-    def with_interval(self, value: float, std: float) -> str:
-        """An SI value with its 95 % interval, in digits that mean something: ``-48.3 ± 2.1``."""
-        return with_half(value * self.factor, 1.96 * std * self.factor)
-
-
-CHANNELS = {
-    "elevator": Quantity("δe", "deg", _DEG),
-    "alpha": Quantity("α", "deg", _DEG),
-    "q": Quantity("q", "deg/s", _DEG),
-    "theta": Quantity("θ", "deg", _DEG),
-    "a_z": Quantity("a_z", "m/s²"),
-}
+from advisor.report.quantities import CHANNELS, DEG, Quantity
 
 PARAMETERS = {
-    "Z_0": Quantity("Z_0", "deg/s", _DEG),
+    "Z_0": Quantity("Z_0", "deg/s", DEG),
     "Z_alpha": Quantity("Z_α", "1/s"),
     "Z_q": Quantity("Z_q", "-"),
     "Z_delta_e": Quantity("Z_δe", "1/s"),
-    "M_0": Quantity("M_0", "deg/s²", _DEG),
+    "M_0": Quantity("M_0", "deg/s²", DEG),
     "M_alpha": Quantity("M_α", "1/s²"),
     "M_q": Quantity("M_q", "1/s"),
     "M_delta_e": Quantity("M_δe", "1/s²"),

@@ -9,7 +9,7 @@ from typing import Any
 from benchmarks.ablation.corpus import right, said
 
 _NEEDED = 2
-"""Verdicts that must be wrong without a rule, more than are right, from which on the rule stays."""
+"""Least excess of verdicts that a deletion makes wrong over those it makes right, for a rule to stay."""
 _TRIED, _OFTEN = 10, 0.2
 """Answers without a rule that are enough where it speaks in so many cases: a run without all rules that seem
 needless confirms them together."""

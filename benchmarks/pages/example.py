@@ -39,7 +39,7 @@ def transcript() -> str:
 
 
 def foresight() -> str:
-    """The same of ``advisor gap --foresee``, with the whole output."""
+    """The worked example of ``advisor gap --foresee``: command and whole output."""
     options = ("gap", "--foresee", "--aircraft", "aircraft.yaml")
     return _shown(UAV, f"advisor {' '.join(options)}", _told(UAV, *options).strip())
 

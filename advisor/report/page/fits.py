@@ -11,7 +11,7 @@ from advisor.report.document import NORMAL_95
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, GREY, ORANGE, picture
-from advisor.report.page.quantities import QUANTITIES
+from advisor.report.quantities import CHANNELS
 
 _EXPLAINED = (
     "Grey: measured. Dark dashes: the short-period model fitted to this manoeuvre alone. "
@@ -40,7 +40,7 @@ def _figures(judged: JudgedManeuver, estimate: Estimate) -> Iterator[Figure]:
     svg = picture(f"input-{number}", 4.4, 2.7, _paint_input, elevator, span.start_s)
     yield Figure(svg, f"Manoeuvre {number}, {span.kind}: elevator command δe.", "half")
     for name, fit in estimate.fits[0].items():
-        quantity = QUANTITIES[name]
+        quantity = CHANNELS[name]
         rms = f"{fit.rms * quantity.factor:.3g} {quantity.unit}"
         svg = picture(f"fit-{number}-{name}", 4.4, 2.7, _paint, fit, span.start_s)
         yield Figure(
@@ -62,13 +62,13 @@ def _prediction(estimate: Estimate, name: str) -> str:
 
 def _paint_input(drawing: Drawing, elevator: Channel, start_s: float) -> None:
     axes = drawing.subplots()
-    quantity = QUANTITIES["elevator"]
+    quantity = CHANNELS["elevator"]
     axes.plot(elevator.t - start_s, elevator.y * quantity.factor, color=BLACK)
     axes.set(xlabel="time since the first step [s]", ylabel=quantity.label)
 
 
 def _paint(drawing: Drawing, fit: ChannelFit, start_s: float) -> None:
-    quantity = QUANTITIES[fit.name]
+    quantity = CHANNELS[fit.name]
     factor, unit = quantity.factor, quantity.unit
     above, below = drawing.subplots(2, 1, sharex=True, height_ratios=[2.2, 1.0])
     t = fit.t - start_s

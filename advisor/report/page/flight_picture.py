@@ -12,7 +12,7 @@ from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Sectio
 from advisor.report.page.content import Content
 from advisor.report.page.course import SHOWN, Course, thinned
 from advisor.report.page.drawing import BLUE, ORANGE, picture
-from advisor.report.page.quantities import QUANTITIES
+from advisor.report.quantities import CHANNELS
 
 _BINS = 500
 _EXPLAINED = (
@@ -48,7 +48,7 @@ def _paint(drawing: Drawing, course: Course, judged: Sequence[JudgedManeuver]) -
     shown = [name for name in SHOWN if name in channels]
     rows = drawing.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
     for axes, name in zip(rows, shown, strict=True):
-        quantity = QUANTITIES[name]
+        quantity = CHANNELS[name]
         channel = _as_judged(channels[name], judged)
         t, y = thinned(channel, _BINS)
         axes.plot(t, y * quantity.factor, color=BLUE, linewidth=0.7)

@@ -13,7 +13,7 @@ from advisor.report.document import NORMAL_95
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
-from advisor.report.page.quantities import QUANTITIES
+from advisor.report.quantities import CHANNELS
 
 _ROUNDING = 1e-9
 """Smaller gaps are 0."""
@@ -73,7 +73,7 @@ def _short(value: float) -> str:
 
 
 def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:
-    after, quantity = size["by_channel_after"].get(name), QUANTITIES[name]
+    after, quantity = size["by_channel_after"].get(name), CHANNELS[name]
     floor = f"{size['floor'][name] * quantity.factor:.2g} {quantity.unit}"
     return quantity.symbol, _short(size["by_channel"][name]), "–" if after is None else _short(after), floor
 
