@@ -2,12 +2,13 @@
 
 import asyncio
 import logging
+import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future, as_completed
 from contextlib import contextmanager
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import urlsplit
 
 from advisor.problems import ConfigurationError
@@ -20,7 +21,7 @@ R = TypeVar("R")
 Versions = Mapping[str, str | None]
 
 CONNECT_S = 5.0
-"""A scheduler that does not answer for so long is not there."""
+"""A scheduler that does not answer for so long is not there; a cluster without a worker for so long has none."""
 _SAME = ("advisor", "python")
 """With another version of these a worker's results are not those of this computer, or cannot be read."""
 _TOLD = ("distributed", "numba", "numpy", "scipy")
@@ -55,7 +56,7 @@ def run_on_cluster(
     if not tasks:
         return
     with _connected(address) as client:
-        found = client.get_versions(packages=[*_SAME, *_TOLD])
+        found = _versions_on(client)
         if not found["workers"]:
             raise ConfigurationError(
                 f"--scheduler: the cluster at {address} has no workers;"
@@ -110,6 +111,19 @@ def _connected(address: str) -> "Iterator[Client]":
         ) from None
     with client:
         yield client
+
+
+def _versions_on(client: "Client") -> dict[str, Any]:
+    """Versions of the packages in the client and in each worker.
+
+    A cluster whose workers are starting, or starting again after a death, is given ``CONNECT_S`` for its first.
+    """
+    end = time.monotonic() + CONNECT_S
+    while True:
+        found: dict[str, Any] = client.get_versions(packages=[*_SAME, *_TOLD])
+        if found["workers"] or time.monotonic() > end:
+            return found
+        time.sleep(0.1)
 
 
 async def _answer(address: str) -> None:
