@@ -11,7 +11,7 @@ __version__ = "0.1.0"
 
 _PUBLIC = {
     "Aircraft": "advisor.aircraft",
-    "CampaignState": "advisor.campaign_state",
+    "CampaignState": "advisor.campaign.state",
     "ConfigurationError": "advisor.problems",
     "Diagnosis": "advisor.gap.result",
     "Estimate": "advisor.oem.estimate",

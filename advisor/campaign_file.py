@@ -10,9 +10,9 @@ from typing import Any, get_args
 import yaml
 
 from advisor.aircraft import Aircraft, Rule
+from advisor.atomic_file import write_atomically
 from advisor.config import parse_aircraft
 from advisor.problems import ConfigurationError
-from advisor.whole_file import write_whole
 from advisor.yaml_file import read_yaml
 
 SUFFIX = ".campaign.yaml"
@@ -65,7 +65,7 @@ def write_campaign(recording: Path, campaign: CampaignFile) -> None:
         The file cannot be written.
     """
     content = {key: value for key in _KEYS if (value := getattr(campaign, key)) is not None}
-    write_whole(
+    write_atomically(
         path_beside(recording), _HEADING + yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
     )
 

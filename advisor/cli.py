@@ -12,9 +12,9 @@ from typing import TextIO
 import click
 
 from advisor import __version__
+from advisor.ascii_output import speak_plainly
 from advisor.commands.options import INTERNAL, UNUSABLE, USAGE
 from advisor.interrupt import STOPPED, Interrupted
-from advisor.plain import speak_plainly
 from advisor.printable import printable
 from advisor.problems import ConfigurationError, UnusableInputError
 

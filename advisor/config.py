@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
 from advisor.aircraft import PARAMETERS, Aircraft, Elevator, FmuVariables, Markers, Pairs
-from advisor.effects import mistakes_in
+from advisor.aircraft_effects import mistakes_in
 from advisor.printable import printable
 from advisor.problems import ConfigurationError
 from advisor.yaml_file import read_yaml

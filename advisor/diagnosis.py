@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
-from advisor.by_hand import ByHand
+from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.events import ManeuverFlown, Notice
 from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
@@ -14,13 +14,13 @@ from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import believed_derivatives
+from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs import open_log
 from advisor.printable import printable
 from advisor.problems import Problem, UnusableInputError
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.protocol import Simulator
 from advisor.simulators.specification import simulator_of
-from advisor.untested import without_simulator
 
 _PAUSE_S = 60.0
 """Between the last manoeuvre of one log and the first of the next, which no clock has measured."""

@@ -59,14 +59,20 @@ def in_order(sentence: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
             signal.signal(kind, signal.SIG_IGN)
         said, code = sentence(), 128 + number
         _end_later(said, code)
-        raise Interrupted(said, code)
+        raised.append(Interrupted(said, code))
+        raise raised[0]
 
+    raised: list[Interrupted] = []
     heard = [kind for kind in _KINDS if signal.getsignal(kind) is not signal.SIG_IGN]
     if threading.current_thread() is not threading.main_thread():
         heard = []
     before = [signal.signal(kind, interrupt) for kind in heard]
     try:
         yield
+    except Exception as error:
+        if raised:  # a library that was being imported answers the signal with an error of its own
+            raise raised[0] from error
+        raise
     finally:
         for kind, handler in zip(heard, before, strict=True):
             signal.signal(kind, handler)
@@ -90,7 +96,7 @@ def _end_later(sentence: str, code: int) -> None:
 
 
 def _say_and_exit(sentence: str, code: int) -> None:
-    from advisor.plain import plain
+    from advisor.ascii_output import plain
 
     with suppress(OSError):
         # On a terminal a bar of progress may stand in this line, and have hidden the cursor.

@@ -9,7 +9,7 @@ from os import PathLike
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
-from advisor.campaign_state import CampaignState
+from advisor.campaign.state import CampaignState
 from advisor.config import load_aircraft
 from advisor.diagnosis import diagnose_logs
 from advisor.exporting.reading import read_whole

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.by_hand import ByHand, on_all
+from advisor.campaign.hand_decisions import ByHand, on_all
 from advisor.flight.messages import Columns
 from advisor.marks_file import read_by_hand
 from advisor.problems import Problem, UnusableInputError

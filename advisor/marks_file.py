@@ -11,11 +11,11 @@ from typing import Any
 
 import yaml
 
-from advisor.by_hand import ByHand, Remark
+from advisor.atomic_file import write_atomically
+from advisor.campaign.hand_decisions import ByHand, Remark
 from advisor.flight.marks import LONGEST_S, Mark
 from advisor.printable import printable
 from advisor.problems import ConfigurationError
-from advisor.whole_file import write_whole
 from advisor.yaml_file import read_yaml
 
 SUFFIX = ".maneuvers.yaml"
@@ -82,7 +82,7 @@ def write_by_hand(log: Path, by_hand: ByHand) -> None:
         sections[section] = [{"at_s": r.at_s, key: r.text, **_boot(r.boot)} for r in remarks]
     filled = {name: entries for name, entries in sections.items() if entries}
     text = _HEADING + (yaml.safe_dump(filled, sort_keys=False, allow_unicode=True) if filled else "")
-    write_whole(path, text)
+    write_atomically(path, text)
 
 
 def keep_by_hand(log: Path, by_hand: ByHand) -> str:

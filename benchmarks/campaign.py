@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft import Aircraft, Elevator
-from advisor.campaign import Campaign, ManeuverJudged
-from advisor.campaign_state import JudgedManeuver
+from advisor.campaign.campaign import Campaign, ManeuverJudged
+from advisor.campaign.state import JudgedManeuver
 from advisor.flight.messages import Columns
 from advisor.mavlink.logs import open_log
 from advisor.oem.estimate import Estimate

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft import Aircraft
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
 from advisor.tui.app import AdvisorApp
 from advisor.tui.remote import RemoteConductor, Task
 from advisor.tui.settings import Settings

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft import Aircraft, Elevator, ElevatorOutput, Markers
+from advisor.aircraft_effects import LEAST
 from advisor.config import load_aircraft, parse_aircraft
-from advisor.effects import LEAST
 from advisor.gap.candidates.traits import TRAITS
 from advisor.problems import ConfigurationError
 from sim.effects.terms import problems_with

@@ -9,7 +9,7 @@ from tempfile import mkdtemp
 import pytest
 
 from advisor.aircraft import Aircraft, Alpha, Elevator
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
 from advisor.mavlink.logs import open_log
 from sim.flight import Flight
 from sim.hangar import UAV

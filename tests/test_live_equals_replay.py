@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.by_hand import NOTHING, ByHand
-from advisor.campaign import Campaign
-from advisor.campaign_state import CampaignState
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.campaign.state import CampaignState
 from advisor.demo import Demonstration
 from advisor.flight.messages import Columns
 from advisor.marks_file import read_by_hand

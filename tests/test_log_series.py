@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.by_hand import ByHand, Remark
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import ByHand, Remark
 from advisor.cli import main
 from advisor.flight.same import are_one
 from advisor.log_series import LogSeries

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.by_hand import NOTHING, ByHand, Remark
+from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.flight.marks import Mark
 from advisor.marks_file import keep_by_hand, path_beside, read_by_hand, write_by_hand
 from advisor.problems import ConfigurationError

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.effects import LEAST
+from advisor.aircraft_effects import LEAST
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Trace
 from benchmarks.pages import decisions, effects, results

@@ -21,7 +21,7 @@ R = TypeVar("R")
 Versions = Mapping[str, str | None]
 
 CONNECT_S = 5.0
-"""A scheduler that does not answer for so long is not there; a cluster without a worker for so long has none."""
+"""A scheduler that does not answer for so long is not there; a cluster whose workers do not start, empty."""
 _SAME = ("advisor", "python")
 """With another version of these a worker's results are not those of this computer, or cannot be read."""
 _TOLD = ("distributed", "numba", "numpy", "scipy")
@@ -116,7 +116,7 @@ def _connected(address: str) -> "Iterator[Client]":
 def _versions_on(client: "Client") -> dict[str, Any]:
     """Versions of the packages in the client and in each worker.
 
-    A cluster whose workers are starting, or starting again after a death, is given ``CONNECT_S`` for its first.
+    A cluster whose workers start, or start again after a death, has ``CONNECT_S`` for the first.
     """
     end = time.monotonic() + CONNECT_S
     while True:

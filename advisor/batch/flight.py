@@ -13,12 +13,12 @@ import numpy as np
 
 from advisor import __version__
 from advisor.aircraft import Aircraft
+from advisor.atomic_file import write_atomically
 from advisor.log_series import began_s
 from advisor.marks_file import path_beside
 from advisor.oem.estimate import Estimate
 from advisor.problems import ConfigurationError, Problem, UnusableInputError
 from advisor.report.document import analysis_document, number
-from advisor.whole_file import write_whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ _KEPT = ("theta", "covariance_cr", "covariance")
 
 def analyze(task: Task) -> Analyzed:
     """Analyze a log as ``advisor analyze`` does; a log that cannot be used is a result, too."""
-    from advisor.campaign import Campaign
+    from advisor.campaign.campaign import Campaign
     from advisor.log_series import LogSeries
 
     series = LogSeries([task.log])
@@ -152,7 +152,7 @@ def keep(result: Analyzed, path: Path) -> None:
         The file cannot be written.
     """
     kept = {**asdict(result), "began_s": number(result.began_s)}
-    write_whole(path, json.dumps(kept, allow_nan=False))
+    write_atomically(path, json.dumps(kept, allow_nan=False))
 
 
 def kept(path: Path) -> Analyzed | None:

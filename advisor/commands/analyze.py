@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from advisor.aircraft import Rule
-from advisor.by_hand import NOTHING
-from advisor.campaign_state import CampaignState
+from advisor.campaign.hand_decisions import NOTHING
+from advisor.campaign.state import CampaignState
 from advisor.commands.options import (
     UNUSABLE,
     aircraft_option,
@@ -24,7 +24,7 @@ from advisor.printable import printable
 from advisor.problems import Problem
 
 if TYPE_CHECKING:
-    from advisor.campaign import Campaign
+    from advisor.campaign.campaign import Campaign
     from advisor.flight.marks import Mark
     from advisor.log_series import LogSeries
 
@@ -76,7 +76,7 @@ def command(
 
     series = LogSeries(logs)
     by_hand = NOTHING if no_marks else series.read_by_hand()
-    from advisor.campaign import Campaign
+    from advisor.campaign.campaign import Campaign
 
     campaign = Campaign(
         aircraft, target_system, method=method, by_hand=by_hand, marks=marks, names=series.names

@@ -21,7 +21,7 @@ from advisor.printable import printable
 from advisor.problems import ConfigurationError
 
 if TYPE_CHECKING:
-    from advisor.by_hand import ByHand
+    from advisor.campaign.hand_decisions import ByHand
     from advisor.mavlink.kept_link import KeptLink
     from advisor.tui.source import Source
 
@@ -102,7 +102,7 @@ def command(
         raise ConfigurationError(f"{other} and --no-record contradict each other; give one of them.")
     if logs and resume is None:
         raise ConfigurationError("LOG needs --resume: the flight test of these logs is taken up.")
-    from advisor.by_hand import NOTHING
+    from advisor.campaign.hand_decisions import NOTHING
     from advisor.campaign_file import CampaignFile
     from advisor.commands.resuming import Speaking, start_of, started
     from advisor.mavlink.connection import parse_connection
@@ -149,7 +149,7 @@ def _ended(recordings: Sequence[Path]) -> str:
 
 def _decided(flights: Sequence[Path | None]) -> "ByHand":
     """What was decided by hand on these flights; on one that is not recorded, nothing is kept."""
-    from advisor.by_hand import NOTHING, on_all
+    from advisor.campaign.hand_decisions import NOTHING, on_all
     from advisor.marks_file import read_by_hand
 
     return on_all([read_by_hand(flight) if flight else NOTHING for flight in flights])
@@ -163,7 +163,7 @@ def _source(earlier: Sequence[Path], link: "KeptLink") -> "Source":
 
 
 def _announce(link: "KeptLink", event: object) -> None:
-    from advisor.campaign import ManeuverJudged
+    from advisor.campaign.campaign import ManeuverJudged
 
     if isinstance(event, ManeuverJudged):
         verdict = event.flight_test

@@ -22,15 +22,15 @@ from typing import IO, TYPE_CHECKING
 import click
 
 from advisor import interrupt
+from advisor.ascii_output import speak_plainly
 from advisor.flight.messages import Columns
-from advisor.plain import speak_plainly
 from advisor.problems import UnusableInputError
 from advisor.tui.offspring import offspring, pause_s, said_of
 from advisor.tui.remote import Task
 from advisor.tui.source import Source
 
 if TYPE_CHECKING:
-    from advisor.campaign import Campaign
+    from advisor.campaign.campaign import Campaign
 
 READ_S = 0.2
 
@@ -123,7 +123,7 @@ def _end_with(requests: IO[bytes]) -> None:
 
 def main() -> None:
     """Conduct one campaign from its task to its end; what breaks it off is the last message."""
-    from advisor.campaign import Campaign
+    from advisor.campaign.campaign import Campaign
 
     interrupt.ignore()  # a signal is for the parent, which then closes the requests
     speak_plainly()

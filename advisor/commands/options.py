@@ -14,7 +14,7 @@ from advisor.aircraft import Aircraft, Rule
 from advisor.problems import ConfigurationError
 
 if TYPE_CHECKING:
-    from advisor.by_hand import ByHand
+    from advisor.campaign.hand_decisions import ByHand
     from advisor.flight.marks import Mark
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -149,7 +149,7 @@ def decided_on(log: Path, no_marks: bool) -> "ByHand":
     ConfigurationError
         As :func:`advisor.marks_file.read_by_hand`.
     """
-    from advisor.by_hand import NOTHING
+    from advisor.campaign.hand_decisions import NOTHING
     from advisor.marks_file import read_by_hand
 
     return NOTHING if no_marks else read_by_hand(log)

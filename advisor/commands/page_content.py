@@ -10,9 +10,9 @@ from pathlib import Path
 
 from advisor import __version__
 from advisor.aircraft import Aircraft
-from advisor.by_hand import NOTHING, ByHand
-from advisor.campaign import Campaign
-from advisor.campaign_state import CampaignState
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.campaign.state import CampaignState
 from advisor.commands.doctor import examine_log
 from advisor.diagnosis import compare_logs, named_simulator
 from advisor.doctor.document import doctor_document

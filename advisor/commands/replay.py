@@ -68,7 +68,7 @@ def command(
     """
     aircraft = read_aircraft(aircraft_file, rule)
     refuse_marks_on_several(marks, logs)
-    from advisor.by_hand import NOTHING
+    from advisor.campaign.hand_decisions import NOTHING
     from advisor.log_series import LogSeries
     from advisor.tui.replay import LogPlayer
     from advisor.tui.source import Tempo

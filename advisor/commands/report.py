@@ -56,13 +56,13 @@ def command(
     """
     _refuse(logs, aircraft_file, out)
     aircraft = read_aircraft(aircraft_file, rule)
+    from advisor.atomic_file import write_atomically
     from advisor.commands.page_content import gather
     from advisor.report.page.render import page
-    from advisor.whole_file import write_whole
 
     content, said = gather(logs, aircraft, aircraft_file, target_system, no_marks, with_gap)
     markdown = form == "md" or (form is None and out.suffix.lower() == ".md")
-    write_whole(out, page(content, "md" if markdown else "html"))
+    write_atomically(out, page(content, "md" if markdown else "html"))
     for sentence in said:
         click.echo(sentence, err=True)
     return 0

@@ -14,8 +14,8 @@ from advisor.problems import UnusableInputError
 from advisor.tui.source import Source, Tempo
 
 if TYPE_CHECKING:
-    from advisor.by_hand import ByHand
-    from advisor.campaign import Campaign
+    from advisor.campaign.campaign import Campaign
+    from advisor.campaign.hand_decisions import ByHand
     from advisor.flight.marks import Mark
     from advisor.tui.remote import Task
 
@@ -66,7 +66,7 @@ def advise(
     UnusableInputError
         When the source can never serve, or has ended without anything to judge.
     """
-    from advisor.by_hand import NOTHING
+    from advisor.campaign.hand_decisions import NOTHING
     from advisor.commands.narrator import narrate, narrate_here
     from advisor.tui.remote import Task
 
@@ -91,7 +91,7 @@ def _campaign(
     settle: bool,
     by_hand: "ByHand",
 ) -> "Campaign":
-    from advisor.campaign import Campaign
+    from advisor.campaign.campaign import Campaign
 
     return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
 

@@ -9,12 +9,12 @@ from collections.abc import Collection
 import numpy as np
 
 from advisor.aircraft import Aircraft
-from advisor.beside import beside
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
 from advisor.flight.trust import distrusted
+from advisor.rounding import distinct_texts
 
 NEEDED = ("elevator", "q")
 SAMPLES_PER_PERIOD = 8.0
@@ -85,7 +85,7 @@ def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:
     shortest, least = float(np.min(np.diff(onsets))), _SHORTEST_STEP * period_s
     if shortest >= least:
         return []
-    shown, limit = beside(shortest, least, 2)
+    shown, limit = distinct_texts(shortest, least, 2)
     text = f"steps too short, {shown} s (at least {limit}); hold each about {0.4 * period_s:.1f} s"
     return [Reason("steps", text, shortest, least)]
 
@@ -103,7 +103,7 @@ def _rate(channels: list[Channel], period_s: float) -> list[Reason]:
     reasons = []
     for c in channels:
         if not c.rate_hz >= needed_hz:
-            rate, needed = beside(c.rate_hz, needed_hz, 1)
+            rate, needed = distinct_texts(c.rate_hz, needed_hz, 1)
             text = (
                 f"{c.name} arrived at {rate} Hz (this aircraft needs {needed}); "
                 "let it come faster, advisor doctor says how"
@@ -120,7 +120,7 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
         edges = (maneuver.span.record_from_s, *c.t.tolist(), maneuver.span.end_s)
         gap = float(np.max(np.diff(edges)))
         if gap > limit:
-            missing, most_missing = beside(gap, limit, 1)
+            missing, most_missing = distinct_texts(gap, limit, 1)
             lost = f"{missing} s of {c.name} are missing (limit {most_missing})"
             text = f"{lost}; check the recording, fly it again"
             reasons.append(Reason("gap", text, gap, limit))
@@ -140,7 +140,7 @@ def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     free, least = maneuver.span.end_s - maneuver.span.last_step_s, _SHORTEST_FREE * period_s
     if free >= least:
         return []
-    shown, limit = beside(free, least, 1)
+    shown, limit = distinct_texts(free, least, 1)
     mend = _CUT_SHORT_BY.get(maneuver.span.closed_by, "hands still after the last step")
     text = f"free response too short, {shown} s (at least {limit}); {mend}"
     return [Reason("free_response", text, free, least)]
@@ -155,7 +155,7 @@ def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:
     bank = float(np.degrees(np.max(np.abs(flown(maneuver, "bank")), initial=0.0)))
     if bank <= limit:
         return []
-    shown, most = beside(bank, limit)
+    shown, most = distinct_texts(bank, limit)
     return [Reason("bank", f"bank reached {shown} deg (limit {most}); fly it wings level", bank, limit)]
 
 
@@ -171,7 +171,7 @@ def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     change = 100.0 * float(np.sort(np.abs(speed / trim - 1.0))[-2:][0])
     if change <= limit:
         return []
-    shown, most = beside(change, limit)
+    shown, most = distinct_texts(change, limit)
     text = f"air speed changed by {shown} % (limit {most}); smaller steps, from steady speed"
     return [Reason("airspeed", text, change, limit)]
 
@@ -180,7 +180,7 @@ def _alpha(maneuver: Maneuver, limit: float | None) -> list[Reason]:
     alpha = float(np.degrees(np.max(np.abs(flown(maneuver, "alpha")), initial=0.0)))
     if limit is None or alpha <= limit:
         return []
-    shown, most = beside(alpha, limit, 1)
+    shown, most = distinct_texts(alpha, limit, 1)
     text = f"angle of attack reached {shown} deg (limit {most}); use less stick"
     return [Reason("alpha", text, alpha, limit)]
 
@@ -192,7 +192,7 @@ def _saturation(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     share = 100.0 * float(np.mean(stuck)) if len(stuck) else 0.0
     if np.count_nonzero(stuck) < 2:
         return []
-    shown, most = beside(share, 0.0)
+    shown, most = distinct_texts(share, 0.0)
     text = f"elevator at the end of its travel for {shown} % of the time (limit {most}); use less stick"
     return [Reason("saturation", text, share, 0.0)]
 
@@ -202,7 +202,7 @@ def _other_controls(maneuver: Maneuver) -> list[Reason]:
     for name in ("aileron", "rudder"):
         moved = float(np.degrees(np.ptp(flown(maneuver, name)))) / 2.0 if len(flown(maneuver, name)) else 0.0
         if moved > _OTHER_CONTROLS_DEG:
-            shown, most = beside(moved, _OTHER_CONTROLS_DEG)
+            shown, most = distinct_texts(moved, _OTHER_CONTROLS_DEG)
             text = f"{name} moved by {shown} deg (limit {most}); use the elevator alone"
             reasons.append(Reason(name, text, moved, _OTHER_CONTROLS_DEG))
     return reasons
@@ -213,6 +213,6 @@ def _throttle(maneuver: Maneuver) -> list[Reason]:
     change = 100.0 * float(np.ptp(throttle)) if len(throttle) else 0.0
     if change <= _THROTTLE_PERCENT:
         return []
-    shown, most = beside(change, _THROTTLE_PERCENT)
+    shown, most = distinct_texts(change, _THROTTLE_PERCENT)
     text = f"throttle moved by {shown} % (limit {most}); leave it where it is"
     return [Reason("throttle", text, change, _THROTTLE_PERCENT)]

@@ -3,10 +3,10 @@
 import numpy as np
 
 from advisor.aircraft import PARAMETERS
-from advisor.beside import beside
 from advisor.decision.information import Knowledge
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import Z95
+from advisor.rounding import distinct_texts
 
 SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal acceleration"}
 """Predicted outputs as people call them."""
@@ -39,11 +39,11 @@ def _stop(known: Knowledge) -> str:
 
 def _held_back(known: Knowledge) -> str:
     name, share = known.holding_back, 0.01 * known.percent
-    times, _ = beside(share, 1.0, 1)
+    times, _ = distinct_texts(share, 1.0, 1)
     if name in SPOKEN:
         if np.isinf(share):
             return f"the response in {SPOKEN[name]} cannot be predicted from these manoeuvres"
-        size, limit = beside(share * known.tolerance_percent, known.tolerance_percent, 1)
+        size, limit = distinct_texts(share * known.tolerance_percent, known.tolerance_percent, 1)
         return f"the response in {SPOKEN[name]} is known only to {size} % of its peak (limit {limit} %)"
     if np.isinf(share):
         reason = known.not_identifiable.get(name, "cannot be estimated from these manoeuvres")

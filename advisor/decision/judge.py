@@ -4,7 +4,6 @@ from collections.abc import Container, Mapping, Sequence
 from math import floor
 
 from advisor.aircraft import CampaignPlan, Rule
-from advisor.beside import beside
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.consistency import Odd, odd_ones
 from advisor.decision.course import Course
@@ -13,6 +12,7 @@ from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.pooling import beliefs_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.rounding import distinct_texts
 
 COLOURED = 0.5
 """Lag-1 correlation of a residual below which nothing drives it."""
@@ -131,12 +131,12 @@ def _of_limit(cost: float, limit: float) -> str:
     """A cost beside its limit: its unit tells nobody anything, the ratio does."""
     if limit <= 0.0:
         return "cost above its limit, 0"
-    ratio = beside(cost / limit, 1.0, 2)[0]
+    ratio = distinct_texts(cost / limit, 1.0, 2)[0]
     return f"cost {ratio} of its limit" if cost < limit else f"cost {ratio} times its limit"
 
 
 def _contradicts(odd: Odd) -> Reason:
-    distance, limit = beside(odd.sigma, odd.limit, 1)
+    distance, limit = distinct_texts(odd.sigma, odd.limit, 1)
     text = f"contradicts all the others, {distance} sigma from them (limit {limit}); fly it again"
     return Reason("odd", text, odd.sigma, odd.limit)
 

@@ -15,9 +15,9 @@ import numpy as np
 from advisor.aircraft import PARAMETERS
 from advisor.decision.inverses import covariance_of, information_of
 from advisor.flight.messages import FloatArray
-from advisor.gravity import GRAVITY_M_S2
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
+from advisor.standard_gravity import GRAVITY_M_S2
 
 INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))
 """Trim and speed differ from one manoeuvre to the next, so each has its own Z_0 and M_0."""

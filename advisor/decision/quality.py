@@ -16,13 +16,13 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.beside import beside
 from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.purpose import LEAST_PITCH_RATE_DEG_S
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
+from advisor.rounding import distinct_texts
 
 WIDEST_PREDICTION_PERCENT = 25.0
 """Widest half of the 95 % band of the predicted pitch rate, in percent of its peak. A standard deviation of
@@ -108,7 +108,7 @@ def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reas
     what, unit = ("pitch rate", "deg/s") if name == "q" else ("angle of attack", "deg")
     peak = math.degrees(_peak(maneuver, name))
     limit = peak * factor if peak > 0.0 else LEAST_PITCH_RATE_DEG_S
-    shown, least_peak = beside(peak, limit, 2, "g")
+    shown, least_peak = distinct_texts(peak, limit, 2, "g")
     text = f"too gentle, {what} {shown} {unit} (at least {least_peak}); use about {_times(factor)} the stick"
     return [Reason("amplitude", text, peak, limit)]
 
@@ -128,7 +128,7 @@ def _badly_explained(estimate: Estimate) -> list[Reason]:
         explained = 1.0 - max(0.0, fit.rms**2 - noise) / spread if spread > 0.0 else 1.0
         if explained < least:
             what = "pitch rate" if name == "q" else "angle of attack"
-            shown, limit = beside(100.0 * max(0.0, explained), 100.0 * least)
+            shown, limit = distinct_texts(100.0 * max(0.0, explained), 100.0 * least)
             moving = estimate.gust_rad is not None
             cure = "fly it in calmer air" if moving else "smaller steps, steady flight before, calm air"
             text = f"the model explains {shown} % of {what} (at least {limit}); {cure}"
@@ -147,7 +147,7 @@ def _poor(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
         code, cure = "turbulence", f"fly it in calmer air, or with about {more} the stick"
     elif maneuver.span.kind == "pulse":
         cure = "fly a 3-2-1-1: this input tells too little of the response"
-    shown, most = beside(value, WIDEST_PREDICTION_PERCENT)
+    shown, most = distinct_texts(value, WIDEST_PREDICTION_PERCENT)
     text = f"the pitch rate is predicted to {shown} % of its peak only (limit {most}); {cure}"
     return [Reason(code, text, value, WIDEST_PREDICTION_PERCENT)]
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft import Aircraft, CampaignPlan, Rule
-from advisor.beside import beside
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
 from advisor.decision.course import Course
@@ -18,6 +17,7 @@ from advisor.decision.scatter import scatter_percent, scattered_most, window
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, limit_percent
 from advisor.decision.warnings import warnings
 from advisor.oem.estimate import Estimate
+from advisor.rounding import distinct_texts
 
 _NO_SCALE_PERCENT = 1000.0
 
@@ -130,7 +130,7 @@ def _scatter_sentence(
     verb = "STOP TESTING" if stop else "CONTINUE"
     held = "" if stop else f"; {_scattered_most(accepted, plan)} scatters most"
     # Of a parameter near zero the relative scatter has no scale; its digits would only pretend one.
-    scatter, limit = beside(criterion, plan.limit_percent)
+    scatter, limit = distinct_texts(criterion, plan.limit_percent)
     agreement = f"agree within {scatter} %" if criterion < _NO_SCALE_PERCENT else "do not agree"
     return f"{verb}: the last {plan.window} accepted manoeuvres {agreement} (limit {limit} %){held}."
 

@@ -3,7 +3,6 @@
 from collections.abc import Collection, Iterable
 
 from advisor.aircraft import Elevator
-from advisor.beside import beside
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.survey import Clocks
 from advisor.flight.surfaces import joined_numbers
@@ -11,6 +10,7 @@ from advisor.flight.track import ChannelStatus
 from advisor.flight.trust import Distrust
 from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
+from advisor.rounding import distinct_texts
 
 COARSE_DEG = 0.5
 """Resolution of the command beyond which small steps are no longer steps."""
@@ -62,7 +62,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
             )
         )
     if found.resolution_deg > COARSE_DEG:
-        shown, most = beside(found.resolution_deg, COARSE_DEG, 2)
+        shown, most = distinct_texts(found.resolution_deg, COARSE_DEG, 2)
         limits.append(
             Limit(
                 "resolution",
@@ -145,7 +145,7 @@ def loss_limits(lost_percent: float | None) -> list[Limit]:
     """Packets a live link lost; None: not counted."""
     if lost_percent is None or lost_percent <= LOSSY_PERCENT:
         return []
-    shown, most = beside(lost_percent, LOSSY_PERCENT, 1)
+    shown, most = distinct_texts(lost_percent, LOSSY_PERCENT, 1)
     return [
         Limit(
             "loss",

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.beside import beside
 from advisor.doctor.examination import Limit
 from advisor.doctor.expectation import Belief, Expectation, expect, frequency
 from advisor.doctor.survey import Arrival
 from advisor.flight.suitability import SLOWEST_HZ
 from advisor.flight.vehicle import Vehicle
 from advisor.mends import GOOD_HZ, Carrier
+from advisor.rounding import distinct_texts
 
 FEWEST_PER_PERIOD = 6.0
 """Samples to one natural period below which the short period cannot be followed."""
@@ -85,10 +85,10 @@ def _samples(hz: float, fewest_hz: float, enough_hz: float, plain: str, period_s
     """Samples in a natural period beside the limit that they fall short of."""
     samples, fewest, enough = hz * period_s, fewest_hz * period_s, enough_hz * period_s
     if hz < fewest_hz:
-        shown, least = beside(samples, fewest, 1)
+        shown, least = distinct_texts(samples, fewest, 1)
         limits = f"at least {least}, better {enough:.0f}"
     else:
-        shown, better = beside(samples, enough, 1)
+        shown, better = distinct_texts(samples, enough, 1)
         limits = f"at least {fewest:.0f}, better {better}"
     return f"{shown} samples of {plain} in a natural period of {period_s:.2f} s ({limits})"
 

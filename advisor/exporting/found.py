@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.aircraft import PARAMETERS
-from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.exporting.table import Column, Table, numbers, texts
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.record import UNITS

@@ -9,9 +9,9 @@ import numpy as np
 
 from advisor import __version__
 from advisor.aircraft import Aircraft
-from advisor.by_hand import NOTHING
-from advisor.campaign import Campaign
-from advisor.campaign_state import CampaignState
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import NOTHING
+from advisor.campaign.state import CampaignState
 from advisor.exporting.found import estimates, maneuvers, residuals
 from advisor.exporting.grid import GRID, on_one_grid
 from advisor.exporting.table import Column, Dataset, Recording, Table, numbers, texts

@@ -8,7 +8,7 @@ import numpy as np
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.flight.motion import bank_at, gravity_in_plane
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
 """The beginning of a record; share of itself that an offset may lack there, in the mean of all manoeuvres;

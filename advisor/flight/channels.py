@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from advisor.flight.clocks import place
 from advisor.flight.messages import Columns, FloatArray
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 _ARMED = 128
 """MAV_MODE_FLAG_SAFETY_ARMED, MAVLink common.xml."""

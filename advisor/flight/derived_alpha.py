@@ -13,7 +13,7 @@ from advisor.flight.messages import Columns, FloatArray, IntArray
 from advisor.flight.motion import gravity_in_plane
 from advisor.flight.record import Channel
 from advisor.flight.track import ChannelStatus, Track
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 DERIVED_ALPHA = "theta - asin(VFR_HUD.climb / airspeed)"
 SLOWEST_FLIGHT_M_S = 4.0

@@ -15,7 +15,7 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.flight.motion import bank_at, integrated, path_turning
 from advisor.flight.record import Channel
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 NEEDED = ("q", "theta", "a_z")
 _PASSES = 2

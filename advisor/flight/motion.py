@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 
 def bank_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:

@@ -10,12 +10,12 @@ from math import degrees, isfinite, radians
 
 import numpy as np
 
-from advisor.beside import beside
 from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.excitation import excitation
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.modes import closes_pitch_loop, has_an_errand, hovers, is_manual
 from advisor.flight.rest import SMALLEST_RAD
+from advisor.rounding import distinct_texts
 
 LEAST_PITCH_RATE_DEG_S = 1.0
 """Least answer of the pitch rate to a test input, deg/s: smaller ones drown in light turbulence. The gentlest
@@ -90,7 +90,7 @@ def _tells_nothing(maneuver: Maneuver) -> Because | None:
         return None
     rate = degrees(found.pitch_rate)
     if found.pitch_rate < radians(LEAST_PITCH_RATE_DEG_S):
-        shown, least = beside(rate, LEAST_PITCH_RATE_DEG_S, 2, "g")
+        shown, least = distinct_texts(rate, LEAST_PITCH_RATE_DEG_S, 2, "g")
         return Because(
             "small", f"a correction: the pitch rate moved by {shown} deg/s only (at least {least})"
         )
@@ -100,7 +100,7 @@ def _tells_nothing(maneuver: Maneuver) -> Because | None:
     if error > LARGEST_ERROR:
         known = "not at all"
         if isfinite(error) and error < 1.0:
-            shown, most = beside(100.0 * error, 100.0 * LARGEST_ERROR)
+            shown, most = distinct_texts(100.0 * error, 100.0 * LARGEST_ERROR)
             known = f"to {shown} % only (limit {most})"
         return Because("no_information", f"the elevator's effect on the pitch rate is known {known}")
     return None

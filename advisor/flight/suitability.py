@@ -11,7 +11,6 @@ manoeuvre is judged against its own natural frequency (`advisor.decision.quality
 from collections.abc import Collection, Mapping
 from math import isfinite, nan
 
-from advisor.beside import beside
 from advisor.flight.channels import READINGS
 from advisor.flight.elevator_guess import Guess
 from advisor.flight.surfaces import Surface, joined_numbers, listed
@@ -20,6 +19,7 @@ from advisor.flight.trust import Distrust
 from advisor.flight.vehicle import Vehicle
 from advisor.mends import GOOD_HZ, sentence
 from advisor.problems import Problem
+from advisor.rounding import distinct_texts
 
 SLOWEST_HZ = 8.0
 """Least rate of elevator, pitch rate and angle of attack, whatever the aircraft."""
@@ -231,7 +231,7 @@ def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[P
 
 
 def _at(rate_hz: float) -> str:
-    return f"at {beside(rate_hz, SLOWEST_HZ, 1)[0]} Hz" if isfinite(rate_hz) else "hardly at all"
+    return f"at {distinct_texts(rate_hz, SLOWEST_HZ, 1)[0]} Hz" if isfinite(rate_hz) else "hardly at all"
 
 
 def _message(status: ChannelStatus) -> str:

@@ -5,8 +5,8 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
+from advisor.ascii_output import plain
 from advisor.mavlink.outgoing import Ids, Talker
-from advisor.plain import plain
 
 CHUNK_BYTES = 50
 MOST_CHUNKS = 4

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import platformdirs
 
+from advisor.atomic_file import write_atomically
 from advisor.mavlink.keeping import Door
-from advisor.whole_file import write_whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ def note(link: RunningLink) -> None:
         "key": link.door.key.hex(),
         "alone": link.alone,
     }
-    write_whole(path, json.dumps(content))
+    write_atomically(path, json.dumps(content))
 
 
 def forget(pid: int) -> None:

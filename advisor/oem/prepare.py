@@ -10,7 +10,6 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.motion import bank_at, gravity_in_plane, integrated
 from advisor.flight.record import Channel
 from advisor.flight.renewal import renewed
-from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.airspeed import Airspeed, airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking, why_left_out
 from advisor.oem.alpha_use import has as _has
@@ -18,6 +17,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.lost_input import restored
 from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.surface import Servo
+from advisor.standard_gravity import GRAVITY_M_S2
 
 OUTPUTS = ("alpha", "q", "a_z")
 """Outputs that count. The attitude is the pitch rate's integral: its residual remembers every error of

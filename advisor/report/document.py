@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Any
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, RuleResult
 from advisor.flight.flights import FlightHeard
 from advisor.oem.estimate import Estimate, NoEstimate

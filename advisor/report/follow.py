@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from advisor.campaign import Campaign, CampaignEvent, ManeuverJudged
-from advisor.campaign_state import CampaignState
+from advisor.campaign.campaign import Campaign, CampaignEvent, ManeuverJudged
+from advisor.campaign.state import CampaignState
 from advisor.flight.events import DataAgain, FlightBegan, ManeuverAgain, NoData, Notice, VehicleFound
 from advisor.flight.messages import Columns
 from advisor.report.text import maneuver_line, next_line, stop_line

@@ -8,9 +8,9 @@ from typing import Any
 import yaml
 
 from advisor.aircraft import Aircraft
+from advisor.atomic_file import write_atomically
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis
-from advisor.whole_file import write_whole
 
 
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
@@ -43,7 +43,7 @@ def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path
     """Write the improved simulator as a file that ``advisor`` and ``python -m sim`` load."""
     text = yaml.safe_dump(_plain(improved_file(diagnosis, aircraft)), sort_keys=False, allow_unicode=True)
     head = "# Written by `advisor gap`: the simulator with what the flight showed.\n"
-    write_whole(path, head + text)
+    write_atomically(path, head + text)
     return path
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from advisor.aircraft import Reference
-from advisor.campaign_state import CampaignState
+from advisor.campaign.state import CampaignState
 from advisor.flight.atmosphere import AirFlown, air_flown
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients

@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.events import Activity
 from advisor.flight.track import ChannelStatus

@@ -19,8 +19,8 @@ from advisor.gap.simulator.layout import (
     TURN,
 )  # fmt: skip
 from advisor.gap.simulator.surface import surface
-from advisor.gravity import GRAVITY_M_S2
 from advisor.simulators.protocol import Condition, Inputs, Replay
+from advisor.standard_gravity import GRAVITY_M_S2
 
 _RATE_S = 0.02
 """Interval of the stamps at which a replay is read where nothing was measured."""

@@ -9,8 +9,8 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.surface import above_start
-from advisor.gravity import GRAVITY_M_S2
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
+from advisor.standard_gravity import GRAVITY_M_S2
 
 _FARTHEST_RAD = 1.5
 """Angle of attack at which no motion is computed any further."""

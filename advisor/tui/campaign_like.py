@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Protocol
 
-from advisor.by_hand import ByHand
-from advisor.campaign_state import CampaignState
+from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.state import CampaignState
 from advisor.flight.messages import Columns
 from advisor.problems import Problem
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from advisor.campaign_state import JudgedManeuver
+from advisor.campaign.state import JudgedManeuver
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.tui.conducting import Report
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from advisor.campaign_state import CampaignState
+from advisor.campaign.state import CampaignState
 from advisor.problems import Problem
 from advisor.tui.hand import HandDecision
 from advisor.tui.source import LinkHealth, Order, Playback, Tempo

@@ -10,7 +10,7 @@ from queue import Empty, SimpleQueue
 from threading import Event
 from time import monotonic
 
-from advisor.by_hand import NOTHING, ByHand
+from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.chronicle import Chronicle
 from advisor.tui.conducting import Report, Tell

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from advisor.campaign_state import CampaignState
+from advisor.campaign.state import CampaignState
 
 LEAD_S = 1.0
 

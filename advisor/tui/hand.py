@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from advisor.campaign_state import CampaignState
+from advisor.campaign.state import CampaignState
 from advisor.tui.campaign_like import CampaignLike
 
 Verb = Literal["exclude", "include", "note", "mark", "begin", "end"]

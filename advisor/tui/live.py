@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from typing import Protocol
 
-from advisor.by_hand import ByHand
+from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.messages import Columns
 from advisor.marks_file import keep_by_hand
 from advisor.mavlink.health import LinkStatistics, Notice

@@ -14,7 +14,7 @@ from html import escape, unescape
 from math import inf
 from pathlib import Path
 
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
 from advisor.config import load_aircraft
 from advisor.flight.messages import Columns
 from advisor.mavlink.logs import open_log

@@ -8,7 +8,7 @@ from queue import Empty, SimpleQueue
 from threading import Event, Thread
 from typing import IO
 
-from advisor.by_hand import NOTHING, ByHand
+from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.changes import Changes
 from advisor.tui.conducting import Report, Tell

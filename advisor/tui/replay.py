@@ -5,7 +5,7 @@ from math import inf
 from pathlib import Path
 from threading import Event
 
-from advisor.by_hand import NOTHING, ByHand
+from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.flight.messages import Columns
 from advisor.marks_file import keep_on_all
 from advisor.tui.source import LinkHealth, Order, Playback, Tempo

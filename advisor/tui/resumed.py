@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from advisor.by_hand import ByHand
+from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.messages import Columns
 from advisor.log_series import LogSeries, of_flight
 from advisor.marks_file import keep_on_all

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol, runtime_checkable
 
-from advisor.by_hand import ByHand
+from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.messages import Columns
 
 Condition = Literal["good", "poor", "waiting", "lost", "ended"]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from advisor.aircraft import Aircraft
-from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict, limit_percent
 from advisor.problems import Problem
 from advisor.tui.source import LinkHealth, Playback, Tempo

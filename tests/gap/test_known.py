@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft_effects import LEAST, mistakes_in
 from advisor.config import parse_aircraft
-from advisor.effects import LEAST, mistakes_in
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, together, with_known
 from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS

@@ -16,8 +16,8 @@ from advisor.gap.noise.stamps import rates_of, stamp_jitter
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.air import moving_air
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.innovations import DIFFUSE, AirModel, cost_of, gains_of
+from advisor.standard_gravity import GRAVITY_M_S2
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

@@ -3,7 +3,7 @@
 import pytest
 
 from advisor.aircraft import Accelerometer, Aircraft, Alpha
-from advisor.effects import LEAST
+from advisor.aircraft_effects import LEAST
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Cause, Value, Where
 from advisor.gap.verdict.statements import in_simulator, what

@@ -20,9 +20,9 @@ from advisor.gap.search.screen import Screen
 from advisor.gap.search.speed import swings
 from advisor.gap.search.work import unasked, work
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THRUST
-from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.airspeed import airspeed
 from advisor.oem.recursion import accumulated
+from advisor.standard_gravity import GRAVITY_M_S2
 from tests.gap.generator import UAV, Setup, fly
 
 HEIGHTS = (80.0, 90.0, 85.0)

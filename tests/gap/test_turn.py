@@ -7,7 +7,7 @@ from advisor.aircraft import Aircraft
 from advisor.flight.derived_alpha import derived_alpha
 from advisor.flight.motion import gravity_in_plane
 from advisor.gap.diagnose import diagnose
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft import Aircraft
-from advisor.campaign import Campaign, ManeuverJudged
+from advisor.campaign.campaign import Campaign, ManeuverJudged
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream

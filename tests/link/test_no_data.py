@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
 from advisor.flight.messages import Columns
 from advisor.mavlink.link import Link
 from advisor.report.follow import follow

@@ -8,8 +8,8 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.aircraft import Aircraft
-from advisor.campaign import Campaign
-from advisor.campaign_state import CampaignState
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.state import CampaignState
 from advisor.mavlink.frames import FrameScanner
 from advisor.mavlink.logs import open_log
 from tests.flights import TWO, recorded

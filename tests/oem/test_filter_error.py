@@ -8,7 +8,7 @@ import pytest
 from scipy.linalg import expm
 
 from advisor.aircraft import Aircraft, Elevator
-from advisor.assessment import assess, cautions_of
+from advisor.campaign.single_maneuver import assess, cautions_of
 from advisor.flight.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate

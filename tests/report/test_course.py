@@ -3,7 +3,7 @@
 import numpy as np
 
 from advisor.aircraft import Aircraft
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
 from advisor.flight.record import Channel
 from advisor.mavlink.logs import open_log
 from advisor.report.page.course import CourseWatch, slices, thinned

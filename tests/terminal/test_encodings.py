@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from advisor import cli
-from advisor.plain import plain
+from advisor.ascii_output import plain
 from tests.terminal.processes import finished, flight
 
 Said = Callable[..., tuple[int, str, str]]

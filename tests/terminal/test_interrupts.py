@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from advisor.interrupt import Interrupted, in_order
 from advisor.mavlink.tlog import read_tlog
 from tests.link.builders import free_port, wait_until
 from tests.terminal.processes import flight, start
@@ -89,3 +90,16 @@ def test_a_signal_that_the_shell_ignores_stays_ignored() -> None:
         out, _ = process.communicate(timeout=60)
     assert process.returncode == 0
     assert out
+
+
+def test_an_interrupted_import_that_fails_is_an_interrupt() -> None:
+    with pytest.raises(Interrupted, match="Stopped"), in_order():
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except Interrupted as error:
+            raise ImportError("initialization failed") from error
+
+
+def test_an_error_without_a_signal_stays_this_error() -> None:
+    with pytest.raises(ImportError, match="no such library"), in_order():
+        raise ImportError("no such library")

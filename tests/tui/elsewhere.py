@@ -7,8 +7,8 @@ from math import inf
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
-from advisor.by_hand import NOTHING, ByHand
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.flight.messages import Columns
 from advisor.mavlink.logs import open_log
 from advisor.problems import UnusableInputError

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan
-from advisor.campaign_state import CampaignState, ChannelStatus, JudgedManeuver
+from advisor.campaign.state import CampaignState, ChannelStatus, JudgedManeuver
 from advisor.decision.verdict import (
     FlightTestVerdict,
     ManeuverVerdict,

@@ -11,7 +11,7 @@ from typing import Any
 from textual.pilot import Pilot
 from textual.widget import Widget
 
-from advisor.campaign_state import CampaignState
+from advisor.campaign.state import CampaignState
 from advisor.tui.app import AdvisorApp
 from advisor.tui.conductor import Conductor
 from advisor.tui.panes.lines import Lines

@@ -6,8 +6,8 @@ from queue import Empty, SimpleQueue
 
 import numpy as np
 
-from advisor.by_hand import NOTHING, ByHand, Remark
-from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
+from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import Mark
 from advisor.flight.messages import Columns

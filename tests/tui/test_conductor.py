@@ -8,8 +8,8 @@ from math import inf
 import numpy as np
 import pytest
 
-from advisor.by_hand import ByHand
-from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.messages import Columns
 from advisor.problems import UnusableInputError
 from advisor.tui.conducting import Report

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft import Aircraft
-from advisor.by_hand import ByHand
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import ByHand
 from advisor.marks_file import keep_by_hand, path_beside, read_by_hand
 from advisor.mavlink.logs import open_log
 from advisor.tui.app import AdvisorApp

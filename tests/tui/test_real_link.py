@@ -1,8 +1,8 @@
 """The application on a real link: the bundled aircraft flies as a process of its own, over UDP."""
 
 from advisor.aircraft import Aircraft
-from advisor.by_hand import ByHand
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import ByHand
 from advisor.demo import Demonstration
 from advisor.tui.app import AdvisorApp
 from advisor.tui.conductor import Conductor

@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from advisor.by_hand import NOTHING, Remark
+from advisor.campaign.hand_decisions import NOTHING, Remark
 from advisor.flight.messages import Columns
 from advisor.marks_file import path_beside, read_by_hand
 from advisor.tui.replay import STEP_S, LogPlayer

@@ -3,7 +3,7 @@
 import os
 import signal
 
-from advisor.by_hand import ByHand
+from advisor.campaign.hand_decisions import ByHand
 from advisor.tui.conducting import Report
 from advisor.tui.remote import RemoteConductor, Task
 from tests.tui import elsewhere

@@ -10,7 +10,7 @@ from advisor.gap.candidates.bent import bent
 from advisor.gap.candidates.between import ramps_and_steps, shift_moments, shift_stability
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.records.flights import Flights
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 BLOCK = "moment_equation"
 

@@ -1,7 +1,7 @@
 """The table of effects: what is known of each beforehand, however it is described.
 
 Its numbers (parameters, bounds, steps, the smallest size worth a name) are in the variants of its block. What
-an aircraft file may say of it is in ``advisor.effects``.
+an aircraft file may say of it is in ``advisor.aircraft_effects``.
 """
 
 from advisor.gap.candidates.trait import Need, Trait

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.layout import ALPHA_TRIM, REFERENCE, SCALED, SPEED
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 SPEED_CHANGE = 0.03
 """Relative change of air speed from which on it is looked at."""

@@ -22,8 +22,8 @@ from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, w
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
 from advisor.gap.records.usable import outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
-from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.place import ASSUMED_M_S
+from advisor.standard_gravity import GRAVITY_M_S2
 
 
 def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float = 1.0) -> Flights:

@@ -23,7 +23,7 @@ from advisor.gap.result import Cause, Value
 from advisor.gap.search.air import Air
 from advisor.gap.search.work import energy_speed, felt_along, mean_speed, unasked, work
 from advisor.gap.simulator.layout import SPEED
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 _COSTS = 0.05
 """Gap of a simulator at constant speed from which on it is worth a step of the waterfall ..."""

@@ -8,8 +8,8 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.records.grid import smooth
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THROTTLE, THRUST
-from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.recursion import accumulated
+from advisor.standard_gravity import GRAVITY_M_S2
 
 _ENGINES_S = (0.4, 1.5)
 """Lags of engines; those between are nearly mixtures of the two."""

@@ -24,7 +24,7 @@ from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.circle import cos_sin
 from advisor.gap.simulator.layout import AT, DISTURBED, LAYOUT, OTHER_LAYOUT, READ, SLOW, TRIM
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 LANES = 8
 """Simulations in a pack: the numbers in the widest registers."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 _NEEDED = ("a_z", "alpha", "theta")
 _LEAST_MANEUVERS = 3

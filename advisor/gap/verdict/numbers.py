@@ -19,7 +19,7 @@ from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.unnamed.remainder import removed_beyond_air
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.yardsticks import yardsticks
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 _UNCHANGED = 0.1
 """Share of the change of the derivatives that a manoeuvre may have and count as flown before it."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.result import Yardsticks
-from advisor.gravity import GRAVITY_M_S2
+from advisor.standard_gravity import GRAVITY_M_S2
 
 BAND = {"theta": np.radians(1.5), "q": np.radians(2.0), "a_z": 0.10 * GRAVITY_M_S2}
 """Tolerance of the short period by channel, SI."""

@@ -8,10 +8,10 @@ from advisor.aircraft import Aircraft, Elevator, Reference
 from advisor.flight.atmosphere import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis, Value
-from advisor.gravity import GRAVITY_M_S2
 from advisor.oem.coefficients import Coefficient, scales
 from advisor.problems import ConfigurationError
 from advisor.report.exports.servo import OF_THE_SERVO, Servo, servo_of
+from advisor.standard_gravity import GRAVITY_M_S2
 
 NORMAL_95 = 1.96
 """Half a 95 % interval of a normal distribution, in standard deviations."""

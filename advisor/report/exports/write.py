@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
+from advisor.atomic_file import write_atomically
 from advisor.gap.result import Diagnosis
 from advisor.problems import ConfigurationError
 from advisor.report.exports import ardupilot, matlab, sdf
@@ -18,7 +19,6 @@ from advisor.report.exports.improvement import (
 from advisor.report.exports.jsbsim.aircraft import aircraft_text
 from advisor.report.exports.jsbsim.run import Model, model_of
 from advisor.report.improved import write_improved
-from advisor.whole_file import write_whole
 
 FORMATS = ("jsbsim", "ardupilot", "sdf", "matlab", "aircraft")
 SERVO_FILES = (".parm", ".param")
@@ -111,7 +111,7 @@ def _carried_out(order: Order, diagnosis: Diagnosis, aircraft: Aircraft) -> Outc
         made = aircraft_text(improvement, _model(aircraft))
     else:
         made = _maker(order)(improvement)
-    write_whole(order.file, made.text)
+    write_atomically(order.file, made.text)
     return Outcome(order, made.left_out)
 
 

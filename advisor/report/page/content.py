@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from advisor.aircraft import Aircraft
-from advisor.campaign_state import CampaignState
+from advisor.campaign.state import CampaignState
 from advisor.report.page.course import Course
 
 Document = Mapping[str, Any]

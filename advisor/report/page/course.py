@@ -7,7 +7,7 @@ from math import ceil
 
 import numpy as np
 
-from advisor.campaign import Campaign
+from advisor.campaign.campaign import Campaign
 from advisor.flight.messages import Columns, FloatArray, cut
 from advisor.flight.record import Channel
 

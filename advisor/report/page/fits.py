@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from matplotlib.figure import Figure as Drawing
 
-from advisor.campaign_state import JudgedManeuver
+from advisor.campaign.state import JudgedManeuver
 from advisor.flight.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.report.document import NORMAL_95

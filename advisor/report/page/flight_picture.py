@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from advisor.campaign_state import JudgedManeuver
+from advisor.campaign.state import JudgedManeuver
 from advisor.flight.record import Channel
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content

@@ -3,8 +3,8 @@
 import numpy as np
 from textual.app import ComposeResult
 
-from advisor.beside import beside
 from advisor.decision.verdict import FlightTestVerdict
+from advisor.rounding import distinct_texts
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Level, Series
@@ -56,7 +56,7 @@ def _rule_lines(verdict: FlightTestVerdict) -> list[str]:
     for rule, progress in verdict.by_rule.items():
         known = [value for value in progress.history_percent if value is not None]
         limit = progress.limit_percent
-        now, most = beside(known[-1], limit) if known else ("", f"{limit:.0f}")
+        now, most = distinct_texts(known[-1], limit) if known else ("", f"{limit:.0f}")
         so_far = f"{now} %" if known else "too few"
         says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
         mark = "►" if rule == verdict.rule else " "

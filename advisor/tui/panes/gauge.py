@@ -1,7 +1,7 @@
 """The stop criterion against its limit, and how far there is to go."""
 
-from advisor.beside import beside
 from advisor.decision.verdict import FlightTestVerdict
+from advisor.rounding import distinct_texts
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
@@ -37,7 +37,7 @@ def _criterion(view: View) -> str:
         least = 2 if verdict.rule == "information" else view.aircraft.campaign.window
         return f"none yet: it needs {least} good manoeuvres (limit {percent(limit)})"
     side = "below" if value < limit else "above"
-    now, most = beside(value, limit)
+    now, most = distinct_texts(value, limit)
     return f"{now:>4} %  {bar(value, limit, 24)}  {side} the limit {most} %"
 
 

@@ -3,7 +3,7 @@
 from textual.app import ComposeResult
 from textual.containers import Vertical
 
-from advisor.campaign_state import JudgedManeuver
+from advisor.campaign.state import JudgedManeuver
 from advisor.tui.letters import HEIGHT, block_letters
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part

@@ -5,7 +5,7 @@ from textual.app import ComposeResult
 from textual.message import Message
 from textual.widgets import DataTable
 
-from advisor.campaign_state import JudgedManeuver
+from advisor.campaign.state import JudgedManeuver
 from advisor.oem.estimate import Estimate
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.pane import Pane

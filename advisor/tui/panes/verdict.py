@@ -3,10 +3,10 @@
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
-from advisor.beside import beside
-from advisor.campaign_state import JudgedManeuver
+from advisor.campaign.state import JudgedManeuver
 from advisor.oem.estimate import Estimate
 from advisor.report.digits import signed
+from advisor.rounding import distinct_texts
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
@@ -49,7 +49,7 @@ def _lines(judged: JudgedManeuver, of: str) -> list[str]:
     if judged.excluded_because:
         lines.append(f"excluded by hand: {judged.excluded_because}")
     for r in verdict.reasons:
-        value, limit = beside(r.value, r.limit, 3, "g")
+        value, limit = distinct_texts(r.value, r.limit, 3, "g")
         lines.append(f"  {r.code}: {value} (limit {limit})  {r.text}")
     if isinstance(estimate, Estimate):
         for name, fit in estimate.fits[0].items():

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft, Markers
-from advisor.by_hand import NOTHING, ByHand, Remark
-from advisor.campaign import Campaign
-from advisor.campaign_state import JudgedManeuver
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
+from advisor.campaign.state import JudgedManeuver
 from advisor.diagnosis import maneuvers_of
 from advisor.flight.marks import Mark
 from advisor.marks_file import read_by_hand, write_by_hand

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft, Elevator
-from advisor.campaign import Campaign
-from advisor.campaign_state import CampaignState
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.joint_estimate import NEWEST, Together
+from advisor.campaign.servo_lag import may_learn
+from advisor.campaign.state import CampaignState
 from advisor.flight.maneuver import Maneuver
-from advisor.learning import may_learn
 from advisor.mavlink.logs import open_log
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
-from advisor.together import NEWEST, Together
 from sim.scenario import Scenario
 from tests.flights import recorded
 

@@ -8,8 +8,8 @@ from rich.console import Console
 
 from advisor.gap.document import gap_document
 from advisor.gap.result import Verdict
+from advisor.gap.without_simulator import without_simulator
 from advisor.report.gap_screen import GapScreen
-from advisor.untested import without_simulator
 from tests.gap.test_report_screen import diagnosis
 
 

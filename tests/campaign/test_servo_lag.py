@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft, Elevator
+from advisor.campaign.servo_lag import learnt, reserved
 from advisor.decision.verdict import ManeuverVerdict
-from advisor.learning import learnt, reserved
 from advisor.oem.estimate import InstrumentEstimate
 from tests.decision.campaigns import estimate
 

@@ -5,9 +5,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from advisor.aircraft import Aircraft
-from advisor.assessment import assess
-from advisor.by_hand import NOTHING, ByHand, Remark
-from advisor.campaign_state import CampaignState, JudgedManeuver
+from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
+from advisor.campaign.joint_estimate import NEWEST, Together
+from advisor.campaign.running_estimate import Settling
+from advisor.campaign.servo_lag import learnt as learnt_from
+from advisor.campaign.servo_lag import may_learn, reserved
+from advisor.campaign.single_maneuver import assess
+from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.course import Course
 from advisor.decision.history import Flown
 from advisor.decision.judge import judge_campaign
@@ -34,13 +38,9 @@ from advisor.flight.marks import MARK_NOTICES, Mark
 from advisor.flight.messages import Columns
 from advisor.flight.record import Channel
 from advisor.flight.stream import FlightStream
-from advisor.learning import learnt as learnt_from
-from advisor.learning import may_learn, reserved
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
 from advisor.problems import Problem
-from advisor.settling import Settling
-from advisor.together import NEWEST, Together
 
 NOTICES = 1000
 """Sentences kept for the event log, 0.1 kB each: some hundred manoeuvres with all that is said of them."""
