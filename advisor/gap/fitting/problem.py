@@ -12,8 +12,9 @@ from advisor.gap.fitting.belief import HELD, NARROW, WIDE, pull_of
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
+from advisor.gap.simulator.pack import LANES
 from advisor.gap.simulator.reading import delayed, filtered, lane, packed, read_rows
-from advisor.gap.simulator.simulate import LANES, simulate
+from advisor.gap.simulator.simulate import simulate
 from advisor.gap.simulator.surface import surfaces
 
 _NO_DISTURBANCE = np.zeros((4, 0))
