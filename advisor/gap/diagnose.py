@@ -6,22 +6,22 @@ from dataclasses import dataclass, replace
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
-from advisor.gap.explain import explain, seen_once
-from advisor.gap.fitting.filed_speed import filed_speed
+from advisor.gap.explain import evidence_of_one_maneuver, explain
+from advisor.gap.fitting.prior_speed import prior_speed
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
+from advisor.gap.search.acceptance import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.search.baseline import at_another_speed, fit_baseline
-from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.search.stage import added_in
 from advisor.gap.search.waterfall import Progress
-from advisor.gap.unnamed.leftover import Leftover, of_the_wind
-from advisor.gap.unnamed.true_speed import true_over_read, true_speed_of
-from advisor.gap.unnamed.weight import Weight, weight_carried
-from advisor.gap.unnamed.wind import blows_along, wind_shear
+from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
+from advisor.gap.uncatalogued.unexplained import Unexplained, as_wind
+from advisor.gap.uncatalogued.weight_check import WeightReading, weight_reading
+from advisor.gap.uncatalogued.wind_shear import moves_along_path, wind_shear
 from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
@@ -107,20 +107,20 @@ def _explained(
         maneuvers = [_without_offset(m, kinematics.offset.rad) for m in maneuvers]
         flights = prepare(maneuvers, aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
-    speed = None if aircraft.reference_airspeed_m_s else filed_speed(problem, baseline)
+    speed = None if aircraft.reference_airspeed_m_s else prior_speed(problem, baseline)
     if speed is not None:
         aircraft = replace(aircraft, reference_airspeed_m_s=speed)
         flights = prepare(maneuvers, aircraft)
         problem, baseline = at_another_speed(problem, baseline, flights)
-    weight = weight_carried(flown, flights.reference_m_s)
-    over_read = true_over_read(true_speed_of(problem, baseline), weight)
+    weight = weight_reading(flown, flights.reference_m_s)
+    over_read = true_over_read(airspeed_scale_of(problem, baseline), weight)
     if over_read > 1.0:
         # An indicated air speed changes by less than the accelerometers say.
         flights = prepare(maneuvers, aircraft, over_read)
         problem, baseline = at_another_speed(problem, baseline, flights)
     if len(flights) == 1:
-        return seen_once(problem, baseline), kinematics
-    return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
+        return evidence_of_one_maneuver(problem, baseline), kinematics
+    return _checked_against_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
 
 
 def _refuse(flights: Flights) -> None:
@@ -160,36 +160,38 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
     return replace(maneuver, channels=channels)
 
 
-def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver], weight: Weight | None) -> Evidence:
+def _checked_against_path(e: Evidence, flown: Sequence[Maneuver], weight: WeightReading | None) -> Evidence:
     """What air speed and accelerometer are off by beside the path, without any aerodynamics."""
-    shear = wind_shear(flown, true_over_read(e.true_speed, weight))
-    of_gusts = shear is not None and shear.is_feigned and e.air is not None
-    if shear is not None and not of_gusts and not _feigns_wind(e.leftover):
+    shear = wind_shear(flown, true_over_read(e.airspeed_scale, weight))
+    of_gusts = shear is not None and shear.is_implausible and e.air is not None
+    if shear is not None and not of_gusts and not _mimics_wind(e.unexplained):
         # Air that moves swings the air speed, too: beside it what is not plain is worth a note, no more.
-        is_there = e.air is None or shear.is_plain
-        e = replace(e, shear=shear, leftover=of_the_wind(e.leftover) if is_there else e.leftover)
-    if e.leftover is not None and e.leftover.block == "force_equation" and blows_along(flown):
+        is_there = e.air is None or shear.exceeds_gusts
+        e = replace(e, shear=shear, unexplained=as_wind(e.unexplained) if is_there else e.unexplained)
+    if e.unexplained is not None and e.unexplained.block == "force_equation" and moves_along_path(flown):
         # A wind that changes is felt as lift that comes and goes.
-        e = replace(e, leftover=of_the_wind(e.leftover))
+        e = replace(e, unexplained=as_wind(e.unexplained))
     is_off = weight is not None and weight.is_off
     # What an accelerometer reads wrong looks like a force, too: a name for one is no other explanation.
     elsewhere = any(j.block != "force_equation" for j in added_in(e.stages))
-    is_scaled = e.true_speed is not None and e.true_speed.is_the_accelerometers(weight)
-    if e.leftover is None and (is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight)):
-        e = replace(e, leftover=Leftover("accelerometer", 1.0, (("accelerometer", 1.0),)))
+    is_scaled = e.airspeed_scale is not None and e.airspeed_scale.is_the_accelerometers(weight)
+    if e.unexplained is None and (is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight)):
+        e = replace(e, unexplained=Unexplained("accelerometer", 1.0, (("accelerometer", 1.0),)))
     return replace(e, weight=weight if is_off else None)
 
 
-def _reads_another_speed(e: Evidence, weight: Weight | None) -> bool:
+def _reads_another_speed(e: Evidence, weight: WeightReading | None) -> bool:
     """Whether air speed and accelerometer are too far apart for any air speed, and nothing else was named."""
     # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
     alone = len(e.stages) == 1 and not (e.air is not None and e.air.gust)
-    return alone and e.true_speed is not None and e.true_speed.is_wrong(e.air is not None, weight)
+    return alone and e.airspeed_scale is not None and e.airspeed_scale.is_wrong(e.air is not None, weight)
 
 
-def _feigns_wind(leftover: Leftover | None) -> bool:
+def _mimics_wind(unexplained: Unexplained | None) -> bool:
     """An attitude that is wrong, or an accelerometer by a law that is known: the climb, or the speed along
     the path, is computed from it, and parts from the air speed as in a wind that changes with height."""
-    if leftover is None:
+    if unexplained is None:
         return False
-    return leftover.block == "attitude_sensor" or (leftover.block == "accelerometer" and leftover.note != "")
+    return unexplained.block == "attitude_sensor" or (
+        unexplained.block == "accelerometer" and unexplained.note != ""
+    )

@@ -59,7 +59,7 @@ def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
 
 def _white(rows: Sequence[Rows], channel: int) -> float:
     """Standard deviation of the white part of an output's residual, from its differences."""
-    steps = np.concatenate([np.diff(r.left[r.channel == channel]) for r in rows])
+    steps = np.concatenate([np.diff(r.residual[r.channel == channel]) for r in rows])
     return robust_std(steps) / float(np.sqrt(2.0)) if len(steps) else 1.0
 
 
@@ -67,10 +67,10 @@ def _rows(place: Place) -> list[Rows]:
     found = []
     for m, speed in enumerate(speeds_of(place)):
         order = in_time(place.assembly, m)
-        channel, left = place.assembly.channel[order], place.residual[order].copy()
+        channel, residual = place.assembly.channel[order], place.residual[order].copy()
         for c in np.unique(channel):
-            left[channel == c] -= left[channel == c].mean()
-        found.append(Rows(place.assembly.t[order], channel, left, speed))
+            residual[channel == c] -= residual[channel == c].mean()
+        found.append(Rows(place.assembly.t[order], channel, residual, speed))
     return found
 
 

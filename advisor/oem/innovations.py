@@ -103,7 +103,7 @@ def gains_of(
 def cost_of(
     t: FloatArray,
     channel: np.ndarray,
-    left: FloatArray,
+    residual: FloatArray,
     system: FloatArray,
     air: AirModel,
     start_variance: float = DIFFUSE,
@@ -114,7 +114,7 @@ def cost_of(
     """
     observed = kalman.observed_by(system, air.seen_by_alpha, 0.0, 0.0)
     return float(
-        kalman.cost_along(t, channel, left, system, air.white**2, _memory(air), observed, start_variance)
+        kalman.cost_along(t, channel, residual, system, air.white**2, _memory(air), observed, start_variance)
     )
 
 

@@ -171,14 +171,14 @@ def gains_along(
 def cost_along(
     t: FloatArray,
     channel: np.ndarray,
-    left: FloatArray,
+    residual: FloatArray,
     system: FloatArray,
     white: FloatArray,
     memory: FloatArray,
     observed: FloatArray,
     start_variance: float,
 ) -> float:
-    """-2 log likelihood of a residual ``left``, shape (n,): no constant, and no rows that are still diffuse.
+    """-2 log likelihood of a ``residual``, shape (n,): no constant, and no rows that are still diffuse.
 
     What ``gains_along`` and ``pass_through`` say of it, in one pass in which nothing is kept. Arguments as
     there, but ``white``, shape (4,), is by channel.
@@ -202,7 +202,7 @@ def cost_along(
             for s in range(4, STATES):
                 x[s] *= keep
         seen = observed[channel[i]]
-        innovation = left[i]
+        innovation = residual[i]
         for s in range(STATES):
             innovation -= seen[s] * x[s]
         variance = _correct(P, gain, seen, white[channel[i]])

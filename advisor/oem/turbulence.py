@@ -23,7 +23,7 @@ class Rows:
     t: FloatArray
     channel: np.ndarray
     """Shape (n,), int64: index into ``model.response.OUTPUTS``."""
-    left: FloatArray
+    residual: FloatArray
     speed: float
 
 
@@ -32,7 +32,7 @@ def cost_of(
 ) -> float:
     """-2 log likelihood of residuals under an air model, summed over manoeuvres."""
     return sum(
-        innovations.cost_of(r.t, r.channel, r.left, np.append(system, r.speed), air, start_variance)
+        innovations.cost_of(r.t, r.channel, r.residual, np.append(system, r.speed), air, start_variance)
         for r in rows
     )
 
@@ -125,8 +125,8 @@ def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -
 
 def spread_of(rows: Sequence[Rows]) -> FloatArray:
     """Root mean square of each output's residuals, shape (4,); 1 for one that is missing."""
-    picked = [np.concatenate([r.left[r.channel == c] for r in rows]) for c in range(len(OUTPUTS))]
-    return np.array([max(float(np.sqrt(np.mean(left**2))), 1e-12) if len(left) else 1.0 for left in picked])
+    picked = [np.concatenate([r.residual[r.channel == c] for r in rows]) for c in range(len(OUTPUTS))]
+    return np.array([max(float(np.sqrt(np.mean(one**2))), 1e-12) if len(one) else 1.0 for one in picked])
 
 
 def _descend(

@@ -34,7 +34,9 @@ def instruments(
     alpha, q, a_z, theta = grid
     trim = alpha[0]
     vane = lagging(alpha - p[INDEX["vane_arm_m"]] * q / speed, h, float(p[INDEX["alpha_lag_s"]]))
-    bend, rate = swinging(surface, h, float(p[INDEX["mode_rad_s"]]), float(p[INDEX["mode_damping"]]))
+    bend, rate = second_order_response(
+        surface, h, float(p[INDEX["mode_rad_s"]]), float(p[INDEX["mode_damping"]])
+    )
     softness = 1.0 / p[INDEX["mode_rad_s"]] if p[INDEX["mode_rad_s"]] > 0.0 else 0.0
     of_rate = p[INDEX["mode_rate_gain"]] * softness
     gyro = (
@@ -69,7 +71,7 @@ def lagging(y: FloatArray, h: float, lag_s: float) -> FloatArray:
     return out
 
 
-def swinging(
+def second_order_response(
     surface: FloatArray, h: float, omega_rad_s: float, damping: float
 ) -> tuple[FloatArray, FloatArray]:
     """Bend of a structural mode that follows the surface, rad, and its rate: each of shape (n + 1,)."""

@@ -59,7 +59,7 @@ def as_flight(flight: Flight, replay: Replay, reference_m_s: float) -> Flight:
     trim = flight.trim.copy()
     trim[ALPHA_TRIM], trim[THETA_FROM] = float(replay.alpha[0]), float(replay.theta[0])
     trim[REFERENCE] = reference_m_s
-    return replace(flight, slow=slow, trim=trim, edges=np.empty((0, 4)), speed_doubt=np.empty((0, 0)))
+    return replace(flight, slow=slow, trim=trim, edges=np.empty((0, 4)), speed_error_factor=np.empty((0, 0)))
 
 
 def at_reference(flight: Flight, reference_m_s: float) -> Flight:

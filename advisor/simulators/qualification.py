@@ -50,10 +50,10 @@ def _error(problem: Problem, held: HeldOut, kept: Sequence[int], c: int) -> tupl
     for i in kept:
         flight = problem.flights.flights[i]
         out = flight.outputs[problem.channels[c]]
-        left = held.left[i][problem.rows(flight)[c]]
-        largest = max(largest, float(np.max(np.abs(_averaged(out.t, left)))))
+        residual = held.residuals[i][problem.rows(flight)[c]]
+        largest = max(largest, float(np.max(np.abs(_averaged(out.t, residual)))))
         measured.append(out.y)
-        simulated.append(out.y - left)
+        simulated.append(out.y - residual)
     one = yardsticks(problem.channels[c], np.concatenate(measured), np.concatenate(simulated))
     return largest, one.theil
 

@@ -14,7 +14,7 @@ from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import INDEX
 
-_APART = 0.1
+_TRIMS_DIFFER = 0.1
 """Share of the largest deviation from trim by which trims must differ to tell the two apart."""
 _SLOPES = {"Z_alpha2": "Z_alpha", "M_alpha2": "M_alpha", "M_delta2": "M_delta_e"}
 """The square of an angle, and the derivative that is linear in it."""
@@ -30,7 +30,7 @@ def bent(variant: Variant, flights: Flights) -> Variant:
         return variant
     trims = _trims_of(variant, flights)
     usual = float(np.median(trims))
-    if np.max(np.abs(np.array(trims) - usual)) < _APART * max(float(np.max(np.abs(m))) for m in moved):
+    if np.max(np.abs(np.array(trims) - usual)) < _TRIMS_DIFFER * max(float(np.max(np.abs(m))) for m in moved):
         return variant
     return replace(variant, likewise=(_about(usual, variant, trims),))
 
@@ -50,11 +50,11 @@ def _trims_of(variant: Variant, flights: Flights) -> list[float]:
 def _about(angle_rad: float, variant: Variant, trims: Sequence[float]) -> Variant:
     """(x + D)² and (x + D)³ written out in x, D being a manoeuvre's trim less the angle."""
     slope, (square, cube) = INDEX[_SLOPES[variant.entries[0]]], (INDEX[entry] for entry in variant.entries)
-    apart = np.array(trims) - angle_rad
+    offset = np.array(trims) - angle_rad
 
     def bend(p: FloatArray, values: Values, _: Flights) -> None:
-        p[:, slope] += (2.0 * values[0] + 3.0 * values[1] * apart) * apart
-        p[:, square] += values[0] + 3.0 * values[1] * apart
+        p[:, slope] += (2.0 * values[0] + 3.0 * values[1] * offset) * offset
+        p[:, square] += values[0] + 3.0 * values[1] * offset
         p[:, cube] += values[1]
 
     # A cube about each trim may be far too much about one angle; the square's is of the right size.

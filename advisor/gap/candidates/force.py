@@ -127,7 +127,7 @@ def _mass(flights: Flights) -> list[Variant]:
     together = ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES))
     inertia = {
         variant.fixed["at_s"]: replace(variant, starts=(), likewise=(), carried=lambda v: (v[0], v[0]))
-        for variant in steps_in(flights, _MASS_AND_INERTIA, _divided_apart)
+        for variant in steps_in(flights, _MASS_AND_INERTIA, _divided_separately)
     }
     return [
         replace(v, likewise=(*v.likewise, inertia[v.fixed["at_s"]])) if "at_s" in v.fixed else v
@@ -135,7 +135,7 @@ def _mass(flights: Flights) -> list[Variant]:
     ]
 
 
-def _divided_apart(p: FloatArray, values: Values, share: FloatArray) -> None:
+def _divided_separately(p: FloatArray, values: Values, share: FloatArray) -> None:
     """Forces by the mass, moments by the inertia, which grow by so much in manoeuvres that have it."""
     for change, growth in zip((divide(*_FORCES), divide(*_MOMENTS)), values, strict=True):
         change(p, growth * share)
@@ -158,7 +158,7 @@ def _stall(flights: Flights) -> list[Variant]:
             0.0,
             entries=("stall_rad", "stall_sharpness"),
             # A wing that has stalled already where the aircraft is trimmed.
-            beside_the_file=(0.65 * trim, 25.0) if trim > 0.0 else None,
+            start_at_prior=(0.65 * trim, 25.0) if trim > 0.0 else None,
         )
     ]
 

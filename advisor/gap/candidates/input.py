@@ -27,7 +27,7 @@ LATENCY = Variant(
     ((-0.004, 0.005),),
     0.0,
     entries=("latency_s",),
-    always=True,
+    is_nuisance=True,
 )
 """Part of every model: stamps have a resolution, and a command takes effect a few milliseconds after."""
 
@@ -121,13 +121,13 @@ _DEADBAND_ABOUT_TRIM = replace(
     apply_with=_deadband_about_trim,
     fixed={"about_trim": 1.0},
 )
-_TRIMS_APART_RAD = 0.005
+_TRIMS_DIFFER_RAD = 0.005
 """Between manoeuvres, from which on a band that moves with the trim is another than one that does not."""
 
 
 def variants(flights: Flights) -> list[Variant]:
     """Effects of the block, described to first order, and the lag to second order, too."""
-    moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_APART_RAD
+    moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_DIFFER_RAD
     return [
         DELAY,
         LAG,

@@ -24,8 +24,8 @@ PROPELLER = Variant(
     ((-100.0, 100.0), (-1.0, 2.0), (-10.0, 10.0)),
     0.0,
     entries=("M_thrust", "washed_share", "blown_share"),
-    spread=(5.0, 0.5, 3.0),
-    always=True,
+    prior_std=(5.0, 0.5, 3.0),
+    is_nuisance=True,
 )
 """Part of every model where the speed is measured. The thrust's share of the trim does not grow with V². An
 elevator in the propeller's wake meets more than the stream's dynamic pressure, by thrust over disk area

@@ -46,8 +46,8 @@ TRUE_AIR_SPEED = Variant(
     ((-0.7, 3.0),),
     0.0,
     entries=("speed_scale",),
-    spread=(0.02,),
-    always=True,
+    prior_std=(0.02,),
+    is_nuisance=True,
 )
 """Part of every model with α and a_z: by how much the true air speed is above the one that is read. An
 indicated air speed is not the true one, and a static port reads what the wing makes of the pressure there."""

@@ -35,8 +35,8 @@ def filters(flights: Flights) -> Variant:
         tuple((-2.0 * _FILTERS_S[c], 2.0 * _FILTERS_S[c]) for c in channels),
         0.0,
         entries=tuple(SKEWS[OUTPUTS.index(c)] for c in channels),
-        spread=tuple(_FILTERS_S[c] for c in channels),
-        always=True,
+        prior_std=tuple(_FILTERS_S[c] for c in channels),
+        is_nuisance=True,
     )
 
 

@@ -54,7 +54,7 @@ class Trait:
     """What is no effect and looks the same, and what tells the two apart ..."""
     imitated_without: tuple[str, str, str] | None = None
     """... and the same where an output is missing, which comes first."""
-    apart: Mapping[str, str] = field(default_factory=dict)
+    distinguished_by: Mapping[str, str] = field(default_factory=dict)
     """Effects further down the table that look alike: what tells each of them apart."""
     twin: str = ""
     """The one of them that differs by a rest only."""

@@ -43,15 +43,15 @@ class Variant:
     """Its bounds are physics, not the range of the search: a parameter may well lie there."""
     places: tuple[str, ...] = ()
     """Parameters that say where, when or how fast, not how much: at zero they are no "no effect"."""
-    spread: tuple[float, ...] = ()
+    prior_std: tuple[float, ...] = ()
     """Standard deviation about zero that each parameter has beforehand; none: anything goes."""
-    always: bool = False
+    is_nuisance: bool = False
     """Part of every model and never named: nobody's fault."""
     twin: Callable[[FloatArray, Sequence["Variant"], float], FloatArray] | None = None
     """For what derivatives imitate exactly: how all shared numbers, shape (k,), change per unit of the size
     while the motion stays the same, given the derivatives, the effects in the model and the reference speed.
     It is fitted with the aircraft file's derivatives trusted."""
-    beside_the_file: Values | None = None
+    start_at_prior: Values | None = None
     """For what fitted derivatives hide altogether: where the search begins beside the aircraft file's."""
     likewise: "tuple[Variant, ...]" = ()
     """Other descriptions, so near to this one that the full fit alone decides ..."""

@@ -24,7 +24,7 @@ _SHORTEST = 0.05
 """... but not below this: the cost is rough at the grid of the simulation."""
 _FURTHER = 5.0
 """How many times what a step promises the rest of a search may still bring."""
-_APART = 0.05
+_EDGES_DIFFER = 0.05
 """Of an interval, root mean square: where edges are found so far from where they were, the model is made
 linear about there before a search ends."""
 
@@ -40,7 +40,7 @@ class Fitted:
     """-2 log likelihood, profiled over the noise, priors included."""
     innovations: tuple[FloatArray, ...]
     """Per manoeuvre, what is left after offsets and edges, freed of what neighbours have in common."""
-    left: tuple[FloatArray, ...]
+    residuals: tuple[FloatArray, ...]
     """The same in the units of the channels."""
     information: FloatArray
     """Shape (k, k): of the shared numbers, own numbers eliminated."""
@@ -48,9 +48,9 @@ class Fitted:
     iterations: int
 
 
-def noise_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+def residual_noise(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Shape (channels,): RMS of what is left, not below the smallest noise."""
-    return above_floor(problem, rms_of(problem, lefts))
+    return above_floor(problem, rms_of(problem, residuals))
 
 
 def above_floor(problem: Problem, noise: FloatArray) -> FloatArray:
@@ -58,12 +58,12 @@ def above_floor(problem: Problem, noise: FloatArray) -> FloatArray:
     return np.maximum(noise, 1e-7 if problem.smallest_noise is None else problem.smallest_noise)
 
 
-def rms_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+def rms_of(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Shape (channels,): root mean square over all manoeuvres."""
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
-    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+    for flight, residual in zip(problem.flights.flights, residuals, strict=True):
         for c, rows in enumerate(problem.rows(flight)):
-            power[c] += float(left[rows] @ left[rows])
+            power[c] += float(residual[rows] @ residual[rows])
             count[c] += rows.stop - rows.start
     return np.asarray(np.sqrt(power / np.maximum(count, 1.0)))
 
@@ -71,13 +71,13 @@ def rms_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
 def cost_of(
     problem: Problem,
     point: Point,
-    lefts: Sequence[FloatArray],
+    residuals: Sequence[FloatArray],
     owns: Sequence[FloatArray],
     linear: Sequence[Linear],
 ) -> float:
     """-2 log likelihood profiled over the noise, Σ_c N_c log σ_c², plus the priors."""
-    noise = noise_of(problem, lefts)
-    power = problem.disbelief(point) + sum(
+    noise = residual_noise(problem, residuals)
+    power = problem.prior_cost(point) + sum(
         float(np.sum(b.prior * o**2)) for b, o in zip(linear, owns, strict=True)
     )
     return float(np.sum(counts(problem) * 2.0 * np.log(noise))) + power
@@ -102,7 +102,7 @@ def fit(
         Manoeuvres that have no say: the cost is that of the others.
     """
     linear = _without(linearise(problem, start), aside)
-    weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
+    weights = 1.0 / (residual_noise(problem, [b.residual for b in linear]) if noise is None else noise)
     kept = _settled(problem, start, linear, weights)
     length, done, answered_at = 1.0, 1, start
     while done < iterations and length > _SHORTEST:
@@ -125,15 +125,15 @@ def fit(
         block.measured.after(still, own) for block, own in zip(kept.linear, kept.step.free, strict=True)
     )
     information = solve_blocks(problem, kept.linear, 1.0 / kept.noise, kept.point).information
-    return Fitted(kept.point, kept.noise, kept.cost, kept.left, measured, information, kept.linear, done)
+    return Fitted(kept.point, kept.noise, kept.cost, kept.residuals, measured, information, kept.linear, done)
 
 
-def _are_apart(one: Point, other: Point) -> bool:
+def _edges_differ(one: Point, other: Point) -> bool:
     """Whether edges of two points differ, those that are not known being at their stamps."""
     assert other.edges is not None
     there = np.concatenate(other.edges)
-    apart = there if one.edges is None else there - np.concatenate(one.edges)
-    return float(np.sum(apart**2)) > _APART**2 * len(apart)
+    shift = there if one.edges is None else there - np.concatenate(one.edges)
+    return float(np.sum(shift**2)) > _EDGES_DIFFER**2 * len(shift)
 
 
 def _without(linear: tuple[Linear, ...], aside: Collection[int]) -> tuple[Linear, ...]:
@@ -158,7 +158,7 @@ class _Place:
     weights: FloatArray
     """Shape (channels,): of the model after the step."""
     step: Step
-    left: tuple[FloatArray, ...]
+    residuals: tuple[FloatArray, ...]
     """Per manoeuvre, own numbers refitted."""
     noise: FloatArray
     cost: float
@@ -172,11 +172,18 @@ def _settled(problem: Problem, point: Point, linear: tuple[Linear, ...], weights
         before, weights = weights, 1.0 / above_floor(problem, np.sqrt(step.squares_ahead(linear) / samples))
         if np.max(np.abs(np.log(weights / before))) < _SETTLED:
             break
-    left = tuple(block.left - block.own @ own for block, own in zip(linear, step.free, strict=True))
-    cost = cost_of(problem, point, left, step.free, linear)
+    residuals = tuple(block.residual - block.own @ own for block, own in zip(linear, step.free, strict=True))
+    cost = cost_of(problem, point, residuals, step.free, linear)
     there = replace(point, edges=problem.with_own(point, step.free).edges)
     return _Place(
-        there, not _are_apart(point, there), linear, weights, step, left, noise_of(problem, left), cost
+        there,
+        not _edges_differ(point, there),
+        linear,
+        weights,
+        step,
+        residuals,
+        residual_noise(problem, residuals),
+        cost,
     )
 
 
@@ -194,6 +201,6 @@ def evidence_of(problem: Problem, fitted: Fitted) -> float:
             continue
         flat, edges = block.own[:, free] * w, block.own[:, ~free] * w
         q = np.linalg.qr(flat)[0]
-        left = (edges - q @ (q.T @ edges)) / np.sqrt(block.prior[~free])
-        total += float(np.linalg.slogdet(np.eye(left.shape[1]) + left.T @ left)[1])
+        freed = (edges - q @ (q.T @ edges)) / np.sqrt(block.prior[~free])
+        total += float(np.linalg.slogdet(np.eye(freed.shape[1]) + freed.T @ freed)[1])
     return total

@@ -24,7 +24,7 @@ them leaves the range in which the model is linear."""
 _ANCHOR = 1e-3
 """Weight of "no effect" beside what all manoeuvres say of an effect's parameter; but not more than that of a
 guess as far off as the parameter is large."""
-_LONE = 0.9
+_SOLE_SHARE = 0.9
 """Share of the information on a number from which on a single manoeuvre tells of it."""
 _NEEDED = (SPEED, THROTTLE, HEIGHT)
 """Slow inputs that effects need."""
@@ -34,7 +34,7 @@ _NEEDED = (SPEED, THROTTLE, HEIGHT)
 class HeldOut:
     """Residuals of every manoeuvre as predicted by a fit of the others."""
 
-    left: tuple[FloatArray, ...]
+    residuals: tuple[FloatArray, ...]
     """Per manoeuvre, stacked channels, in their units."""
     innovations: tuple[FloatArray, ...]
     """The same after the filter."""
@@ -63,27 +63,27 @@ def folds_for(flights: Flights) -> list[list[int]]:
     """
     power = np.array([np.var(f.slow[list(_NEEDED)], axis=1) for f in flights.flights])
     shares = power / np.maximum(np.sum(power, axis=0), 1e-300)
-    confirmable = shares[:, np.max(shares, axis=0) < _LONE]
+    confirmable = shares[:, np.max(shares, axis=0) < _SOLE_SHARE]
 
     def together(folds: list[list[int]]) -> float:
         return max(float(np.max(np.sum(confirmable[fold], axis=0), initial=0.0)) for fold in folds)
 
     n = len(flights)
     interleaved, shifted = folds_of(n), folds_of(n, shifted=True)
-    return shifted if together(interleaved) > _LONE > together(shifted) else interleaved
+    return shifted if together(interleaved) > _SOLE_SHARE > together(shifted) else interleaved
 
 
 def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None) -> HeldOut:
     """Rotate every fold out. With a single manoeuvre the fit itself is returned: nothing can be kept out."""
     n = len(problem.flights)
-    lefts: list[FloatArray] = [np.empty(0)] * n
+    residuals: list[FloatArray] = [np.empty(0)] * n
     innovations: list[FloatArray] = [np.empty(0)] * n
     for fold, step, moved in _without_each(problem, fitted, folds):
         for i in fold:
             own = moved[i] @ np.append(-step, 1.0)
             innovations[i] = fitted.linear[i].after(step, own)
-            lefts[i] = fitted.linear[i].measured.after(step, own)
-    return held_out(problem, lefts, innovations)
+            residuals[i] = fitted.linear[i].measured.after(step, own)
+    return held_out(problem, residuals, innovations)
 
 
 def points_without(
@@ -110,12 +110,12 @@ def _without_each(
     information, gradients = inner[:, :-1, :-1], inner[:, :-1, -1]
     total_H, total_g = np.sum(information, axis=0), np.sum(gradients, axis=0)
     k = len(DERIVATIVES)
-    pull, missed = problem.pull(fitted.point)
-    total_H += np.diag(pull)
-    total_g += pull * missed
+    precision, departure = problem.prior_of(fitted.point)
+    total_H += np.diag(precision)
+    total_g += precision * departure
     lower, upper = bounds_of(fitted.point)
     far = fitted.point.shared - _without_effect(fitted.point)
-    anchor = np.minimum(_ANCHOR * told_beside_others(total_H), 1.0 / np.maximum(far**2, 1e-300))
+    anchor = np.minimum(_ANCHOR * marginal_information(total_H), 1.0 / np.maximum(far**2, 1e-300))
     anchor[:k] = 0.0
     # Where a response has kinks, the search refuses what the linear model proposes: it is no part of the fit.
     least, most = lower - fitted.point.shared, upper - fitted.point.shared
@@ -138,46 +138,46 @@ def _without_effect(point: Point) -> FloatArray:
     return np.where(stays, point.shared, 0.0)
 
 
-def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, witnesses: Collection[int]) -> HeldOut:
+def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, sole_maneuvers: Collection[int]) -> HeldOut:
     """The same, but of some manoeuvres what the fit itself leaves: what they alone tell no other predicts."""
 
     def chosen(inside: Sequence[FloatArray], kept_out: Sequence[FloatArray]) -> list[FloatArray]:
         pairs = enumerate(zip(inside, kept_out, strict=True))
-        return [seen if i in witnesses else unseen for i, (seen, unseen) in pairs]
+        return [seen if i in sole_maneuvers else unseen for i, (seen, unseen) in pairs]
 
     innovations = chosen(fitted.innovations, held.innovations)
-    return held_out(problem, chosen(fitted.left, held.left), innovations)
+    return held_out(problem, chosen(fitted.residuals, held.residuals), innovations)
 
 
-def lone_witness(fitted: Fitted, index: int) -> int | None:
+def sole_informative_maneuver(fitted: Fitted, index: int) -> int | None:
     """The one manoeuvre that tells of a shared number, if no other could confirm it."""
     weights = 1.0 / fitted.noise
     told = [own_eliminated(block, weights)[0][index, index] for block in fitted.linear]
-    return int(np.argmax(told)) if max(told) > _LONE * sum(told) else None
+    return int(np.argmax(told)) if max(told) > _SOLE_SHARE * sum(told) else None
 
 
 def held_out(
-    problem: Problem, lefts: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
+    problem: Problem, residuals: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
 ) -> HeldOut:
     """Residuals with their mean squares; without innovations they are their own."""
-    whitened = tuple(lefts if innovations is None else innovations)
+    whitened = tuple(residuals if innovations is None else innovations)
     return HeldOut(
-        tuple(lefts), whitened,
-        rms_of(problem, lefts) ** 2, rms_of(problem, whitened) ** 2, mean_squares(problem, lefts),
+        tuple(residuals), whitened,
+        rms_of(problem, residuals) ** 2, rms_of(problem, whitened) ** 2, mean_squares(problem, residuals),
     )  # fmt: skip
 
 
-def mean_squares(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+def mean_squares(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Shape (manoeuvres, channels)."""
     return np.array(
         [
-            [float(np.mean(left[rows] ** 2)) for rows in problem.rows(f)]
-            for f, left in zip(problem.flights.flights, lefts, strict=True)
+            [float(np.mean(residual[rows] ** 2)) for rows in problem.rows(f)]
+            for f, residual in zip(problem.flights.flights, residuals, strict=True)
         ]
     )
 
 
-def told_beside_others(H: FloatArray) -> FloatArray:
+def marginal_information(H: FloatArray) -> FloatArray:
     """Shape (k,): information on each number with all others unknown, 1 / (H⁻¹)_jj."""
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     widened = np.diag(np.linalg.pinv(H / np.outer(scale, scale), hermitian=True))

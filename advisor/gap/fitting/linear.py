@@ -55,7 +55,7 @@ class Columns:
         return self.columns[:, self.m : -1]
 
     @property
-    def left(self) -> FloatArray:
+    def residual(self) -> FloatArray:
         """Shape (rows,): measured minus simulated."""
         return self.columns[:, -1]
 
@@ -153,7 +153,7 @@ def measured_columns(
         Shape (rows, m - edges): to own numbers other than edges, where they are known.
     """
     flight, k = problem.flights.flights[i], len(steps)
-    names = () if answers is not None else (*NUISANCES, *_SPEEDS[: len(flight.speed_doubt)])
+    names = () if answers is not None else (*NUISANCES, *_SPEEDS[: len(flight.speed_error_factor)])
     moves = np.array([*_OWN_STEPS, *[_SPEED_STEP * flight.slow[SPEED, 0]] * len(_SPEEDS)])[: len(names)]
     others = np.tile(p, (len(names), 1))
     others[range(len(names)), [INDEX[name] for name in names]] += moves
@@ -164,15 +164,15 @@ def measured_columns(
     read = problem.read_all(flight, packs, rows[:-1])
     moved = np.concatenate([[0.0], steps, moves])
     seen = differences(read, problem.measured(flight), np.zeros(len(moved), dtype=np.int64), moved)
-    left, shared = seen[:, :1], seen[:, 1 : k + 1]
+    residual, shared = seen[:, :1], seen[:, 1 : k + 1]
     if answers is None:
         own, speeds = seen[:, k + 1 :][:, : len(NUISANCES)], seen[:, k + 1 + len(NUISANCES) :]
-        answers = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_doubt])
+        answers = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_error_factor])
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
     if edges is not None:
         with_them = rows[[0, *(1 + k for k in times)]]
         shared[:, times] += _turned(problem, flight, pulse, edges, with_them) / steps[times]
-    columns = np.hstack([answers, _answers_to_edges(problem, flight, pulse, p), shared, left])
+    columns = np.hstack([answers, _answers_to_edges(problem, flight, pulse, p), shared, residual])
     return Columns(columns, columns.shape[1] - k - 1)
 
 
@@ -216,7 +216,7 @@ def _own_prior(problem: Problem, flight: Flight, own: int) -> FloatArray:
     # Where stamps were lost, a held command may have changed at any of them.
     held = (_HELD_JITTER_S**2 + problem.jitter_s**2 + _EDGE_VARIANCE * lost**2) / intervals**2
     edges = own - len(intervals)
-    prior[edges - len(flight.speed_doubt) : edges] = 1.0
+    prior[edges - len(flight.speed_error_factor) : edges] = 1.0
     prior[edges:] = 1.0 / (held if problem.held else _EDGE_VARIANCE)
     return prior
 

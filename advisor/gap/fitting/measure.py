@@ -30,15 +30,15 @@ def whole_gap(mean_square: FloatArray, floor: FloatArray) -> float:
     return float(np.mean(gap_of(mean_square, floor)))
 
 
-def by_phase(problem: Problem, lefts: Sequence[FloatArray], floor: FloatArray) -> Mapping[str, float]:
+def by_phase(problem: Problem, residuals: Sequence[FloatArray], floor: FloatArray) -> Mapping[str, float]:
     """Gap just after the steps, between them, and after the last one."""
     sums = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
     counts = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
-    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+    for flight, residual in zip(problem.flights.flights, residuals, strict=True):
         for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
             t = flight.outputs[name].t
             for phase, inside in _phases(flight, t).items():
-                sums[phase][c] += float(np.sum(left[rows][inside] ** 2))
+                sums[phase][c] += float(np.sum(residual[rows][inside] ** 2))
                 counts[phase][c] += np.count_nonzero(inside)
     return {
         phase: whole_gap(sums[phase] / np.maximum(counts[phase], 1.0), floor)
@@ -60,14 +60,14 @@ def _phases(flight: Flight, t: FloatArray) -> Mapping[str, FloatArray]:
     }
 
 
-def by_band(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[tuple[float, float, float], ...]:
+def by_band(problem: Problem, residuals: Sequence[FloatArray]) -> tuple[tuple[float, float, float], ...]:
     """From, to, share of the power of the pitch-rate error."""
     if "q" not in problem.channels:
         return ()
     power = np.zeros(len(_BANDS_HZ))
     c = problem.channels.index("q")
-    for flight, left in zip(problem.flights.flights, lefts, strict=True):
-        t, y = flight.outputs["q"].t, left[problem.rows(flight)[c]]
+    for flight, residual in zip(problem.flights.flights, residuals, strict=True):
+        t, y = flight.outputs["q"].t, residual[problem.rows(flight)[c]]
         step = float(np.median(np.diff(t)))
         even = np.interp(np.arange(t[0], t[-1], step), t, y)
         spectrum = np.abs(np.fft.rfft(even * np.hanning(len(even)))) ** 2
@@ -92,7 +92,9 @@ def shrink_interval(before: FloatArray, after: FloatArray, floor: FloatArray) ->
     rng = np.random.default_rng(20)
     n = len(before)
     drawn = rng.integers(0, n, (2000, n))
-    was, now = (np.mean(gap_of(np.mean(left[drawn], axis=1), floor), axis=1) for left in (before, after))
+    was, now = (
+        np.mean(gap_of(np.mean(residual[drawn], axis=1), floor), axis=1) for residual in (before, after)
+    )
     percent = 100.0 * (1.0 - now / np.maximum(was, 1e-12))
     low, high = np.percentile(percent, [2.5, 97.5])
     return float(max(low, -100.0)), float(min(high, 100.0))
@@ -100,9 +102,9 @@ def shrink_interval(before: FloatArray, after: FloatArray, floor: FloatArray) ->
 
 def file_model_of(problem: Problem, fitted: Fitted) -> HeldOut | None:
     """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
-    if problem.believed is None:
+    if problem.prior_derivatives is None:
         return None
-    return own_refitted(problem, replace(fitted.point, derivatives=problem.believed), fitted.noise)
+    return own_refitted(problem, replace(fitted.point, derivatives=problem.prior_derivatives), fitted.noise)
 
 
 def own_refitted(problem: Problem, point: Point, noise: FloatArray) -> HeldOut:
@@ -110,11 +112,11 @@ def own_refitted(problem: Problem, point: Point, noise: FloatArray) -> HeldOut:
 
     ``noise``, shape (channels,), weighs the channels.
     """
-    lefts: list[FloatArray] = []
+    residuals: list[FloatArray] = []
     for _ in range(3):
         linear = linearise(problem, point)
         owns = solve_blocks(problem, linear, 1.0 / noise, point).free
         still = np.zeros(len(point.shared))
-        lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
+        residuals = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
         point = replace(point, own=point.own + np.array([o[:4] for o in owns]))
-    return held_out(problem, lefts)
+    return held_out(problem, residuals)

@@ -126,7 +126,7 @@ class Neighbourhood:
         self.information = np.zeros((k, k))
         for i, (flight, block) in enumerate(zip(problem.flights.flights, fitted.linear, strict=True)):
             coarser, by_row, m = flight.coarser(), row_weights(problem, i, weights), block.m
-            measured = problem.fly_and_read(coarser, self.p[i : i + 1])[:, 0] + block.measured.left
+            measured = problem.fly_and_read(coarser, self.p[i : i + 1])[:, 0] + block.measured.residual
             products = block.products * weights[:, None, None] ** 2
             inner = np.sum(products, axis=0)
             chol = factor_of(inner[:m, :m].copy(), block.prior)
@@ -187,8 +187,8 @@ class Neighbourhood:
         of, begin = [j for j, _ in flown.points], [run.start for _, run in flown.points]
         Ar[:, :, of] = along[:, :m, begin]
         rows = self.problem.rows(kept.flight)
-        left = flown.columns[:, begin]
-        rr[:, of] = [np.einsum("ij,ij->j", left[r], left[r]) for r in rows]
+        residual = flown.columns[:, begin]
+        rr[:, of] = [np.einsum("ij,ij->j", residual[r], residual[r]) for r in rows]
         after = rr + np.sum(own * (kept.products[:, :m, :m] @ own - 2.0 * Ar), axis=1)
         return np.asarray(np.maximum(after, 0.0) * self.fitted.noise[:, None] ** 2)
 
@@ -212,16 +212,16 @@ class Neighbourhood:
         JX: FloatArray,
         XX: FloatArray,
     ) -> Place:
-        pull, missed = self.problem.pull(a.point)
+        precision, departure = self.problem.prior_of(a.point)
         known = len(self.information)
-        H, g = np.diag(pull), pull * missed
+        H, g = np.diag(precision), precision * departure
         H[:known, :known] += self.information
         H[:known, known:] += JX[:, 1:]
         H[known:, :known] += JX[:, 1:].T
         H[known:, known:] += XX[1:, 1:]
         g += np.concatenate([JX[:, 0], XX[1:, 0]])
         there = self.problem.with_own(a.point, owns)
-        return Place(there, float(cost + pull @ missed**2), noise, H, g)
+        return Place(there, float(cost + precision @ departure**2), noise, H, g)
 
     def _flown(self, i: int, asked: Sequence[_Asked], failed: np.ndarray) -> _Flown:
         """What of manoeuvre ``i`` must be flown.
@@ -258,8 +258,8 @@ class Neighbourhood:
         best = []
         for i, kept in enumerate(self.kept):
             rows = np.stack([q[i] for q in p])
-            left = kept.measured[:, None] - problem.fly_and_read(kept.flight, rows)
-            r = problem.innovations(i, left) * kept.weights[:, None]
+            residual = kept.measured[:, None] - problem.fly_and_read(kept.flight, rows)
+            r = problem.innovations(i, residual) * kept.weights[:, None]
             Ar = kept.own.T @ r
             costs = np.sum(r * r, axis=0) - np.sum(Ar * solved(kept.chol, Ar), axis=0)
             # Without play all sides are alike but for rounding: the first is taken.

@@ -8,7 +8,7 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.belief import HELD, NARROW, WIDE, pull_of
+from advisor.gap.fitting.prior import ERROR_IF_FIXED, ERROR_IF_RIGHT, ERROR_IF_WRONG, prior_precision
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
@@ -84,7 +84,7 @@ class Point:
 
     def with_only(self, names: Collection[str]) -> "Point":
         """The model with some of its effects; what is part of every model stays."""
-        keep = [k for k, v in enumerate(self.effects) if v.always or v.effect in names]
+        keep = [k for k, v in enumerate(self.effects) if v.is_nuisance or v.effect in names]
         return replace(
             self, effects=tuple(self.effects[k] for k in keep), values=tuple(self.values[k] for k in keep)
         )
@@ -103,9 +103,9 @@ class Problem:
     """Shape (channels,): noise of the instruments alone, without what the air adds."""
     smallest_noise: FloatArray | None = None
     """Shape (channels,): noise of the innovations is never taken to be below this."""
-    believed: FloatArray | None = None
+    prior_derivatives: FloatArray | None = None
     """Shape (6,): derivatives of the aircraft file, when it has all ..."""
-    holds_the_file: bool = False
+    derivatives_fixed: bool = False
     """... and whether fitted ones are held there."""
     arms_in_file: frozenset[str] = frozenset()
     """Effects whose size the aircraft file states: arms of the vane and the accelerometer."""
@@ -135,7 +135,7 @@ class Problem:
         edges = tuple(own[len(own) - len(flight.edges) :] for own, flight in found)
         return replace(point, own=point.own + np.array([own[:n] for own in owns]), edges=edges)
 
-    def pull(self, point: Point) -> tuple[FloatArray, FloatArray]:
+    def prior_of(self, point: Point) -> tuple[FloatArray, FloatArray]:
         """Inverse variances with which shared numbers are drawn to what is expected, and what they lack.
 
         Both shape (k,). The derivatives are drawn to the file's, what is part of every model to nothing; far
@@ -143,24 +143,30 @@ class Problem:
         effect in the model that derivatives imitate exactly, the file's are right within their tolerance.
         """
         inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
-        if self.believed is not None:
+        if self.prior_derivatives is not None:
             trusted = any(effect.twin is not None for effect in point.effects)
-            tolerance = HELD if self.holds_the_file else NARROW if trusted else WIDE
-            inverse, expected = [pull_of(self.believed, tolerance)], [self.believed]
+            tolerance = (
+                ERROR_IF_FIXED if self.derivatives_fixed else ERROR_IF_RIGHT if trusted else ERROR_IF_WRONG
+            )
+            inverse, expected = [prior_precision(self.prior_derivatives, tolerance)], [self.prior_derivatives]
         for effect, values in zip(point.effects, point.values, strict=True):
-            inverse.append(1.0 / np.array(effect.spread) ** 2 if effect.spread else np.zeros(len(values)))
+            inverse.append(
+                1.0 / np.array(effect.prior_std) ** 2 if effect.prior_std else np.zeros(len(values))
+            )
             expected.append(np.zeros(len(values)))
         return np.concatenate(inverse), np.concatenate(expected) - point.shared
 
-    def disbelief(self, point: Point) -> float:
+    def prior_cost(self, point: Point) -> float:
         """What the pull adds to the cost."""
-        inverse, missed = self.pull(point)
-        return float(inverse @ missed**2)
+        inverse, departure = self.prior_of(point)
+        return float(inverse @ departure**2)
 
-    def strangeness(self, point: Point) -> float:
+    def nuisance_cost(self, point: Point) -> float:
         """The part of it that numbers have which are part of every model, beside what they usually are."""
-        with_spread = (pair for pair in zip(point.effects, point.values, strict=True) if pair[0].spread)
-        return float(sum(np.sum((values / np.array(effect.spread)) ** 2) for effect, values in with_spread))
+        with_spread = (pair for pair in zip(point.effects, point.values, strict=True) if pair[0].prior_std)
+        return float(
+            sum(np.sum((values / np.array(effect.prior_std)) ** 2) for effect, values in with_spread)
+        )
 
     def driving(self, point: Point) -> FloatArray:
         """Shape (manoeuvres, entries): the numbers each manoeuvre is simulated with."""

@@ -14,7 +14,7 @@ _SPAN = 10
 """Steps over which the equations are integrated, to spare derivatives of the data."""
 _RIDGE = 1e-6
 """Keeps directions that a flight does not excite from running away."""
-_PLAIN = 0.01
+_IN_STEP = 0.01
 """Share of the rates' power that is left, both equations' together, where the channels belong together ..."""
 _BETTER = 0.5
 """... and the share of that which one of them shifted must leave at most."""
@@ -44,22 +44,22 @@ def regressions(flights: Flights) -> list[FloatArray]:
     Where a channel is late by a good part of a radian of the short period, the regression goes astray, even
     in sign, and no search comes back from there: then the one with a channel shifted is a start, too.
     """
-    plain, left = _regressed(flights, Late())
-    if left < _PLAIN:
-        return [plain]
+    as_stamped, left_share = _regressed(flights, Late())
+    if left_share < _IN_STEP:
+        return [as_stamped]
     shifted, less = min((_regressed(flights, late) for late in _ONE_LATE), key=lambda found: found[1])
-    return [plain, shifted] if less < _BETTER * left else [plain]
+    return [as_stamped, shifted] if less < _BETTER * left_share else [as_stamped]
 
 
 def _regressed(flights: Flights, late: Late) -> tuple[FloatArray, float]:
     """Derivatives, shape (6,), and the product of the shares of power that the two equations leave."""
     systems = [_system(flight, late) for flight in flights.flights]
-    moment, left = _solved([s[0] for s in systems], [s[1] for s in systems])
+    moment, left_share = _solved([s[0] for s in systems], [s[1] for s in systems])
     force, left_of_lift = np.zeros(2), 1.0
     if "alpha" in flights.channels:
         force, left_of_lift = _solved([s[2] for s in systems], [s[3] for s in systems])
     damped = min(force[0], -0.1), min(moment[1], -0.05)
-    return np.array([damped[0], 0.0, force[1], moment[0], damped[1], moment[2]]), left * left_of_lift
+    return np.array([damped[0], 0.0, force[1], moment[0], damped[1], moment[2]]), left_share * left_of_lift
 
 
 def _system(f: Flight, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -87,5 +87,5 @@ def _solved(rows: list[FloatArray], rates: list[FloatArray]) -> tuple[FloatArray
     scale = np.sqrt(np.mean(X**2, axis=0)) + 1e-12
     Xs = X / scale
     found = np.linalg.solve(Xs.T @ Xs + _RIDGE * len(X) * np.eye(X.shape[1]), Xs.T @ y)
-    left = y - Xs @ found
-    return found / scale, float(left @ left) / max(float(y @ y), 1e-300)
+    residual = y - Xs @ found
+    return found / scale, float(residual @ residual) / max(float(y @ y), 1e-300)

@@ -84,8 +84,8 @@ def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, Floa
 def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray, point: Point) -> Step:
     """One Gauss-Newton step, own numbers eliminated manoeuvre by manoeuvre."""
     k = linear[0].shared.shape[1]
-    pull, missed = problem.pull(point)
-    H, g = np.diag(pull), pull * missed
+    precision, departure = problem.prior_of(point)
+    H, g = np.diag(precision), precision * departure
     free, follow = [], []
     for block in linear:
         inner, eliminated = own_eliminated(block, weights)

@@ -17,16 +17,16 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.foresight.marks import Marks
 from advisor.gap.foresight.needs import NEEDS, ONE_IMU, OTHERWISE, hidden_from, need_of
 from advisor.gap.records.flights import SPEED_CHANGE
-from advisor.gap.records.floor import doubts
+from advisor.gap.records.floor import floor_margins
 from advisor.gap.result import Unseen, spelled
-from advisor.gap.search.merit import LEAST_GAIN
+from advisor.gap.search.acceptance import LEAST_GAIN
+from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.search.score import least_change
-from advisor.gap.search.ties import breaking
 from advisor.gap.simulator.layout import INDEX
 
 CONFUSED_AT = 0.95
 """Cosine of two marks from which on one effect passes for the other."""
-_WORTH_TELLING = 0.8
+_LISTED_AT = 0.8
 _MOST_CONFUSIONS = 3
 """Cosine from which on a likeness is listed, and how many are."""
 _DETECTED_AT = 5.0
@@ -95,8 +95,8 @@ def foresee(
     """
     marks = Marks(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
     present = {e.effect for e in fitted.point.effects}
-    apart = present | {mark.effect for mark in others}
-    wanted = [v for v in _one_each(variants) if v.effect not in apart]
+    excluded = present | {mark.effect for mark in others}
+    wanted = [v for v in _one_each(variants) if v.effect not in excluded]
     sizes = [_first_size(v) for v in wanted]
     seen = _responses(problem, fitted, list(zip(wanted, sizes, strict=True)))
     found = [
@@ -209,7 +209,7 @@ def _needed(marks: Marks, numbers: int) -> float:
     """Power a mark must have: found in nearly every flight, worth its numbers, enough of a change."""
     price = numbers * float(np.log(marks.rows))
     # A filter of moving air leaves of a change far less than the outputs show of it.
-    doubted = least_change(marks.problem) * float(np.mean(doubts(marks.problem.flights) ** 2))
+    doubted = least_change(marks.problem) * float(np.mean(floor_margins(marks.problem.flights) ** 2))
     change = 0.0 if marks.filtered else doubted * marks.rows
     return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
 
@@ -222,9 +222,9 @@ def _foreseen(mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mappi
         ((other.effect, _cosine(mark.vector, other.vector)) for other in all_marks if other is not mark),
         key=lambda pair: -pair[1],
     )
-    confused = [pair for pair in confused if pair[1] > _WORTH_TELLING][:_MOST_CONFUSIONS]
+    confused = [pair for pair in confused if pair[1] > _LISTED_AT][:_MOST_CONFUSIONS]
     twins = [other for other, cosine in confused if cosine > CONFUSED_AT]
-    ways = [way for way in (breaking(mark.effect, other) for other in twins) if way]
+    ways = [way for way in (way_to_distinguish(mark.effect, other) for other in twins) if way]
     add = "; ".join(dict.fromkeys(ways)) or (OTHERWISE if twins else "")
     if not np.isfinite(smallest):
         add = "; ".join(dict.fromkeys([hidden_from(mark.effect, marks.problem.flights)[1], *ways]))

@@ -61,8 +61,8 @@ class Marks:
         x, latency = mark, self._latency
         own, ll = float(x @ x), float(latency @ latency)
         share = float(latency @ x) / ll if ll > 0.0 else 0.0
-        apart = own - share**2 * ll
-        free = np.sqrt(power / apart) if apart > 1e-12 * own and own > 0.0 else np.inf
+        remaining = own - share**2 * ll
+        free = np.sqrt(power / remaining) if remaining > 1e-12 * own and own > 0.0 else np.inf
         low, high = self._latency_bounds
         bound = high if share > 0.0 else low
         if own <= 1e-18 or free * abs(share) <= abs(bound):

@@ -16,12 +16,12 @@ from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.foresight.foresee import Foreseen, foresee
-from advisor.gap.foresight.foresee_apart import foresee_air, foresee_offset, impossible, speed_mark
+from advisor.gap.foresight.foresee_outside_fit import foresee_air, foresee_offset, impossible, speed_mark
 from advisor.gap.foresight.marks import Marks
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import LEAST_SAMPLES
-from advisor.gap.search.baseline import base_entries, believed_derivatives, everywhere
+from advisor.gap.search.baseline import base_entries, everywhere, prior_derivatives
 from advisor.gap.simulator.layout import NUISANCES, OUTPUTS, natural_frequency
 from advisor.problems import ConfigurationError
 
@@ -39,7 +39,7 @@ SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
 """Channels that a plan may do without."""
 _IN_FILE = "it is in the aircraft file, and taken as it stands there"
 """Of an effect with a shape: more or less of it is not looked for."""
-_APART_S = 30.0
+_SPACING_S = 30.0
 _HIGHEST_RATE_HZ, _LARGEST_STEP_DEG = 1000.0, 60.0
 """No telemetry is faster, and no elevator moves further."""
 
@@ -59,7 +59,7 @@ def foresee_plan(
         The aircraft file has no complete ``model``, or one without an elevator; or the plan cannot be flown
         or sampled as it says.
     """
-    derivatives = believed_derivatives(aircraft)
+    derivatives = prior_derivatives(aircraft)
     if derivatives is None:
         missing = ", ".join(name for name in PARAMETERS if name not in aircraft.model)
         raise ConfigurationError(f"foresee needs the aircraft file's model: {missing} missing.")
@@ -101,20 +101,20 @@ def foresee_flights(
     """
     variants = variants_for(flights)
     known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
-    problem = Problem(flights, known, believed=derivatives)
+    problem = Problem(flights, known, prior_derivatives=derivatives)
     own = np.zeros((len(flights), len(NUISANCES)))
     own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
     point = everywhere(Point(derivatives, own), flights)
     linear = linearise(problem, point)
     step = solve_blocks(problem, linear, 1.0 / noise, point)
     owns = step.owns(step.shared)
-    left = tuple(b.after(step.shared, own) for b, own in zip(linear, owns, strict=True))
-    fitted = Fitted(point, noise, 0.0, left, left, step.information, linear, 0)
+    residuals = tuple(b.after(step.shared, own) for b, own in zip(linear, owns, strict=True))
+    fitted = Fitted(point, noise, 0.0, residuals, residuals, step.information, linear, 0)
     marks = Marks(problem, fitted, noise)
-    apart = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []
+    speed_marks = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []
     wanted = beyond_known(aircraft.effects, variants)
     found = [
-        *foresee(problem, fitted, wanted, noise, apart),
+        *foresee(problem, fitted, wanted, noise, speed_marks),
         *foresee_air(problem, fitted, marks, unit_s),
         foresee_offset(problem, noise),
     ]
@@ -150,9 +150,9 @@ def _maneuver(
     """Stamps and command of a planned manoeuvre; its outputs are there only for their stamps."""
     start, length = 1.0, 1.0 + unit * sum(width for width, _ in STEPS[name])
     end = length + max(10.0 * unit, 3.0)
-    t = np.arange(0.0, end, 1.0 / rate_hz) + _APART_S * n
+    t = np.arange(0.0, end, 1.0 / rate_hz) + _SPACING_S * n
     command = np.zeros(len(t))
-    at = _APART_S * n + start
+    at = _SPACING_S * n + start
     for width, level in STEPS[name]:
         command[(t >= at) & (t < at + width * unit)] = amplitude * level
         at += width * unit

@@ -139,7 +139,7 @@ class Course:
 
     knots: tuple[FloatArray, ...]
     """Per manoeuvre: its value at each knot."""
-    lefts: tuple[FloatArray, ...]
+    residuals: tuple[FloatArray, ...]
     """Per manoeuvre, stacked channels, in their units: what it leaves."""
 
 
@@ -149,7 +149,7 @@ def disturbance_courses(
     """The likeliest course of a block's disturbance for each size that it may have beforehand."""
     p = problem.driving(fitted.point)
     courses: list[list[FloatArray]] = [[] for _ in sizes]
-    lefts: list[list[FloatArray]] = [[] for _ in sizes]
+    residuals: list[list[FloatArray]] = [[] for _ in sizes]
     for i, flight in enumerate(problem.flights.flights):
         w = row_weights(problem, i, 1.0 / noise)
         own, prior = fitted.linear[i].measured.own, fitted.linear[i].prior
@@ -158,14 +158,14 @@ def disturbance_courses(
         free = len(colour)
         for k, size in enumerate(sizes):
             chol = factor(A, np.concatenate([prior, np.full(free, 1.0 / size**2)]))
-            found = solved(chol, A.T @ (fitted.left[i] * w))
+            found = solved(chol, A.T @ (fitted.residuals[i] * w))
             courses[k].append(np.asarray(colour @ found[-free:]))
-            lefts[k].append(np.asarray(fitted.left[i] - both @ found))
-    return [Course(tuple(knots), tuple(left)) for knots, left in zip(courses, lefts, strict=True)]
+            residuals[k].append(np.asarray(fitted.residuals[i] - both @ found))
+    return [Course(tuple(knots), tuple(residual)) for knots, residual in zip(courses, residuals, strict=True)]
 
 
 def _colour(flight: Flight) -> FloatArray:
     """Cholesky factor of the disturbance's correlation between its knots."""
     knots = np.arange(0.0, flight.duration_s, KNOTS_S)[1:]
-    apart = np.abs(knots[:, None] - knots[None, :])
-    return np.asarray(np.linalg.cholesky(np.exp(-apart / MEMORY_S) + 1e-9 * np.eye(len(knots))))
+    lags = np.abs(knots[:, None] - knots[None, :])
+    return np.asarray(np.linalg.cholesky(np.exp(-lags / MEMORY_S) + 1e-9 * np.eye(len(knots))))

@@ -75,7 +75,7 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
     white = instrument_noise(problem)
     system = system_of(problem, fitted)
     # A gust that happens to fall into a quiet stretch is not what the flight's noise is like.
-    loud = np.array([float(np.mean((r.left / white[r.channel]) ** 2)) for r in rows])
+    loud = np.array([float(np.mean((r.residual / white[r.channel]) ** 2)) for r in rows])
     rows = [r for r, power in zip(rows, loud, strict=True) if power <= _LONE * np.median(loud)]
     found = find_turbulence(rows, system, white, bool(_seen(problem)))
     plain = cost_of(rows, system, AirModel.still(spread_of(rows)))
@@ -87,7 +87,7 @@ def loudness(problem: Problem, fitted: Fitted) -> float:
     """Power of what is left in quiet stretches beside the instruments' noise: the median of the stretches."""
     white = instrument_noise(problem)
     parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
-    powers = [float(np.mean((r.left / white[r.channel]) ** 2)) for r in _without_offsets(parts)]
+    powers = [float(np.mean((r.residual / white[r.channel]) ** 2)) for r in _without_offsets(parts)]
     return float(np.median(powers)) if powers else 0.0
 
 
@@ -120,11 +120,11 @@ def _begun_anew(problem: Problem, fitted: Fitted, noise: FloatArray) -> list[Flo
 
 def _likelier(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> float:
     """How much better the air explains a manoeuvre's residual than any other place; 0 where it does not."""
-    best, second, *_ = probe_blocks(*only(problem, fitted, i), noise)
+    best, second, *_ = probe_blocks(*in_one_maneuver(problem, fitted, i), noise)
     return best.gain / max(second.gain, 1e-9) if best.block == "air" else 0.0
 
 
-def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
+def in_one_maneuver(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
     """The same fit, seen through one of its manoeuvres."""
     problem, fitted = unfiltered(problem, fitted)
     flights = replace(problem.flights, flights=(problem.flights.flights[i],))
@@ -135,8 +135,8 @@ def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
         replace(
             fitted,
             point=Point(p[: len(DERIVATIVES)], fitted.point.own[i : i + 1]),
-            innovations=(fitted.left[i],),
-            left=(fitted.left[i],),
+            innovations=(fitted.residuals[i],),
+            residuals=(fitted.residuals[i],),
             linear=(fitted.linear[i],),
         ),
     )
@@ -145,7 +145,7 @@ def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
 def unfiltered(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     """The same fit with its residual as the instruments have it."""
     linear = tuple(as_measured(block) for block in fitted.linear)
-    return replace(problem, whitening=None), replace(fitted, innovations=fitted.left, linear=linear)
+    return replace(problem, whitening=None), replace(fitted, innovations=fitted.residuals, linear=linear)
 
 
 def _seen(problem: Problem) -> float:
@@ -168,12 +168,12 @@ def with_floor(problem: Problem, air: AirModel) -> AirModel:
 def quiet_rms(problem: Problem, fitted: Fitted) -> FloatArray:
     """Shape (channels,): root mean square of the residual where nothing was flown; the floor, as measured."""
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
-    for flight, left in zip(problem.flights.flights, fitted.left, strict=True):
+    for flight, residual in zip(problem.flights.flights, fitted.residuals, strict=True):
         for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
             inside = flight.is_quiet(flight.outputs[name].t)
-            power[c] += float(np.sum(left[rows][inside] ** 2))
+            power[c] += float(np.sum(residual[rows][inside] ** 2))
             count[c] += np.count_nonzero(inside)
-    whole = rms_of(problem, fitted.left)
+    whole = rms_of(problem, fitted.residuals)
     # A few samples say nothing; the residual itself, coherent or not, is then the best there is.
     return np.where(count > _LEAST_SAMPLES, np.sqrt(power / np.maximum(count, 1.0)), whole)
 
@@ -196,7 +196,9 @@ def system_of(problem: Problem, fitted: Fitted) -> FloatArray:
 def rows_of(problem: Problem, fitted: Fitted, i: int) -> Rows:
     """What a fit leaves of manoeuvre ``i``, in order of time."""
     t, channel, order = rows_in_time(problem.flights, i, problem.driving(fitted.point)[i])
-    return Rows(t, channel, fitted.left[i][order], float(np.mean(problem.flights.flights[i].slow[SPEED])))
+    return Rows(
+        t, channel, fitted.residuals[i][order], float(np.mean(problem.flights.flights[i].slow[SPEED]))
+    )
 
 
 def _quiet_parts(problem: Problem, fitted: Fitted, i: int) -> list[Rows]:
@@ -206,7 +208,7 @@ def _quiet_parts(problem: Problem, fitted: Fitted, i: int) -> list[Rows]:
     quiet = flight.is_quiet(whole.t)
     before = whole.t < flight.first_step_s
     return [
-        Rows(whole.t[inside], whole.channel[inside], whole.left[inside], whole.speed)
+        Rows(whole.t[inside], whole.channel[inside], whole.residual[inside], whole.speed)
         for inside in (quiet & before, quiet & ~before)
         if np.count_nonzero(inside) > 10 * len(problem.channels)
     ]
@@ -216,7 +218,7 @@ def _without_offsets(rows: Sequence[Rows]) -> list[Rows]:
     """The same less what a channel has in every stretch: an offset is an effect, no noise with a memory."""
     offset = np.zeros(len(OUTPUTS))
     for c in range(len(OUTPUTS)):
-        picked = [r.left[r.channel == c] for r in rows]
+        picked = [r.residual[r.channel == c] for r in rows]
         if sum(len(p) for p in picked):
             offset[c] = float(np.mean(np.concatenate(picked)))
-    return [replace(r, left=r.left - offset[r.channel]) for r in rows]
+    return [replace(r, residual=r.residual - offset[r.channel]) for r in rows]

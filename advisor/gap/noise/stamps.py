@@ -96,7 +96,7 @@ def _jitter_in(
     rough, moving = [], []
     for i, flight in enumerate(problem.flights.flights):
         rows = problem.rows(flight)[c]
-        rough.append(np.convolve(fitted.left[i][rows], _THIRD, mode="valid") ** 2 / power)
+        rough.append(np.convolve(fitted.residuals[i][rows], _THIRD, mode="valid") ** 2 / power)
         moving.append(np.convolve(rates[i][rows] ** 2, _THIRD**2, mode="valid") / power)
     y, x = np.concatenate(rough), np.concatenate(moving)
     # Medians over bins of equal count: a few differences are large for another reason, a step of the command.

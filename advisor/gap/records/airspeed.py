@@ -53,13 +53,13 @@ def airspeed_on(
         return as_read
     drift = np.polyfit(t[inside], y[inside] - np.interp(t[inside], grid, shape), 2)
     rebuilt = shape + np.polyval(drift, grid)
-    apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
+    disagreement = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
     # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
-    return rebuilt if apart < LARGEST_DISAGREEMENT * float(np.mean(y[inside])) else as_read
+    return rebuilt if disagreement < LARGEST_DISAGREEMENT * float(np.mean(y[inside])) else as_read
 
 
-def speed_doubts(
-    stamps: Sequence[FloatArray], left: Sequence[FloatArray], durations_s: Sequence[float]
+def speed_error_factors(
+    stamps: Sequence[FloatArray], residuals: Sequence[FloatArray], durations_s: Sequence[float]
 ) -> list[FloatArray]:
     """By how much level, slope and bow of each manoeuvre's speed may be wrong for the instrument's noise.
 
@@ -76,18 +76,18 @@ def speed_doubts(
     Per manoeuvre a factor of the covariance of the three, shape (3, 3), m/s: of a parabola in time from -1 at
     the record's start to 1 at its end. Shape (0, 0) where too few samples were taken to tell.
     """
-    spare = sum(max(len(e) - 3, 0) for e in left)
-    power = sum(float(e @ e) for e in left)
+    spare = sum(max(len(e) - 3, 0) for e in residuals)
+    power = sum(float(e @ e) for e in residuals)
     if spare < _LEAST_SPARE or power == 0.0:
-        return [np.empty((0, 0))] * len(left)
-    memory = np.clip(sum(float(e[1:] @ e[:-1]) for e in left) / power, 0.0, _LONGEST_MEMORY)
+        return [np.empty((0, 0))] * len(residuals)
+    memory = np.clip(sum(float(e[1:] @ e[:-1]) for e in residuals) / power, 0.0, _LONGEST_MEMORY)
     sigma = float(np.sqrt(power / spare * (1.0 + memory) / (1.0 - memory)))
-    doubts = []
+    factors = []
     for t, duration in zip(stamps, durations_s, strict=True):
         parabola = np.vander(2.0 * t / duration - 1.0, 3, increasing=True)
         enough = len(t) >= _LEAST_SAMPLES
-        doubts.append(sigma * np.linalg.pinv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
-    return doubts
+        factors.append(sigma * np.linalg.pinv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
+    return factors
 
 
 def along_the_path(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:

@@ -55,8 +55,8 @@ class Flight:
     """Shape (rows,): times of all outputs that are compared, one channel after another."""
     output: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     """Shape (rows,), int64: index into ``OUTPUTS`` of each row."""
-    speed_doubt: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
-    """Shape (3, 3), m/s, as ``airspeed.speed_doubts`` gives it, or (1, 1) of the level alone; (0, 0) where
+    speed_error_factor: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    """Shape (3, 3), m/s, as ``airspeed.speed_error_factors`` gives it, or (1, 1) of the level alone; (0, 0) where
     nothing is known of it."""
 
     roll_rate: FloatArray | None = None

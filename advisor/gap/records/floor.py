@@ -12,7 +12,7 @@ from advisor.gap.records.flights import Flights
 
 TOLERANCE = 0.02
 """Of the channel's peak: what is called noise in a record that was filtered before it was stored."""
-DOUBT = 2.5
+STATED_FLOOR_MARGIN = 2.5
 """How many times a floor that is stated, not measured, must be exceeded to count."""
 _SMOOTH = 1e-3
 """Share of its peak below which a channel has less white noise than any instrument."""
@@ -27,9 +27,9 @@ def prefiltered(flights: Flights) -> dict[str, bool]:
     return dict(zip(flights.channels, smooth.tolist(), strict=True))
 
 
-def doubts(flights: Flights) -> FloatArray:
+def floor_margins(flights: Flights) -> FloatArray:
     """Shape (channels,): how many times its floor a channel must show."""
-    return np.where(list(prefiltered(flights).values()), DOUBT, 1.0)
+    return np.where(list(prefiltered(flights).values()), STATED_FLOOR_MARGIN, 1.0)
 
 
 def stated_floor(flights: Flights) -> FloatArray:
@@ -43,9 +43,9 @@ def tolerance_of(flights: Flights) -> FloatArray:
     return np.where(list(prefiltered(flights).values()), stated_floor(flights), 0.0)
 
 
-def independent_samples(left: FloatArray) -> float:
+def effective_sample_size(residual: FloatArray) -> float:
     """How many independent samples a residual is worth: N/(1 + 2 Σ ρ_k), summed to its first zero."""
-    v = left - np.mean(left)
+    v = residual - np.mean(residual)
     n = len(v)
     power = float(v @ v)
     if n < 8 or power <= 0.0:

@@ -12,7 +12,7 @@ from advisor.gap.records.airspeed import (
     airspeed_on,
     along_the_path,
     measures_speed,
-    speed_doubts,
+    speed_error_factors,
 )
 from advisor.gap.records.edges import edges_of, held_from
 from advisor.gap.records.flights import Flight, Flights
@@ -50,8 +50,8 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: f
     else:
         moves = shown.moves
         flights = tuple(
-            replace(f, speed_doubt=np.array([[doubt]]))
-            for f, doubt in zip(flights, shown.doubt_m_s, strict=True)
+            replace(f, speed_error_factor=np.array([[factor]]))
+            for f, factor in zip(flights, shown.std_m_s, strict=True)
         )
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
@@ -94,15 +94,15 @@ def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:
 
 def _with_doubt(flights: Sequence[Flight], maneuvers: Sequence[Maneuver]) -> tuple[Flight, ...]:
     """The same with what is to be doubted of their air speed."""
-    stamps, left = [], []
+    stamps, residuals = [], []
     for flight, maneuver in zip(flights, maneuvers, strict=True):
         read = maneuver.channels["airspeed"].cut(flight.started_s, flight.started_s + flight.duration_s)
         t = read.t - flight.started_s
         grid = (np.arange(flight.n) + 0.5) * flight.h
         stamps.append(t)
-        left.append(read.y - np.interp(t, grid, flight.slow[SPEED]))
-    doubts = speed_doubts(stamps, left, [flight.duration_s for flight in flights])
-    return tuple(replace(f, speed_doubt=doubt) for f, doubt in zip(flights, doubts, strict=True))
+        residuals.append(read.y - np.interp(t, grid, flight.slow[SPEED]))
+    factors = speed_error_factors(stamps, residuals, [flight.duration_s for flight in flights])
+    return tuple(replace(f, speed_error_factor=factor) for f, factor in zip(flights, factors, strict=True))
 
 
 def _largest_departure(flights: Sequence[Flight]) -> float:

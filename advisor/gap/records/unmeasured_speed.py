@@ -17,13 +17,13 @@ _BLOCK_S = 1.0
 """Over which errors of the motion are one and the same: an offset's remainder, a gust."""
 _LARGER = 3.0
 """Errors are up to so many times what blocks of a second show: α sees gusts, the integral does not."""
-_APART = 6.0
+_SPEEDS_DIFFER = 6.0
 """Scatter of the manoeuvres' speeds over what blocks show from which on they differ ..."""
-_LEAST_APART = 0.02
+_LEAST_DIFFERENCE = 0.02
 """... and the scatter itself, relative."""
 _FLOWN = 0.05
 """Standard deviation of the speed that was flown about the one that was meant, relative ..."""
-_LEAST_DOUBT = 0.01
+_LEAST_STD = 0.01
 """... and of the best that the motion shows."""
 
 
@@ -33,15 +33,15 @@ class Speeds:
 
     before_m_s: FloatArray
     """Shape (manoeuvres,): before the first step."""
-    doubt_m_s: FloatArray
+    std_m_s: FloatArray
     """Shape (manoeuvres,): standard deviation of that."""
-    apart: bool
+    differ: bool
     """Whether the motion shows beyond doubt that they differ."""
 
     @property
     def moves(self) -> float:
         """Largest relative departure from the mean; 0 where none is certain."""
-        return float(np.max(np.abs(self.before_m_s / np.mean(self.before_m_s) - 1.0))) if self.apart else 0.0
+        return float(np.max(np.abs(self.before_m_s / np.mean(self.before_m_s) - 1.0))) if self.differ else 0.0
 
 
 def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
@@ -84,11 +84,11 @@ def speeds_about(maneuvers: Sequence[Maneuver], level_m_s: float) -> Speeds:
         return unknown
     scatter = float(np.std(shown, ddof=1) / np.mean(shown))
     known = errors / shown
-    off, doubt = np.mean(shown) / shown - 1.0, np.maximum(_LARGER * known, _LEAST_DOUBT)
+    off, std = np.mean(shown) / shown - 1.0, np.maximum(_LARGER * known, _LEAST_STD)
     # Gusts spoil what one manoeuvre shows: then it is nearer to what was meant than that.
-    weight = _FLOWN**2 / (_FLOWN**2 + doubt**2)
-    apart = scatter > max(_LEAST_APART, _APART * float(np.sqrt(np.mean(known**2))))
-    return Speeds(meant * (1.0 + weight * off), level_m_s * np.sqrt(weight) * doubt, apart)
+    weight = _FLOWN**2 / (_FLOWN**2 + std**2)
+    differ = scatter > max(_LEAST_DIFFERENCE, _SPEEDS_DIFFER * float(np.sqrt(np.mean(known**2))))
+    return Speeds(meant * (1.0 + weight * off), level_m_s * np.sqrt(weight) * std, differ)
 
 
 def speed_without_instrument(

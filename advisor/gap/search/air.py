@@ -56,9 +56,9 @@ class Air:
     """Vehicle time of its peak."""
     course: tuple[FloatArray, ...]
     """Per manoeuvre, shape (knots,): its likeliest angle, rad, every ``KNOTS_S``."""
-    left: FloatArray
+    mean_square_beyond_air: FloatArray
     """Shape (channels,): mean square that stays when the likeliest course of the air is taken out."""
-    lefts: tuple[FloatArray, ...]
+    residuals: tuple[FloatArray, ...]
     """The same per manoeuvre, stacked channels, in their units."""
     instruments: FloatArray
     """Shape (channels,): noise of the instruments beside it."""
@@ -71,7 +71,7 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     if "alpha" not in problem.channels or "q" not in problem.channels:
         return None
     floor = 1.0 if problem.instruments is None else problem.instruments
-    before = mean_squares(problem, fitted.left)
+    before = mean_squares(problem, fitted.residuals)
     power = np.mean(before / floor**2, axis=1)
     loudest = np.argsort(-power, kind="stable")[:AIR_MANEUVERS]
     found = _moving_in(problem, fitted, loudest)
@@ -93,23 +93,23 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     if gust:
         course = _of_a_gust(problem, fitted, instruments, found.gust_angle)
     # Where no gust was, a course may wander far and change little, or hardly move and take up a slow drift.
-    changed = np.mean((before - mean_squares(problem, course.lefts)) / floor**2, axis=1)
+    changed = np.mean((before - mean_squares(problem, course.residuals)) / floor**2, axis=1)
     peaks = np.array([np.max(np.abs(knots)) for knots in course.knots])
     number = int(np.argmax(peaks**2 * np.maximum(changed, 0.0)))
     at = int(np.argmax(np.abs(course.knots[number])))
     flight = problem.flights.flights[number]
-    left = _mean_square(problem, course.lefts)
-    taken = np.mean(before, axis=0) - left
+    beyond = _mean_square(problem, course.residuals)
+    taken = np.mean(before, axis=0) - beyond
     return Air(
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
         gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
-        course=course.knots, left=left, lefts=course.lefts,
+        course=course.knots, mean_square_beyond_air=beyond, residuals=course.residuals,
         instruments=instruments, power=float(np.mean(taken / floor**2)),
     )  # fmt: skip
 
 
-def one_stands_out(problem: Problem, fitted: Fitted) -> bool:
+def one_maneuver_stands_out(problem: Problem, fitted: Fitted) -> bool:
     """Whether a model leaves far more of one manoeuvre than of most: a gust may have passed in it."""
     return _stands_out(np.mean(mean_squares(problem, fitted.innovations) / fitted.noise**2, axis=1))
 
@@ -133,15 +133,15 @@ def _of_a_gust(problem: Problem, fitted: Fitted, instruments: FloatArray, least:
     """
     sizes = [*np.geomspace(least, ANY_GUST, _TRIED)] if least < ANY_GUST else [ANY_GUST]
     courses = disturbance_courses(problem, fitted, instruments, "air", sizes)
-    left = [float(np.sum(_mean_square(problem, c.lefts) / instruments**2)) for c in courses]
-    before = float(np.sum(np.mean(mean_squares(problem, fitted.left), axis=0) / instruments**2))
-    enough = before - _AS_MUCH * (before - left[-1])
-    return next(c for c, rest in zip(courses, left, strict=True) if rest <= enough)
+    powers = [float(np.sum(_mean_square(problem, c.residuals) / instruments**2)) for c in courses]
+    before = float(np.sum(np.mean(mean_squares(problem, fitted.residuals), axis=0) / instruments**2))
+    enough = before - _AS_MUCH * (before - powers[-1])
+    return next(c for c, rest in zip(courses, powers, strict=True) if rest <= enough)
 
 
-def _mean_square(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
+def _mean_square(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Shape (channels,), over all manoeuvres; the air's own freedom (a knot each) counted against it."""
     knots = sum(f.duration_s / KNOTS_S for f in problem.flights.flights)
-    samples = sum(len(left) for left in lefts)
-    powers = np.mean(mean_squares(problem, lefts), axis=0)
+    samples = sum(len(residual) for residual in residuals)
+    powers = np.mean(mean_squares(problem, residuals), axis=0)
     return np.asarray(powers / max(1.0 - knots / samples, 0.3))

@@ -9,8 +9,8 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.candidates import input, moment, sensors, timing
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import stated_in, with_known
-from advisor.gap.fitting.belief import ARMS
 from advisor.gap.fitting.fit import Fitted, fit, rms_of
+from advisor.gap.fitting.prior import ARMS
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.fitting.whitening import Weighting
@@ -57,7 +57,7 @@ def base_entries(aircraft: Aircraft) -> FloatArray:
     return base
 
 
-def believed_derivatives(aircraft: Aircraft) -> FloatArray | None:
+def prior_derivatives(aircraft: Aircraft) -> FloatArray | None:
     """Shape (6,): what the aircraft file says of the derivatives; None unless it has them all."""
     if any(name not in aircraft.model for name in DERIVATIVES):
         return None
@@ -82,14 +82,12 @@ def first_fit(problem: Problem, aircraft: Aircraft) -> Fitted:
     def fitted_from(guess: FloatArray) -> Fitted:
         return fit(problem, everywhere(Point(guess, own), flights, latency_s=0.001))
 
-    seen, believed = regressions(flights), believed_derivatives(aircraft)
-    if believed is None:
+    seen, prior = regressions(flights), prior_derivatives(aircraft)
+    if prior is None:
         return min(map(fitted_from, seen), key=_finite_cost)
-    fitted = fitted_from(believed.copy())
-    agree = seen[-1][_MAIN] * believed[_MAIN] > _ALIKE * np.maximum(
-        seen[-1][_MAIN] ** 2, believed[_MAIN] ** 2
-    )
-    if np.all(agree) and np.all(rms_of(problem, fitted.left) < _MUCH * flights.peaks):
+    fitted = fitted_from(prior.copy())
+    agree = seen[-1][_MAIN] * prior[_MAIN] > _ALIKE * np.maximum(seen[-1][_MAIN] ** 2, prior[_MAIN] ** 2)
+    if np.all(agree) and np.all(rms_of(problem, fitted.residuals) < _MUCH * flights.peaks):
         return fitted
     return min([fitted, *map(fitted_from, seen)], key=_finite_cost)
 
@@ -104,18 +102,18 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     problem = Problem(
         flights,
         with_known(base_entries(aircraft), aircraft.effects, flights, variants_for(flights)),
-        believed=believed_derivatives(aircraft),
+        prior_derivatives=prior_derivatives(aircraft),
         arms_in_file=arms_in(aircraft),
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )
     fitted = first_fit(problem, aircraft)
-    plain, seen = fitted, quietest(problem, fitted)
+    baseline, seen = fitted, quietest(problem, fitted)
     problem, fitted = read_command(*_filtered(problem, fitted, seen, first_look=True))
     if not problem.knows_the_noise:
         return problem, fitted
     # The noise is seen through a fit, and the fit made by the noise: the second round is the last.
-    seen = fit(problem, seen.point, fitted.noise, iterations=8) if seen is not plain else fitted
+    seen = fit(problem, seen.point, fitted.noise, iterations=8) if seen is not baseline else fitted
     return _filtered(problem, fitted, seen)
 
 

@@ -7,9 +7,9 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.belief import scale_of
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.neighbourhood import Neighbourhood, Place
+from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import Point, Problem
 
 _STEPS = 4
@@ -31,7 +31,7 @@ class Screened:
     cost: float
     """As ``Fitted.cost``, to compare with the baseline's."""
     noise: FloatArray
-    belief: float = 0.0
+    prior_gain: float = 0.0
     """Log probability gained because the derivatives agree better with the aircraft file's."""
 
 
@@ -46,12 +46,12 @@ class Screen:
         self.problem, self.fitted, self.steps = problem, fitted, steps
         self.around = Neighbourhood(problem, fitted)
 
-    def try_all(self, variants: Sequence[Variant], believed: Callable[[Point], float]) -> list[Screened]:
+    def try_all(self, variants: Sequence[Variant], prior: Callable[[Point], float]) -> list[Screened]:
         """Quick fits of all, the likeliest description of the data first.
 
-        ``believed`` gives the log probability that a point gains from what the aircraft file says.
+        ``prior`` gives the log probability that a point gains from what the aircraft file says.
         """
-        found = [replace(s, belief=believed(s.point)) for s in self.quick_fits(variants)]
+        found = [replace(s, prior_gain=prior(s.point)) for s in self.quick_fits(variants)]
         return likeliest_first(found, float(np.sum(self.around.count)))
 
     def quick_fits(self, variants: Sequence[Variant], most: float = 0.0) -> list[Screened]:
@@ -86,7 +86,7 @@ class Screen:
     def _descend(self, variant: Variant, start: tuple[float, ...]) -> _Descent:
         problem = self.problem
         sides = None if variant.sides is None else variant.sides[1]
-        if variant.twin is not None and problem.believed is not None:
+        if variant.twin is not None and problem.prior_derivatives is not None:
             point = self._at_the_files(variant)
         else:
             resting = None if sides is None else np.zeros(len(problem.flights))
@@ -119,19 +119,19 @@ class Screen:
 
     def _at_the_files(self, variant: Variant) -> Point:
         """The same motion with the effect in it, as near to the file's derivatives as it comes."""
-        plain, believed = self.fitted.point, self.problem.believed
+        plain, prior = self.fitted.point, self.problem.prior_derivatives
         assert variant.twin is not None
-        assert believed is not None
+        assert prior is not None
         per_unit = variant.twin(plain.derivatives, plain.effects, self.problem.flights.reference_m_s)
-        scale = scale_of(believed)
-        change, missed = per_unit[: len(believed)] / scale, (believed - plain.derivatives) / scale
+        scale = derivative_scale(prior)
+        change, missed = per_unit[: len(prior)] / scale, (prior - plain.derivatives) / scale
         value = float(np.clip(change @ missed / (change @ change), *variant.bounds[0]))
         return plain.moved(plain.shared + value * per_unit, plain.own).with_effect(variant, (value,))
 
 
 def likeliest_first(found: Sequence[Screened], samples: float) -> list[Screened]:
     """In order of what they explain, what the aircraft file says and how many numbers they take."""
-    return sorted(found, key=lambda s: s.cost - 2.0 * s.belief + penalty(s.variant, samples))
+    return sorted(found, key=lambda s: s.cost - 2.0 * s.prior_gain + penalty(s.variant, samples))
 
 
 def penalty(variant: Variant, samples: float) -> float:

@@ -21,7 +21,13 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import SPEED_CHANGE, Flights
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.air import Air
-from advisor.gap.search.work import energy_speed, felt_along, mean_speed, unasked, work
+from advisor.gap.search.path_energy import (
+    energy_speed,
+    energy_swing,
+    mean_speed,
+    measures_path_acceleration,
+    uncommanded_thrust,
+)
 from advisor.gap.simulator.layout import SPEED
 from advisor.standard_gravity import GRAVITY_M_S2
 
@@ -33,18 +39,18 @@ _WORK = 0.02
 """Standard deviation of the speed that the energy alone would make, relative, that is work ..."""
 _LITTLE_WORK = 0.009
 """... or this, if accelerations were measured and the air is still ..."""
-_PLAIN_WORK = 0.03
+_CLEAR_WORK = 0.03
 """What the accelerations must show of it at most: thrust that swings for long passes for drag in part."""
 _EXCHANGED = 0.9
 """... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
-_UNASKED = 0.002 * GRAVITY_M_S2
+_UNCOMMANDED = 0.002 * GRAVITY_M_S2
 """Thrust that nobody asked for, m/s²: what drag and engines do beyond simple laws stays below it (0.012 in
 270 flights of nine simulators without an effect) ..."""
-_UNASKED_SWING = 0.006
+_UNCOMMANDED_SWING = 0.006
 """... if the speed swings by more than this, relative ..."""
-_UNASKED_GUSTS = 1.5
+_UNCOMMANDED_GUSTS = 1.5
 """... and than this many times the air's own motion ..."""
-_UNASKED_COSTS = 0.3
+_UNCOMMANDED_COSTS = 0.3
 """... and a simulator at constant speed leaves this much: the cause is plain."""
 _GUSTS = 4.0
 """... and both, or energy and what the accelerations show, exceed this many times the air's own motion: an
@@ -95,33 +101,33 @@ def speed_is_a_cause(
         return speed_costs(constant, last, floor) > _COSTS
     if constant is None or "height" not in problem.flights.has or (air is not None and air.gust):
         return False
-    if "throttle" in problem.flights.has and felt_along(problem.flights):
-        return speed_is_unasked(problem, constant, last, floor, air)
+    if "throttle" in problem.flights.has and measures_path_acceleration(problem.flights):
+        return thrust_is_uncommanded(problem, constant, last, floor, air)
     speed, energy = swings(problem.flights)
     gusts = 0.0 if air is None else air.angle_std
     least = max(_EXCHANGED * speed, _LITTLE_WORK)
-    felt = work(problem.flights)
-    worked = energy > least and (felt is None or felt > min(least, _PLAIN_WORK))
-    plain = energy > _WORK or (felt is not None and air is None)
+    energy_felt = energy_swing(problem.flights)
+    worked = energy > least and (energy_felt is None or energy_felt > min(least, _CLEAR_WORK))
+    clear = energy > _WORK or (energy_felt is not None and air is None)
     # An air speed indicator reads gusts; accelerometers along the path do not.
-    felt_more = min(max(speed, felt or 0.0), energy) > _GUSTS * gusts
-    return worked and plain and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE
+    felt_more = min(max(speed, energy_felt or 0.0), energy) > _GUSTS * gusts
+    return worked and clear and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE
 
 
-def speed_is_unasked(
+def thrust_is_uncommanded(
     problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: Air | None
 ) -> bool:
     """Whether a thrust that neither throttle nor drag accounts for swings the speed, and it matters."""
     flights = problem.flights
     if constant is None or not flights.speed_measured or (air is not None and air.gust):
         return False
-    if "throttle" not in flights.has or speed_costs(constant, last, floor) < _UNASKED_COSTS:
+    if "throttle" not in flights.has or speed_costs(constant, last, floor) < _UNCOMMANDED_COSTS:
         return False
-    thrust = unasked(flights)
-    if thrust is None or thrust < _UNASKED:
+    thrust = uncommanded_thrust(flights)
+    if thrust is None or thrust < _UNCOMMANDED:
         return False
     gusts = 0.0 if air is None else air.angle_std
-    return swings(flights)[0] > max(_UNASKED_SWING, _UNASKED_GUSTS * gusts)
+    return swings(flights)[0] > max(_UNCOMMANDED_SWING, _UNCOMMANDED_GUSTS * gusts)
 
 
 def swings(flights: Flights) -> tuple[float, float]:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import worth
-from advisor.gap.search.merit import BEYOND_DOUBT, Judged
+from advisor.gap.fitting.uncertainty import effective_samples
+from advisor.gap.search.acceptance import BEYOND_DOUBT, Judged
 from advisor.gap.search.score import addition
 
 
@@ -49,17 +49,17 @@ def rebuilt(
     last: tuple[Judged, ...],
 ) -> list[Stage]:
     """Stages of the effects in another order."""
-    independent = worth(problem, full.innovations)
+    effective = effective_samples(problem, full.innovations)
     before, held = first.fitted, first.held_out
     stages = []
     for n, name in enumerate(names, 1):
-        fitted = full if n == len(names) else only(problem, full, names[:n])
-        added = addition(problem, before, held, fitted, name, independent)
+        fitted = full if n == len(names) else fit_with_effects(problem, full, names[:n])
+        added = addition(problem, before, held, fitted, name, effective)
         stages.append(Stage(before, held, considered[name], added))
         before, held = fitted, added.held_out
     return [*stages, Stage(before, held, last, None)]
 
 
-def only(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
+def fit_with_effects(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
     """The model with some of its effects, fitted."""
     return fit(problem, full.point.with_only(names), full.noise, iterations=8, tolerance=0.5)

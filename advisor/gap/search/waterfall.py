@@ -8,11 +8,11 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import shared_std, worth
-from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, MOST_EFFECTS, Judged
+from advisor.gap.fitting.uncertainty import effective_samples, shared_std
+from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, MOST_EFFECTS, Judged
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
-from advisor.gap.search.stage import Stage, added_in, only, rebuilt
+from advisor.gap.search.stage import Stage, added_in, fit_with_effects, rebuilt
 
 _OPEN = 0.1
 """What counts of an effect that is something to measure rather; see ``_rank_of``."""
@@ -33,7 +33,7 @@ def one_after_another(
             stages.append(Stage(fitted, held, (), None))
             break
         considered = ahead or _judged(problem, fitted, held, variants)
-        added, ahead = next((j for j in considered if j.worth_naming), None), None
+        added, ahead = next((j for j in considered if j.is_accepted), None), None
         if added is None and n < MOST_EFFECTS - 1:
             added, ahead = _leading_on(problem, considered, variants)
         stages.append(Stage(fitted, held, tuple(considered), added))
@@ -55,7 +55,7 @@ def _leading_on(
         return None, None
     first = considered[0]
     beside = _judged(problem, first.fitted, first.held_out, variants)
-    return (first, beside) if any(j.worth_naming for j in beside) else (None, None)
+    return (first, beside) if any(j.is_accepted for j in beside) else (None, None)
 
 
 def _judged(problem: Problem, fitted: Fitted, held: HeldOut, variants: Sequence[Variant]) -> list[Judged]:
@@ -65,15 +65,15 @@ def _judged(problem: Problem, fitted: Fitted, held: HeldOut, variants: Sequence[
 
 def as_measured(problem: Problem, stages: Sequence[Stage]) -> list[Stage]:
     """The same for its numbers: what a single manoeuvre tells is measured in that manoeuvre."""
-    witnesses: set[int] = set()
+    sole_maneuvers: set[int] = set()
     measured = []
     for stage in stages:
         held = stage.held_out
-        if witnesses:
-            held = measured_in(problem, held, stage.fitted, witnesses)
+        if sole_maneuvers:
+            held = measured_in(problem, held, stage.fitted, sole_maneuvers)
         measured.append(replace(stage, held_out=held))
-        if stage.added is not None and stage.added.witness is not None:
-            witnesses.add(stage.added.witness)
+        if stage.added is not None and stage.added.sole_maneuver is not None:
+            sole_maneuvers.add(stage.added.sole_maneuver)
     return measured
 
 
@@ -82,12 +82,14 @@ def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:
     full = stages[-1].fitted
     if len(added_in(stages)) < 2:
         return stages
-    independent = worth(problem, full.innovations)
+    effective = effective_samples(problem, full.innovations)
 
     def restated(added: Judged) -> Judged:
         point = full.point
         k = point.index_of(added.effect)
-        std = shared_std(problem, full, independent, trusted=added.belief >= LEAST_BELIEF)[point.place(k)]
+        std = shared_std(problem, full, effective, trusted=added.prior_gain >= LEAST_PRIOR_GAIN)[
+            point.place(k)
+        ]
         return replace(added, variant=point.effects[k], value=point.values[k], std=std)
 
     return [s if s.added is None else replace(s, added=restated(s.added)) for s in stages]
@@ -103,16 +105,16 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
     full = stages[-1].fitted
     names = list(considered)
     while len(names) > 1:
-        independent = worth(problem, full.innovations)
-        without = {name: only(problem, full, [n for n in names if n != name]) for name in names}
-        missed = {
-            name: addition(problem, fewer, hold_out(problem, fewer), full, name, independent)
+        effective = effective_samples(problem, full.innovations)
+        without = {name: fit_with_effects(problem, full, [n for n in names if n != name]) for name in names}
+        lost_without = {
+            name: addition(problem, fewer, hold_out(problem, fewer), full, name, effective)
             for name, fewer in without.items()
         }
         # What manoeuvres kept out do not support goes first, whatever it gains.
-        weakest = min(names, key=lambda name: (missed[name].is_supported, missed[name].gain))
-        if missed[weakest].worth_naming:
-            names.sort(key=lambda name: -missed[name].gain * _rank_of(problem, name))
+        weakest = min(names, key=lambda name: (lost_without[name].is_supported, lost_without[name].gain))
+        if lost_without[weakest].is_accepted:
+            names.sort(key=lambda name: -lost_without[name].gain * _rank_of(problem, name))
             break
         names.remove(weakest)
         full = without[weakest]
@@ -125,8 +127,8 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
 
 def _stands_alone(problem: Problem, first: Stage, full: Fitted, name: str) -> bool:
     """Whether the last effect left is worth its name: it may have only led on to one that was dropped."""
-    independent = worth(problem, full.innovations)
-    return addition(problem, first.fitted, first.held_out, full, name, independent).worth_naming
+    effective = effective_samples(problem, full.innovations)
+    return addition(problem, first.fitted, first.held_out, full, name, effective).is_accepted
 
 
 def _rank_of(problem: Problem, effect: str) -> float:
@@ -145,5 +147,5 @@ def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) 
         return list(stages)
     if not names:
         return [replace(stages[0], added=None)]
-    full = only(problem, stages[-1].fitted, names)
+    full = fit_with_effects(problem, stages[-1].fitted, names)
     return in_full(problem, rebuilt(problem, stages[0], names, full, considered, stages[-1].considered))

@@ -144,8 +144,8 @@ def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray
         if late <= 0.0:
             continue
         # Two poles, one behind the other: a pair of conjugates below critical damping.
-        apart = np.sqrt(complex(1.0 - 4.0 * shape))
-        one, other = late * (1.0 + apart) / 2.0, late * (1.0 - apart) / 2.0
+        split = np.sqrt(complex(1.0 - 4.0 * shape))
+        one, other = late * (1.0 + split) / 2.0, late * (1.0 - split) / 2.0
         first, second = np.exp(-h / one), np.exp(-h / other)
         before = complex(out[0, 0, c, j])
         middle = last = before

@@ -10,15 +10,15 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.search.merit import Judged
-from advisor.gap.search.score import TIME_DOUBT_S, TIMES
+from advisor.gap.search.acceptance import Judged
+from advisor.gap.search.indistinguishable import indistinguishable_from
+from advisor.gap.search.score import TIME_ERROR_S, TIMES
 from advisor.gap.search.stage import Stage, added_in
-from advisor.gap.search.ties import tied_with
 
 TEMPERATURE = 3.0
 """Log likelihoods of a model that is itself approximate count for less: divided by this before they
 become probabilities. Set on development data so that stated and observed frequencies agree."""
-_SHAPE_DOUBT = 0.03
+_SHAPE_ERROR = 0.03
 """Relative error of a size for describing its effect to low order only."""
 _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
@@ -39,7 +39,7 @@ def causes_of(
     removed = [max(j.removed, 1e-6) for j in added]
     for n, (stage, judged) in enumerate(zip(stages, added, strict=False)):
         confidence = probabilities(stage.considered, unexplained).get(judged.effect, _TOLD_LATER)
-        if any(j.effect == judged.effect and not j.worth_naming for j in stage.considered):
+        if any(j.effect == judged.effect and not j.is_accepted for j in stage.considered):
             confidence = _TOLD_LATER
         share = _THE_FIRST * (n == 0) + (1.0 - _THE_FIRST) * removed[n] / sum(removed)
         causes.append(_cause(judged, stage.considered, confidence * share, floor, channels, True))
@@ -58,7 +58,7 @@ def probabilities(considered: Sequence[Judged], unexplained: float) -> dict[str,
     if not considered:
         return {}
     # What is not worth a name is no rival, whatever it gains.
-    gains = [(j.gain if j.worth_naming else min(j.gain, 0.0)) - j.least_gain for j in considered]
+    gains = [(j.gain if j.is_accepted else min(j.gain, 0.0)) - j.least_gain for j in considered]
     scores = np.array([*gains, 0.0]) / TEMPERATURE
     weights = np.exp(scores - np.max(scores))
     weights = (1.0 - 0.9 * unexplained) * weights / np.sum(weights)
@@ -82,22 +82,22 @@ def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, 
     return found
 
 
-def with_doubt(cause: Cause, problem: Problem) -> Cause:
+def with_model_errors(cause: Cause, problem: Problem) -> Cause:
     """Sizes with the errors that no fit shows: effects are described to low order, on a grid of time."""
     doubted = {
-        name: Value(v.value, float(np.hypot(v.std, _doubt(name, v.value))))
+        name: Value(v.value, float(np.hypot(v.std, _model_error(name, v.value))))
         for name, v in cause.parameters.items()
         if v.std > 0.0
     }
-    return _with_edge_doubt(replace(cause, parameters={**cause.parameters, **doubted}), problem)
+    return _with_edge_error(replace(cause, parameters={**cause.parameters, **doubted}), problem)
 
 
-def _doubt(name: str, value: float) -> float:
+def _model_error(name: str, value: float) -> float:
     """Standard deviation of a size beyond its fit's: a share of it, and for times part of a step."""
-    return float(np.hypot(_SHAPE_DOUBT * value, TIME_DOUBT_S if name in TIMES else 0.0))
+    return float(np.hypot(_SHAPE_ERROR * value, TIME_ERROR_S if name in TIMES else 0.0))
 
 
-def _with_edge_doubt(cause: Cause, problem: Problem) -> Cause:
+def _with_edge_error(cause: Cause, problem: Problem) -> Cause:
     """A delay or lag with the error that comes of steps lying anywhere between two stamps of the command."""
     intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
     if problem.held or not intervals or cause.effect not in _TIMING:
@@ -117,10 +117,10 @@ def _cause(
     channels: Sequence[str],
     present: bool,
 ) -> Cause:
-    ties, way = tied_with(judged, considered, channels)
-    left = whole_gap(judged.held_out.mean_square, floor)
+    alike, way = indistinguishable_from(judged, considered, channels)
+    gap_after = whole_gap(judged.held_out.mean_square, floor)
     sizes = parameters_of(judged.variant, judged.value, judged.std)
-    return Cause(judged.effect, judged.block, probability, sizes, ties, way, left, present)
+    return Cause(judged.effect, judged.block, probability, sizes, alike, way, gap_after, present)
 
 
 def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, float], ...]:

@@ -11,20 +11,20 @@ from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Verdict
-from advisor.gap.search.merit import Judged
-from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, speed_is_unasked
+from advisor.gap.search.acceptance import Judged
+from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, thrust_is_uncommanded
 from advisor.gap.search.stage import added_in
-from advisor.gap.verdict.apart import air_cause, alpha_bias_cause
-from advisor.gap.verdict.causes import causes_of, with_doubt
+from advisor.gap.verdict.causes import causes_of, with_model_errors
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.ledger import decisions_of
+from advisor.gap.verdict.outside_fit import air_cause, alpha_bias_cause
 from advisor.gap.verdict.wrong_numbers import WrongNumbers, wrong_numbers
 
 _ALONE = 0.95
 """Probability of what no fit judges (the air, an offset, the speed) where nothing else was found ..."""
 _FIRST, _OTHERS = 0.9, 0.05
 """... of the first of several of them, and of all the others together ..."""
-_KEPT, _BESIDE = 0.96, 0.03
+_KEPT, _IN_ADDITION = 0.96, 0.03
 """... and beside what a fit has named: what that keeps of its own, and what they get. All these were held
 against how often such answers were right on development flights (calibration, ``docs/gap-results.md``)."""
 _REFUTED, _RIVAL = 0.05, 0.2
@@ -49,7 +49,7 @@ class Judgement:
     verdict: Verdict
     causes: tuple[Cause, ...]
     """Likeliest first, at most five."""
-    apart: tuple[Cause, ...]
+    outside_fit: tuple[Cause, ...]
     """Those of them that no fit judges: the air, the offset, the air speed."""
     speed: Cause | None
     """The change of air speed, when ignoring it would cost, cause or not."""
@@ -67,16 +67,16 @@ class _Found:
     """What speaks for one verdict or another."""
 
     named: list[Judged]
-    left: float
+    final_gap: float
     """Gap of the last model."""
     removed: float
     """What the names take away, mean square over the floor's."""
     numbers: WrongNumbers
     bias: Cause | None
     speed: Cause | None
-    """The change of air speed, when ignoring it would cost; a cause only if it stands in ``apart``."""
+    """The change of air speed, when ignoring it would cost; a cause only if it stands in ``outside_fit``."""
     speed_outweighs: bool
-    apart: tuple[Cause, ...]
+    outside_fit: tuple[Cause, ...]
     unknown: bool
     """Something without a name is the answer."""
 
@@ -92,11 +92,11 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
     causes = _ordered(e, found)
     verdict = _verdict(found, causes)
     before = e.file_model if e.file_model is not None else e.stages[0].held_out
-    if e.constant_speed is not None and found.speed in found.apart:
+    if e.constant_speed is not None and found.speed in found.outside_fit:
         before = _at_constant_speed(e.problem, before, e.constant_speed, e.stages[-1].held_out)
-    causes = _beside(verdict, causes, bool(found.named))
+    causes = _as_left_by(verdict, causes, bool(found.named))
     return Judgement(
-        verdict, causes, found.apart, found.speed, found.bias, before, found.numbers.are_wrong,
+        verdict, causes, found.outside_fit, found.speed, found.bias, before, found.numbers.are_wrong,
         decisions_of(e, found.numbers),
     )  # fmt: skip
 
@@ -105,39 +105,41 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     """Everything that was found, and what of it is a cause."""
     problem, floor = e.problem, e.floor
     first, last = e.stages[0].held_out, e.stages[-1].held_out
-    left, named = whole_gap(last.mean_square, floor), added_in(e.stages)
+    final_gap, named = whole_gap(last.mean_square, floor), added_in(e.stages)
     removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
     # Noise that the air makes hides nothing from a simulator that knows the air's motion.
-    still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.left))
+    still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.mean_square_beyond_air))
     numbers = wrong_numbers(e, named, still)
-    alone = not (named or numbers.are_wrong or e.leftover)
-    seen_once = len(problem.flights) == 1
-    bias = None if seen_once else alpha_bias_cause(kinematics, named, problem, left, alone)
-    apart = tuple(c for c in (air_cause(e), bias) if c is not None)
+    alone = not (named or numbers.are_wrong or e.unexplained)
+    is_single = len(problem.flights) == 1
+    bias = None if is_single else alpha_bias_cause(kinematics, named, problem, final_gap, alone)
+    outside_fit = tuple(c for c in (air_cause(e), bias) if c is not None)
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
     outweighs = _speed_outweighs(e, max(numbers.gap, removed))
     told = (named or bias or numbers.are_wrong) and not outweighs
-    judge_speed = speed_is_unasked if told else speed_is_a_cause
+    judge_speed = thrust_is_uncommanded if told else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
-        apart = (speed, *apart)
-    return _Found(named, left, removed, numbers, bias, speed, outweighs, apart, e.leftover is not None)
+        outside_fit = (speed, *outside_fit)
+    return _Found(
+        named, final_gap, removed, numbers, bias, speed, outweighs, outside_fit, e.unexplained is not None
+    )
 
 
 def _ordered(e: Evidence, found: _Found) -> tuple[Cause, ...]:
     """Causes of the fits and those judged apart, what makes the larger part of the gap first."""
     channels = e.problem.channels
-    unexplained = e.leftover.share if e.leftover is not None else 0.0
+    unexplained = e.unexplained.share if e.unexplained is not None else 0.0
     fitted = causes_of(e.stages, e.floor, unexplained, channels)
-    causes = _merge(tuple(with_doubt(cause, e.problem) for cause in fitted), found.apart)
+    causes = _merge(tuple(with_model_errors(cause, e.problem) for cause in fitted), found.outside_fit)
     bias, speed = found.bias, found.speed
     derived = e.problem.flights.alpha_is_derived
-    if bias is not None and not found.unknown and not derived and _is_plain(bias, found.named):
+    if bias is not None and not found.unknown and not derived and _exceeds_mounting(bias, found.named):
         offset = (bias.parameters["bias_rad"].value / e.floor[channels.index("alpha")]) ** 2
         if float(offset) / len(e.floor) > found.names:
             causes = _put_first(causes, bias)
-    if speed is not None and speed in found.apart and found.speed_outweighs:
+    if speed is not None and speed in found.outside_fit and found.speed_outweighs:
         causes = _put_first(causes, speed)
     return causes
 
@@ -149,12 +151,12 @@ def _verdict(found: _Found, causes: Sequence[Cause]) -> Verdict:
     wrong = numbers.are_wrong and numbers.outweigh_the_air and (mostly or not found.named)
     if found.unknown:
         return "unknown"
-    if wrong and not (found.bias or found.speed in found.apart):
+    if wrong and not (found.bias or found.speed in found.outside_fit):
         return "parameters"
     return "effect" if any(c.present for c in causes) else "none"
 
 
-def _beside(verdict: Verdict, causes: tuple[Cause, ...], named: bool) -> tuple[Cause, ...]:
+def _as_left_by(verdict: Verdict, causes: tuple[Cause, ...], named: bool) -> tuple[Cause, ...]:
     """The causes with the probability that the verdict leaves them."""
     if verdict == "effect":
         return causes
@@ -163,15 +165,15 @@ def _beside(verdict: Verdict, causes: tuple[Cause, ...], named: bool) -> tuple[C
     return kept if verdict == "unknown" else tuple(sorted(kept, key=lambda c: -c.probability))
 
 
-def _is_plain(bias: Cause, named: Sequence[Judged]) -> bool:
+def _exceeds_mounting(bias: Cause, named: Sequence[Judged]) -> bool:
     """Whether an offset is more than a mounting leaves, or nothing that the stick shows was named."""
     return not named or abs(bias.parameters["bias_rad"].value) > _MOUNTED_RAD
 
 
 def _at_constant_speed(problem: Problem, before: HeldOut, constant: HeldOut, last: HeldOut) -> HeldOut:
     """What a simulator leaves that knows neither the named effects nor the air speed: both errors."""
-    errors = zip(before.left, constant.left, last.left, strict=True)
-    return held_out(problem, [plain + still - left for plain, still, left in errors])
+    errors = zip(before.residuals, constant.residuals, last.residuals, strict=True)
+    return held_out(problem, [of_model + at_constant - of_last for of_model, at_constant, of_last in errors])
 
 
 def _speed_outweighs(e: Evidence, others: float) -> bool:
@@ -193,7 +195,7 @@ def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ..
         return (*named, *other)[:5]
     if extra:
         present = [replace(c, probability=_KEPT * c.probability) for c in present]
-        extra = [replace(c, probability=_BESIDE / len(extra)) for c in extra]
+        extra = [replace(c, probability=_IN_ADDITION / len(extra)) for c in extra]
         other = [replace(c, probability=_RIVAL * c.probability) for c in other]
     return (*present, *extra, *other)[:5]
 

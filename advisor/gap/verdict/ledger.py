@@ -1,10 +1,10 @@
 """The ledger: every number that was held against a limit on the way to a verdict, in the order of asking."""
 
 from advisor.gap.decision import Decision
-from advisor.gap.fitting.uncertainty import PLAIN
+from advisor.gap.fitting.uncertainty import CLEAR_GAP
 from advisor.gap.result import VISIBLE
+from advisor.gap.search.acceptance import Judged
 from advisor.gap.search.air import AIR_GAIN
-from advisor.gap.search.merit import Judged
 from advisor.gap.search.stage import Stage
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.wrong_numbers import WrongNumbers
@@ -15,7 +15,7 @@ def decisions_of(e: Evidence, numbers: WrongNumbers) -> tuple[Decision, ...]:
     return (
         *(decision for stage in e.stages for decision in _of_stage(stage)),
         *_of_the_air(e),
-        *(() if e.leftover is None else e.leftover.decisions),
+        *(() if e.unexplained is None else e.unexplained.decisions),
         *_of_the_numbers(e, numbers),
     )
 
@@ -32,7 +32,7 @@ def in_words(decision: Decision) -> str:
 
 def _of_stage(stage: Stage) -> list[Decision]:
     """Why an effect was added, and what refused the others that bring any likelihood."""
-    refused = [judged for judged in stage.considered if judged.gain > 0.0 and not judged.worth_naming]
+    refused = [judged for judged in stage.considered if judged.gain > 0.0 and not judged.is_accepted]
     told = [decision for judged in refused for decision in _against(judged)]
     return [*told, *(() if stage.added is None else stage.added.decisions)]
 
@@ -56,5 +56,5 @@ def _of_the_numbers(e: Evidence, numbers: WrongNumbers) -> list[Decision]:
     distance = Decision(
         "parameters", "distance", numbers.distance.statistic, numbers.distance.limit, "chi square of six"
     )
-    plainly = Decision("parameters", "plain gap", numbers.gap, PLAIN, unit)
-    return [gap, plainly, distance]
+    clear = Decision("parameters", "clear gap", numbers.gap, CLEAR_GAP, unit)
+    return [gap, clear, distance]

@@ -11,8 +11,8 @@ from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.usable import why_left_out
 from advisor.gap.result import Verdict, spelled
+from advisor.gap.search.path_energy import mean_speed
 from advisor.gap.search.stage import added_in
-from advisor.gap.search.work import mean_speed
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.text import place
 
@@ -25,11 +25,11 @@ _FEW = 6
 
 
 def notes_of(
-    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: Verdict, nobodys_fault: Collection[str]
+    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: Verdict, nuisances: Collection[str]
 ) -> tuple[str, ...]:
     """Every note that these flights and their aircraft file call for, a sentence each.
 
-    ``nobodys_fault`` are effects that the improved simulator gets though they are no cause.
+    ``nuisances`` are effects that the improved simulator gets though they are no cause.
     """
     return (
         *_of_the_hold_out(holdout, len(e.problem.flights)),
@@ -39,7 +39,7 @@ def notes_of(
         *_of_the_unexplained(e),
         *_of_single_witnesses(e),
         *_of_the_air(e),
-        *_of_the_file(aircraft, nobodys_fault),
+        *_of_the_file(aircraft, nuisances),
         *_of_what_is_missing(e, aircraft),
     )
 
@@ -66,12 +66,12 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
         )
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
-        if e.shear.is_feigned:
+        if e.shear.is_implausible:
             yield f"The air speed's error grows by {per_metre} a metre climbed: more than any wind changes."
         else:
             yield f"The wind changed with height, by {per_metre} a metre."
-    if e.true_speed is not None:
-        yield e.true_speed.sentence
+    if e.airspeed_scale is not None:
+        yield e.airspeed_scale.sentence
     if e.weight is not None:
         yield e.weight.sentence
 
@@ -100,14 +100,14 @@ def _without_air_speed(flights: Flights, is_known: bool) -> str:
 
 
 def _of_the_unexplained(e: Evidence) -> Iterator[str]:
-    if e.leftover is not None and e.leftover.note:
-        yield f"Unexplained {place(e.leftover.block)}: {e.leftover.note}"
+    if e.unexplained is not None and e.unexplained.note:
+        yield f"Unexplained {place(e.unexplained.block)}: {e.unexplained.note}"
 
 
 def _of_single_witnesses(e: Evidence) -> Iterator[str]:
     for judged in added_in(e.stages):
-        if judged.witness is not None:
-            number = e.problem.flights.flights[judged.witness].number
+        if judged.sole_maneuver is not None:
+            number = e.problem.flights.flights[judged.sole_maneuver].number
             yield (
                 f"Manoeuvre {number} alone shows the {spelled(judged.effect)}: "
                 "it is measured there, and no other manoeuvre could confirm it."
@@ -130,11 +130,11 @@ def _of_the_air(e: Evidence) -> Iterator[str]:
         )
 
 
-def _of_the_file(aircraft: Aircraft, nobodys_fault: Collection[str]) -> Iterator[str]:
+def _of_the_file(aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str]:
     """What the improved simulator gets besides, and what was made of the effects that the file has."""
-    if nobodys_fault:
+    if nuisances:
         yield (
-            f"The improved simulator has a propeller's terms, too ({_listed(sorted(nobodys_fault))}): "
+            f"The improved simulator has a propeller's terms, too ({_listed(sorted(nuisances))}): "
             "every aircraft with a propeller has them, and they are not counted as a cause."
         )
     aside = left_aside(aircraft.effects)

@@ -7,16 +7,16 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.belief import scale_of
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
+from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
 from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.unnamed.remainder import removed_beyond_air
+from advisor.gap.uncatalogued.beyond_air import removed_beyond_air
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.yardsticks import yardsticks
 from advisor.standard_gravity import GRAVITY_M_S2
@@ -41,16 +41,16 @@ def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: Held
             (f.number, whole_gap(b, floor), whole_gap(a, floor))
             for f, b, a in zip(problem.flights.flights, before.by_maneuver, last.by_maneuver, strict=True)
         ),
-        by_phase=by_phase(problem, before.left, floor), by_band_hz=by_band(problem, before.left),
+        by_phase=by_phase(problem, before.residuals, floor), by_band_hz=by_band(problem, before.residuals),
     )  # fmt: skip
 
 
-def irreducible(left: FloatArray, floor: FloatArray, gap: Gap) -> float:
+def irreducible(mean_square: FloatArray, floor: FloatArray, gap: Gap) -> float:
     """Of what the final model leaves on manoeuvres kept out, the share that is noise and air.
 
-    ``left``, shape (channels,), is its mean square with the air's motion in it, which the gap is without.
+    ``mean_square``, shape (channels,), is its mean square with the air's motion in it, which the gap is without.
     """
-    whole = float(np.mean(np.maximum(left / floor**2, 1.0)))
+    whole = float(np.mean(np.maximum(mean_square / floor**2, 1.0)))
     return float(np.clip(1.0 - gap.after / whole, 0.0, 1.0))
 
 
@@ -134,8 +134,8 @@ def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, V
         mean_trim = np.mean(trims, axis=0)
         together = mean_trim @ known[np.ix_(pair, pair)] @ mean_trim
         several = each[began] if np.count_nonzero(began) > 1 else each
-        apart = np.var(several, ddof=min(1, len(several) - 1)) / np.count_nonzero(began)
-        values[name] = Value(float(np.mean(each[began])), float(np.sqrt(apart + max(together, 0.0))))
+        scatter = np.var(several, ddof=min(1, len(several) - 1)) / np.count_nonzero(began)
+        values[name] = Value(float(np.mean(each[began])), float(np.sqrt(scatter + max(together, 0.0))))
     for k, name in enumerate(DERIVATIVES):
         values[name] = Value(float(d[k]), float(np.sqrt(max(known[k, k], 0.0))))
     return {name: values[name] for name in PARAMETERS}
@@ -147,7 +147,9 @@ def _as_it_began(problem: Problem, fitted: Fitted) -> FloatArray:
     A mass or a centre of gravity that changed has changed the trim, too: the file begins without it.
     """
     derivatives = problem.driving(fitted.point)[:, : len(DERIVATIVES)]
-    off = np.max(np.abs(derivatives - fitted.point.derivatives) / scale_of(fitted.point.derivatives), axis=1)
+    off = np.max(
+        np.abs(derivatives - fitted.point.derivatives) / derivative_scale(fitted.point.derivatives), axis=1
+    )
     return np.asarray(off - np.min(off) <= _UNCHANGED * np.ptp(off))
 
 
@@ -158,10 +160,10 @@ def fidelity_of(problem: Problem, before: HeldOut, last: HeldOut) -> dict[str, t
         measured = np.concatenate([f.outputs[name].y for f in problem.flights.flights])
         pair = []
         for held in (before, last):
-            left = np.concatenate([
-                x[problem.rows(f)[c]] for f, x in zip(problem.flights.flights, held.left, strict=True)
+            residual = np.concatenate([
+                x[problem.rows(f)[c]] for f, x in zip(problem.flights.flights, held.residuals, strict=True)
             ])  # fmt: skip
-            pair.append(yardsticks(name, measured, measured - left))
+            pair.append(yardsticks(name, measured, measured - residual))
         found[name] = (pair[0], pair[1])
     return found
 
@@ -178,8 +180,8 @@ def traces_of(problem: Problem, before: HeldOut, last: HeldOut) -> tuple[Trace, 
                     name,
                     out.t,
                     out.y,
-                    out.y - before.left[i][rows],
-                    out.y - last.left[i][rows],
+                    out.y - before.residuals[i][rows],
+                    out.y - last.residuals[i][rows],
                 )
             )
     return tuple(traces)

@@ -6,7 +6,7 @@ from advisor.aircraft import Aircraft
 from advisor.gap.candidates.known import stated_in
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Cause
-from advisor.gap.search.merit import LEAST_SIGMA
+from advisor.gap.search.acceptance import LEAST_SIGMA
 
 _CURVES = frozenset({"elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift"})
 """What a simulator beyond eight numbers may have of its own."""

@@ -25,7 +25,7 @@ def place(block: str) -> str:
     return _BLOCK[block]
 
 
-def where_of_one(where: Where) -> str:
+def sentence_of_one_maneuver(where: Where) -> str:
     """The sentence of a single manoeuvre, which shows where a gap lies and proves no cause of it."""
     return (
         f"Something acts {place(where.block)} that the simulator does not have; one manoeuvre cannot prove "

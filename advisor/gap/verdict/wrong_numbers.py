@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.belief import Distance
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.fitting.uncertainty import PLAIN, distance_from_file
+from advisor.gap.fitting.prior import Distance
+from advisor.gap.fitting.uncertainty import CLEAR_GAP, distance_from_file
 from advisor.gap.result import VISIBLE
-from advisor.gap.search.merit import Judged
+from advisor.gap.search.acceptance import Judged
 from advisor.gap.verdict.evidence import Evidence
 
 _BY_NAMES = 0.8
@@ -39,10 +39,10 @@ def wrong_numbers(e: Evidence, named: Sequence[Judged], still: FloatArray) -> Wr
     gap, beside_air = _beyond_fitted_numbers(e, e.floor), _beyond_fitted_numbers(e, still)
     of_the_air = whole_gap(e.stages[0].held_out.mean_square, still) if e.air is not None else 0.0
     # Fitted numbers bend to the air's motion, and take up a part of it.
-    plainly = gap > PLAIN and beside_air > _FAR_MORE * of_the_air
-    distance = distance_from_file(e.problem, e.stages[-1].fitted, plainly)
+    clear_gap = gap > CLEAR_GAP and beside_air > _FAR_MORE * of_the_air
+    distance = distance_from_file(e.problem, e.stages[-1].fitted, clear_gap)
     are_wrong = gap > VISIBLE and distance.is_off
-    told_by_file = any(judged.variant.twin is not None and judged.belief > 0.0 for judged in named)
+    told_by_file = any(judged.variant.twin is not None and judged.prior_gain > 0.0 for judged in named)
     return WrongNumbers(
         gap, distance, are_wrong, told_by_file or _need_no_numbers(e), beside_air > of_the_air
     )
@@ -60,9 +60,10 @@ def _need_no_numbers(e: Evidence) -> bool:
 
     One name that does so is likelier than six wrong numbers that happen to imitate it.
     """
-    if e.file_model is None or e.file_and_names is None:
+    if e.file_model is None or e.file_model_with_effects is None:
         return False
-    was, named, left = (
-        whole_gap(h.mean_square, e.floor) for h in (e.file_model, e.file_and_names, e.stages[-1].held_out)
+    was, named, final = (
+        whole_gap(h.mean_square, e.floor)
+        for h in (e.file_model, e.file_model_with_effects, e.stages[-1].held_out)
     )
-    return was - named > _BY_NAMES * (was - left)
+    return was - named > _BY_NAMES * (was - final)

@@ -8,15 +8,15 @@ import numpy as np
 from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import Measured
+from advisor.gap.search.acceptance import Judged
 from advisor.gap.search.air import Air
-from advisor.gap.search.merit import Judged
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import as_measured
 from advisor.gap.verdict.evidence import Evidence
 
 
-def keep_out(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
+def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
     """The evidence measured on the last ``holdout`` manoeuvres, by fits without them; and which those are.
 
     With None, or as many as there are, all: each was kept out in its turn.
@@ -45,7 +45,8 @@ def keep_out(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
         stages=stages,
         constant_speed=speed and over_maneuvers(e.problem, speed, kept),
         file_model=e.file_model and over_maneuvers(e.problem, e.file_model, kept),
-        file_and_names=e.file_and_names and over_maneuvers(e.problem, e.file_and_names, kept),
+        file_model_with_effects=e.file_model_with_effects
+        and over_maneuvers(e.problem, e.file_model_with_effects, kept),
     ), kept
 
 
@@ -86,11 +87,11 @@ def as_read(problem: Problem, offset_rad: float) -> Problem:
 def with_offset(problem: Problem, held: HeldOut, offset_rad: float) -> HeldOut:
     """What a simulator leaves that does not know of the offset of α."""
     c = problem.channels.index("alpha")
-    lefts = []
-    for flight, left in zip(problem.flights.flights, held.left, strict=True):
-        lefts.append(left.copy())
-        lefts[-1][problem.rows(flight)[c]] += offset_rad
-    return held_out(problem, lefts)
+    residuals = []
+    for flight, residual in zip(problem.flights.flights, held.residuals, strict=True):
+        residuals.append(residual.copy())
+        residuals[-1][problem.rows(flight)[c]] += offset_rad
+    return held_out(problem, residuals)
 
 
 def without_air(held: HeldOut, air: Air) -> HeldOut:
@@ -98,6 +99,6 @@ def without_air(held: HeldOut, air: Air) -> HeldOut:
 
     The courses of the errors are those that the air's likeliest course leaves.
     """
-    share = np.minimum(air.left / held.mean_square, 1.0)
+    share = np.minimum(air.mean_square_beyond_air / held.mean_square, 1.0)
     powers = held.by_maneuver * share
-    return replace(held, left=air.lefts, mean_square=held.mean_square * share, by_maneuver=powers)
+    return replace(held, residuals=air.residuals, mean_square=held.mean_square * share, by_maneuver=powers)

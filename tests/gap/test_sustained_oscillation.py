@@ -11,7 +11,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.unnamed.tone import line_of, ringing_hz, tone_in
+from advisor.gap.uncatalogued.spectral_line import line_of, ringing_hz, spectral_line_in
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study
@@ -55,7 +55,7 @@ def test_moving_air_is_no_tone():
     flights = prepare(fly(Setup(maneuvers=6, gust_std=0.3, seed=34)), Aircraft())
     problem, fitted = fit_baseline(flights, Aircraft())
     assert problem.knows_the_noise
-    assert tone_in(problem, fitted, np.ones(len(problem.channels))) is None
+    assert spectral_line_in(problem, fitted, np.ones(len(problem.channels))) is None
 
 
 def test_where_the_pitch_rate_rings_a_structure_is_sought_though_slower_motion_is_larger():

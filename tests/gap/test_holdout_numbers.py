@@ -14,7 +14,7 @@ from advisor.gap.records.floor import TOLERANCE, prefiltered
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import OUTPUTS
-from advisor.gap.verdict.kept_out import over_maneuvers
+from advisor.gap.verdict.holdout_numbers import over_maneuvers
 from tests.gap.generator import Setup, fly
 
 
@@ -31,7 +31,7 @@ def filtered():
 def test_what_a_manoeuvre_alone_tells_is_measured_in_it_errors_and_innovations_alike(filtered):
     problem, fitted, held = filtered
     everywhere = measured_in(problem, held, fitted, range(len(problem.flights)))
-    assert everywhere.mean_square == pytest.approx(rms_of(problem, fitted.left) ** 2)
+    assert everywhere.mean_square == pytest.approx(rms_of(problem, fitted.residuals) ** 2)
     assert everywhere.innovation_square == pytest.approx(rms_of(problem, fitted.innovations) ** 2)
     nowhere = measured_in(problem, held, fitted, ())
     assert nowhere.innovation_square == pytest.approx(held.innovation_square)
@@ -42,7 +42,7 @@ def test_over_some_manoeuvres_innovations_count_as_their_errors_do(filtered):
     kept = [4, 5]
     some = over_maneuvers(problem, held, kept)
     cut = replace(problem, flights=replace(problem.flights, flights=problem.flights.flights[4:]))
-    assert some.mean_square == pytest.approx(rms_of(cut, held.left[4:]) ** 2)
+    assert some.mean_square == pytest.approx(rms_of(cut, held.residuals[4:]) ** 2)
     assert some.innovation_square == pytest.approx(rms_of(cut, held.innovations[4:]) ** 2)
     assert not np.allclose(some.innovation_square, some.mean_square)
 

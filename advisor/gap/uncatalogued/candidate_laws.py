@@ -13,10 +13,10 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.between import steps_in
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
-from advisor.gap.search.merit import Judged
+from advisor.gap.search.acceptance import Judged
 from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS
-from advisor.gap.unnamed.stalls import FLOW_LETS_GO, LIFT_MEMORY, flow_lets_go, lift_memory
-from advisor.gap.unnamed.stops import SURFACE_STOP, VANE_STOP, surface_stops, vane_stops
+from advisor.gap.uncatalogued.lift_hysteresis import FLOW_LETS_GO, LIFT_MEMORY, flow_lets_go, lift_memory
+from advisor.gap.uncatalogued.mechanical_stops import SURFACE_STOP, VANE_STOP, surface_stops, vane_stops
 
 
 def _scale(name: str, block: str, channel: str) -> Variant:
@@ -50,7 +50,7 @@ def _filter(block: str, channel: str) -> Variant:
 _PULLED, _RINGS, _RUBS, _FILTERED = "gyro_pulled", "servo_rings", "vane_friction", "_filtered"
 _STICKS = "servo_sticks"
 _WEAKER = "elevator_loss"
-PLAIN = frozenset({_PULLED, SURFACE_STOP, _RINGS})
+MUST_LEAVE_LITTLE = frozenset({_PULLED, SURFACE_STOP, _RINGS})
 """Laws that leave little where they are the truth: what they resemble is of another kind."""
 _READINGS = {
     "a_z": (
@@ -110,7 +110,7 @@ RINGING = Variant(
     tuple((2.0 * np.pi * hz, 0.2) for hz in (1.5, 2.1, 3.0, 4.2, 6.0)),
     (0.05, 0.01), ((4.0, 80.0), (0.02, 0.45)), 0.0, apply_with=_rings,
 )  # fmt: skip
-_SAID = {
+_SENTENCES = {
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
     "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
@@ -168,10 +168,10 @@ def laws_for(flights: Flights) -> list[Variant]:
     return [*of_readings, *_MOMENTS, *of_input, *of_lift]
 
 
-def said(law: Judged) -> str:
+def sentence_of(law: Judged) -> str:
     """What the law is, and what else would look like it."""
     degrees = " and ".join(f"{np.degrees(value):.1f}" for value in law.value)
     first = float(law.value[0])
-    return _SAID[law.effect].format(
+    return _SENTENCES[law.effect].format(
         percent=100.0 * first, ms=1e3 * first, degrees=degrees, degrees_first=f"{np.degrees(first):.1f}"
     )

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from advisor.gap.candidates.sensors import TRUE_AIR_SPEED
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import shared_std, worth
-from advisor.gap.unnamed.weight import Weight
+from advisor.gap.fitting.uncertainty import effective_samples, shared_std
+from advisor.gap.uncatalogued.weight_check import WeightReading
 
-_WORTH_SAYING, _WRONG = 0.02, 0.06
+_REPORTED, _WRONG = 0.02, 0.06
 """Relative difference from which on it is said, and from which on something is wrong ..."""
 _FELT = 0.03
 """... from which on it is felt that an indicated air speed changes by less than the true one ..."""
@@ -29,13 +29,13 @@ _SIGMAS_IN_GUSTS = 8.0
 
 
 @dataclass(frozen=True)
-class TrueSpeed:
+class AirspeedScale:
     """By how much the motion's air speed is above the one in use, or the accelerometer reads too high."""
 
     scale: float
     std: float
 
-    def is_wrong(self, moving_air: bool, weight: Weight | None) -> bool:
+    def is_wrong(self, moving_air: bool, weight: WeightReading | None) -> bool:
         """Whether no air speed indicator of an aircraft is that far off.
 
         ``weight``: what the accelerometer reads of it, where that is known.
@@ -43,11 +43,11 @@ class TrueSpeed:
         least = _INDICATED if self.is_indicated(weight) else _WRONG
         return abs(self.scale) > max(least, _SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
 
-    def is_indicated(self, weight: Weight | None) -> bool:
+    def is_indicated(self, weight: WeightReading | None) -> bool:
         """Whether it may be an indicated air speed in thin air, for the accelerometer reads its weight."""
         return weight is not None and self.scale > max(_FELT, (weight.share - 1.0) / _ITS_OWN)
 
-    def is_the_accelerometers(self, weight: Weight | None) -> bool:
+    def is_the_accelerometers(self, weight: WeightReading | None) -> bool:
         """Whether as much is missing of the weight as of what bends the path: no air speed does that."""
         return weight is not None and weight.is_off and abs(self.scale - (weight.share - 1.0)) < _AS_MUCH
 
@@ -63,17 +63,19 @@ class TrueSpeed:
         )
 
 
-def true_over_read(found: TrueSpeed | None, weight: Weight | None) -> float:
+def true_over_read(found: AirspeedScale | None, weight: WeightReading | None) -> float:
     """How many times the air speed that is read the true one is, where it may be an indicated one; else 1."""
     return 1.0 + found.scale if found is not None and found.is_indicated(weight) else 1.0
 
 
-def true_speed_of(problem: Problem, fitted: Fitted) -> TrueSpeed | None:
+def airspeed_scale_of(problem: Problem, fitted: Fitted) -> AirspeedScale | None:
     """What the fitted model says of it; None where that is next to nothing, or no channel shows it."""
     point = fitted.point
     if TRUE_AIR_SPEED not in point.effects:
         return None
     k = point.effects.index(TRUE_AIR_SPEED)
-    std = float(shared_std(problem, fitted, worth(problem, fitted.innovations))[point.place(k)][0])
+    std = float(
+        shared_std(problem, fitted, effective_samples(problem, fitted.innovations))[point.place(k)][0]
+    )
     scale = float(point.values[k][0])
-    return TrueSpeed(scale, std) if abs(scale) > max(_WORTH_SAYING, _SIGMAS * std) else None
+    return AirspeedScale(scale, std) if abs(scale) > max(_REPORTED, _SIGMAS * std) else None

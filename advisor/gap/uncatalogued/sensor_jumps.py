@@ -7,7 +7,7 @@ from advisor.flight.robust import robust_std
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import SENSOR_CHANNELS
-from advisor.gap.records.floor import DOUBT
+from advisor.gap.records.floor import STATED_FLOOR_MARGIN
 
 _FAR, _SURPRISE = 6.0, 4.0
 """Standard deviations beyond which a change between two samples, and its innovation, are a jump ..."""
@@ -15,7 +15,7 @@ _JUMPS = 0.005
 """... share of them from which on a sensor jumps ..."""
 _SELDOM = 0.1
 """... and what another sensor may have of that share."""
-_OUT_OF_STEP, _MOSTLY = 0.15, 0.5
+_OUT_OF_STEP, _MOSTLY_IN_STEP = 0.15, 0.5
 """Departure of an interval from the usual one at which a propeller's vibration, sampled at nearly the same
 place of every turn, is met at another; and the share of intervals without, from which on only those count."""
 
@@ -31,15 +31,15 @@ def jumping_sensor(problem: Problem, last: Fitted, tolerance: FloatArray) -> str
     jumps = {}
     for c, name in enumerate(problem.channels):
         parts = []
-        flights = zip(problem.flights.flights, last.left, last.innovations, strict=True)
-        for flight, left, innovations in flights:
+        flights = zip(problem.flights.flights, last.residuals, last.innovations, strict=True)
+        for flight, residual, innovations in flights:
             rows, t = problem.rows(flight)[c], flight.outputs[name].t
             quiet, in_step = flight.is_quiet(t), _in_step(t)
-            pair = np.column_stack([np.diff(left[rows]), innovations[rows][1:]])
+            pair = np.column_stack([np.diff(residual[rows]), innovations[rows][1:]])
             parts.append(np.abs(pair[quiet[1:] & quiet[:-1] & in_step]))
         changes, surprises = np.concatenate(parts).T
         usual = [robust_std(y) if len(y) else 0.0 for y in (changes, surprises)]
-        far = max(_FAR * usual[0], DOUBT * float(tolerance[c]))
+        far = max(_FAR * usual[0], STATED_FLOOR_MARGIN * float(tolerance[c]))
         # Values that mostly repeat say nothing about how rough they are.
         jumped = (changes > far) & (surprises > _SURPRISE * usual[1])
         jumps[name] = float(np.mean(jumped)) if min(usual) > 0.0 else 0.0
@@ -57,4 +57,4 @@ def _in_step(t: FloatArray) -> np.ndarray:
     intervals = np.diff(t)
     usual = np.median(intervals)
     in_step = np.abs(intervals - usual) < _OUT_OF_STEP * usual
-    return in_step if np.mean(in_step) > _MOSTLY else np.ones(len(intervals), dtype=bool)
+    return in_step if np.mean(in_step) > _MOSTLY_IN_STEP else np.ones(len(intervals), dtype=bool)

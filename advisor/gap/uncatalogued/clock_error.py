@@ -19,7 +19,7 @@ _BETTER = 2.0
 """How much more of it they must explain than a scale of each manoeuvre does."""
 
 
-def is_of_the_clock(problem: Problem, fitted: Fitted, channel: str) -> bool:
+def is_clock_error(problem: Problem, fitted: Fitted, channel: str) -> bool:
     """Whether what is left of a channel is its rate times a delay that changes between manoeuvres.
 
     In each manoeuvre the delay may grow or shrink steadily. Where the channel was found to lag, it is the lag
@@ -31,16 +31,16 @@ def is_of_the_clock(problem: Problem, fitted: Fitted, channel: str) -> bool:
     delayed, scaled, total = 0.0, 0.0, 0.0
     for i, (flight, rates) in enumerate(zip(problem.flights.flights, rates_of(problem, fitted), strict=True)):
         rows = problem.rows(flight)[c]
-        left, measured = fitted.left[i][rows], flight.outputs[channel].y
-        delayed += _taken(left, rates[rows])
-        scaled += _taken(left, measured - np.mean(measured))
-        total += float(left @ left)
+        residual, measured = fitted.residuals[i][rows], flight.outputs[channel].y
+        delayed += _taken(residual, rates[rows])
+        scaled += _taken(residual, measured - np.mean(measured))
+        total += float(residual @ residual)
         if problem.instruments is not None:
-            total -= len(left) * float(problem.instruments[c]) ** 2
+            total -= len(residual) * float(problem.instruments[c]) ** 2
     return delayed > _MOSTLY * total and delayed > _BETTER * scaled
 
 
-def _taken(left: FloatArray, times: FloatArray) -> float:
+def _taken(residual: FloatArray, times: FloatArray) -> float:
     """Sum of squares that a factor takes up which is constant or grows steadily over a manoeuvre."""
     basis = np.linalg.qr(np.column_stack([times, times * np.linspace(-1.0, 1.0, len(times))]))[0]
-    return float(np.sum((basis.T @ left) ** 2))
+    return float(np.sum((basis.T @ residual) ** 2))

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.gap.search.merit import LEAST_BELIEF
+from advisor.gap.search.acceptance import LEAST_PRIOR_GAIN
 from advisor.gap.search.stage import Stage, added_in
 
 _BESIDE_THE_AIR = 0.5
@@ -16,13 +16,13 @@ _AT_MOST = 0.3
 """... but that share of what is there without the names: the rest is something."""
 
 
-def only_resemble(stages: Sequence[Stage]) -> bool:
+def explain_little_beyond_air(stages: Sequence[Stage]) -> bool:
     """Whether names in moving air leave most of what the air does not explain.
 
     What brings derivatives back to the aircraft file's need not take away anything.
     """
     named = added_in(stages)
-    if not named or max(judged.belief for judged in named) >= LEAST_BELIEF:
+    if not named or max(judged.prior_gain for judged in named) >= LEAST_PRIOR_GAIN:
         return False
     removed = removed_beyond_air(stages)
     return removed is not None and removed < _BESIDE_THE_AIR

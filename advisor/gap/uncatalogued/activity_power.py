@@ -8,16 +8,16 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.problem import Problem
 
 
-def unrest(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+def power_by_activity(problem: Problem, residuals: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Mean squares while the elevator works, and while all is quiet; both shape (channels,)."""
     sums, counts = np.zeros((2, len(problem.channels))), np.zeros((2, len(problem.channels)))
-    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+    for flight, residual in zip(problem.flights.flights, residuals, strict=True):
         free = flight.duration_s - flight.last_step_s
         for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
             t = flight.outputs[name].t
             active = (t >= flight.first_step_s) & (t <= flight.last_step_s + 0.3 * free)
             for k, inside in enumerate((active, flight.is_quiet(t))):
-                sums[k, c] += float(np.sum(left[rows][inside] ** 2))
+                sums[k, c] += float(np.sum(residual[rows][inside] ** 2))
                 counts[k, c] += np.count_nonzero(inside)
     active_power, quiet_power = sums / np.maximum(counts, 1.0)
     # Without a quiet stretch there is nothing to compare with.

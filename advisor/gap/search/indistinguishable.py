@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from advisor.gap.candidates.traits import TRAITS
-from advisor.gap.search.merit import Judged
+from advisor.gap.search.acceptance import Judged
 
 NEAR = 5.0
 """Difference of held-out log likelihood below which two explanations are a tie."""
@@ -11,23 +11,25 @@ _LITTLE = 0.1
 """Difference in gain below which twin effects tie, as a share of the gain of either."""
 
 
-def breaking(effect: str, other: str) -> str:
+def way_to_distinguish(effect: str, other: str) -> str:
     """What would tell two effects apart; empty when nothing particular is known."""
-    return TRAITS[effect].apart.get(other) or TRAITS[other].apart.get(effect, "")
+    return TRAITS[effect].distinguished_by.get(other) or TRAITS[other].distinguished_by.get(effect, "")
 
 
-def _near(a: Judged, b: Judged) -> bool:
+def _is_as_good(a: Judged, b: Judged) -> bool:
     """As good as each other; twins if what parts them is little beside what either explains."""
     twins = TRAITS[a.effect].twin == b.effect or TRAITS[b.effect].twin == a.effect
     return abs(a.gain - b.gain) < (max(NEAR, _LITTLE * abs(b.gain)) if twins else NEAR)
 
 
-def tied_with(best: Judged, others: Sequence[Judged], channels: Sequence[str]) -> tuple[tuple[str, ...], str]:
+def indistinguishable_from(
+    best: Judged, others: Sequence[Judged], channels: Sequence[str]
+) -> tuple[tuple[str, ...], str]:
     """Effects that explain the data as well as ``best``, and what would tell them apart."""
-    names = [j.effect for j in others if j.effect != best.effect and _near(j, best) and j.gain > 0.0]
+    names = [j.effect for j in others if j.effect != best.effect and _is_as_good(j, best) and j.gain > 0.0]
     ways = []
     for name in names:
-        found = breaking(best.effect, name)
+        found = way_to_distinguish(best.effect, name)
         if found:
             ways.append(found)
     trait = TRAITS[best.effect]

@@ -10,8 +10,8 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import INDEX
-from advisor.gap.unnamed.true_speed import TrueSpeed
-from advisor.gap.unnamed.weight import Weight
+from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
+from advisor.gap.uncatalogued.weight_check import WeightReading
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study
@@ -234,5 +234,5 @@ def test_an_accelerometers_zero_that_is_off_by_a_common_amount_is_no_cause():
 def test_an_accelerometer_that_misses_as_much_of_the_weight_as_of_the_path_is_scaled(
     scale, share, scaled_it_is
 ):
-    assert TrueSpeed(scale, 0.003).is_the_accelerometers(Weight(share, 0.004)) is scaled_it_is
-    assert not TrueSpeed(scale, 0.003).is_the_accelerometers(None)
+    assert AirspeedScale(scale, 0.003).is_the_accelerometers(WeightReading(share, 0.004)) is scaled_it_is
+    assert not AirspeedScale(scale, 0.003).is_the_accelerometers(None)

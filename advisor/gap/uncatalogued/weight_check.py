@@ -28,7 +28,7 @@ _SIGMAS = 5.0
 
 
 @dataclass(frozen=True)
-class Weight:
+class WeightReading:
     """What the accelerometer reads of what weight and path demand."""
 
     share: float
@@ -48,7 +48,7 @@ class Weight:
         )
 
 
-def weight_carried(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> Weight | None:
+def weight_reading(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> WeightReading | None:
     """The share that is read; None where too few manoeuvres tell.
 
     ``airspeed_m_s`` is taken where none was logged.
@@ -58,7 +58,7 @@ def weight_carried(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> Weight
         return None
     read, due = np.array(pairs).T
     shares = read / due
-    return Weight(float(np.mean(shares)), float(np.std(shares, ddof=1) / np.sqrt(len(shares))))
+    return WeightReading(float(np.mean(shares)), float(np.std(shares, ddof=1) / np.sqrt(len(shares))))
 
 
 def _means(maneuver: Maneuver, airspeed_m_s: float) -> tuple[float, float] | None:

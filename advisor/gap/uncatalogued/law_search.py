@@ -13,22 +13,22 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import belief_in, worth
-from advisor.gap.search.merit import CERTAIN, Judged
+from advisor.gap.fitting.uncertainty import effective_samples, log_prior_of
+from advisor.gap.search.acceptance import CERTAIN, Judged
 from advisor.gap.search.score import (
     addition,
     difference,
     log_likelihood_gained,
-    odds_in,
+    log_odds_in,
     price_of,
     price_of_edges,
 )
 from advisor.gap.search.screen import Screen, penalty
 from advisor.gap.search.stage import Stage, added_in
-from advisor.gap.unnamed.laws import PLAIN, RINGING, laws_for, said
-from advisor.gap.unnamed.leftover import Leftover
+from advisor.gap.uncatalogued.candidate_laws import MUST_LEAVE_LITTLE, RINGING, laws_for, sentence_of
+from advisor.gap.uncatalogued.unexplained import Unexplained
 
-_WORTH_A_FIT = 0.2
+_FITTED_SHARE = 0.2
 """Share of the likeliest law's gain in the screening from which on another is fitted, too."""
 _OUT_OF_REACH = 200.0
 """Cost beyond that of another law, or of all names together, at which the search for one is given up."""
@@ -45,7 +45,7 @@ _LITTLE = 0.004
 for it is taken for one."""
 _SEVERAL = 2
 """Names that together imitate a law."""
-_BESIDE = 0.5
+_SEPARATE_SHARE = 0.5
 """What the named effects bring beside the law, of what they bring without, where they are another matter;
 certain is enough. And they must change that share of what the law removes: a speed that is off has
 side effects."""
@@ -58,19 +58,19 @@ _MISSING = 0.03
 class Law:
     """A law that was found, and what it brings."""
 
-    leftover: Leftover
+    unexplained: Unexplained
     fitted: Fitted
     """The plain model with the law."""
 
 
-def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
+def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
     """The law that explains more than everything that was named; None where none does."""
-    plain, held = stages[0].fitted, stages[0].held_out
+    baseline, held = stages[0].fitted, stages[0].held_out
     named_cost = stages[-1].fitted.cost
-    found = Screen(problem, plain).quick_fits(laws_for(problem.flights), plain.cost - named_cost)
-    samples = float(np.sum(worth(problem, plain.innovations)))
-    best = min((s.cost for s in found), default=plain.cost)
-    most = plain.cost - 2.0 * max(CERTAIN, 0.5 * _WORTH_A_FIT * (plain.cost - best))
+    found = Screen(problem, baseline).quick_fits(laws_for(problem.flights), baseline.cost - named_cost)
+    samples = float(np.sum(effective_samples(problem, baseline.innovations)))
+    best = min((s.cost for s in found), default=baseline.cost)
+    most = baseline.cost - 2.0 * max(CERTAIN, 0.5 * _FITTED_SHARE * (baseline.cost - best))
     # A law that changes what the derivatives are takes more steps than a screening makes.
     fits: list[tuple[Variant, Fitted]] = []
     lost = named_cost + _OUT_OF_REACH
@@ -82,79 +82,83 @@ def unnamed_law(problem: Problem, stages: list[Stage]) -> Law | None:
     missing = np.sqrt(np.maximum(stages[-1].held_out.mean_square - noise**2, 0.0))
     if np.any(missing > _MISSING * problem.flights.peaks):
         # Nothing small leads to a servo that rings for the whole record: its search begins everywhere.
-        points = [plain.point.with_effect(RINGING, start) for start in RINGING.starts]
-        fits += [(RINGING, fit(problem, p, plain.noise, tolerance=0.5, beaten_by=lost)) for p in points]
+        points = [baseline.point.with_effect(RINGING, start) for start in RINGING.starts]
+        fits += [(RINGING, fit(problem, p, baseline.noise, tolerance=0.5, beaten_by=lost)) for p in points]
     if not fits:
         return None
     law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
-    independent = worth(problem, fitted.innovations)
-    bent = addition(problem, plain, held, fitted, law.effect, independent)
+    effective = effective_samples(problem, fitted.innovations)
+    judged = addition(problem, baseline, held, fitted, law.effect, effective)
     # What one sample is worth depends on the fit that says so: both are held against the same.
     disputed = stages[-1].disputed
-    named = max(_gain_of_all(problem, stages, independent), 0.0 if disputed is None else disputed.gain)
-    if not bent.worth_naming or bent.gain < max(CERTAIN, named + _LIKELIER):
+    named = max(_gain_of_all(problem, stages, effective), 0.0 if disputed is None else disputed.gain)
+    if not judged.is_accepted or judged.gain < max(CERTAIN, named + _LIKELIER):
         return None
-    after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (bent.held_out, held))
-    if np.mean(after < before) < _IN_MOST or not _shows(problem, held, bent.held_out):
+    after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (judged.held_out, held))
+    if np.mean(after < before) < _IN_MOST or not _changes_visibly(problem, held, judged.held_out):
         return None
-    alike = difference(problem, stages[-1].held_out, bent.held_out) < bent.least
+    alike = difference(problem, stages[-1].held_out, judged.held_out) < judged.least
     if alike and len(added_in(stages)) < _SEVERAL:
         # Next to the same motion as what was named: one name stays, several in concert are no likelier.
         return None
-    if len(stages) > 1 and _is_another_matter(problem, stages, bent, independent):
+    if len(stages) > 1 and _are_separate_causes(problem, stages, judged, effective):
         return None
-    left = bent.held_out.mean_square / held.mean_square
-    if law.effect in PLAIN and np.min(left) > _LEAVES:
+    remaining_shares = judged.held_out.mean_square / held.mean_square
+    if law.effect in MUST_LEAVE_LITTLE and np.min(remaining_shares) > _LEAVES:
         return None
     block = law.block
-    rivals = {j.block: _share(j, bent) for j in reversed(stages[0].considered)}
+    rivals = {j.block: _share(j, judged) for j in reversed(stages[0].considered)}
     ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
-    share = float(np.clip(1.0 - np.mean(left), 0.0, 1.0))
-    leftover = Leftover(block, share, ((block, 1.0), *ranking), note=said(bent))
-    return Law(leftover, fitted)
+    share = float(np.clip(1.0 - np.mean(remaining_shares), 0.0, 1.0))
+    unexplained = Unexplained(block, share, ((block, 1.0), *ranking), note=sentence_of(judged))
+    return Law(unexplained, fitted)
 
 
-def _shows(problem: Problem, before: HeldOut, after: HeldOut) -> bool:
+def _changes_visibly(problem: Problem, before: HeldOut, after: HeldOut) -> bool:
     """Whether a law changes some channel of some manoeuvre by more than any simulator is good for."""
-    changes = [a - b for a, b in zip(before.left, after.left, strict=True)]
+    changes = [a - b for a, b in zip(before.residuals, after.residuals, strict=True)]
     return bool(np.any(np.sqrt(mean_squares(problem, changes)) > _LITTLE * problem.flights.peaks))
 
 
-def _gain_of_all(problem: Problem, stages: list[Stage], independent: FloatArray) -> float:
+def _gain_of_all(problem: Problem, stages: list[Stage], effective: FloatArray) -> float:
     """What the named effects bring together, as ``Judged.gain`` counts; 0 without any."""
     first, last = stages[0], stages[-1]
     named = added_in(stages)
     if not named:
         return 0.0
-    likelihood = log_likelihood_gained(first.fitted, first.held_out, last.fitted, last.held_out, independent)
-    likelihood += 0.5 * (problem.strangeness(first.fitted.point) - problem.strangeness(last.fitted.point))
+    likelihood = log_likelihood_gained(first.fitted, first.held_out, last.fitted, last.held_out, effective)
+    likelihood += 0.5 * (problem.nuisance_cost(first.fitted.point) - problem.nuisance_cost(last.fitted.point))
     likelihood += 0.5 * (price_of_edges(problem, first.fitted) - price_of_edges(problem, last.fitted))
-    belief = belief_in(problem, last.fitted, independent) - belief_in(problem, first.fitted, independent)
-    price = sum(price_of(j.variant, independent) for j in named)
-    odds = sum(odds_in(problem, j.effect, float(j.value[0])) for j in named)
-    return likelihood + belief + odds - price
+    prior_gain = log_prior_of(problem, last.fitted, effective) - log_prior_of(
+        problem, first.fitted, effective
+    )
+    price = sum(price_of(j.variant, effective) for j in named)
+    odds = sum(log_odds_in(problem, j.effect, float(j.value[0])) for j in named)
+    return likelihood + prior_gain + odds - price
 
 
-def _is_another_matter(problem: Problem, stages: list[Stage], bent: Judged, independent: FloatArray) -> bool:
+def _are_separate_causes(
+    problem: Problem, stages: list[Stage], judged: Judged, effective: FloatArray
+) -> bool:
     """Whether what was named explains beside the law much of what it explains without, and matters."""
     first, last = stages[0], stages[-1]
-    law = set(bent.variant.entries)
+    law = set(judged.variant.entries)
     others = [v.effect for v in last.fitted.point.effects if not law & set(v.entries)]
     both = fit(
         problem,
-        last.fitted.point.with_only(others).with_effect(bent.variant, tuple(bent.value)),
-        bent.fitted.noise,
+        last.fitted.point.with_only(others).with_effect(judged.variant, tuple(judged.value)),
+        judged.fitted.noise,
         tolerance=0.5,
     )
 
     def gained(before: Fitted, held_before: HeldOut, after: Fitted, held_after: HeldOut) -> float:
-        return log_likelihood_gained(before, held_before, after, held_after, independent)
+        return log_likelihood_gained(before, held_before, after, held_after, effective)
 
     held = hold_out(problem, both)
     alone = gained(first.fitted, first.held_out, last.fitted, last.held_out)
-    beside = gained(bent.fitted, bent.held_out, both, held)
-    matters = difference(problem, bent.held_out, held) > _BESIDE * bent.removed
-    return matters and beside > min(_BESIDE * alone, CERTAIN)
+    in_addition = gained(judged.fitted, judged.held_out, both, held)
+    matters = difference(problem, judged.held_out, held) > _SEPARATE_SHARE * judged.removed
+    return matters and in_addition > min(_SEPARATE_SHARE * alone, CERTAIN)
 
 
 def _share(judged: Judged, best: Judged) -> float:

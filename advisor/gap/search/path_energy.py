@@ -17,21 +17,21 @@ _SMOOTHED_S = 1.0
 """Thrust does not swing faster, accelerometers do."""
 
 
-def work(flights: Flights) -> float | None:
+def energy_swing(flights: Flights) -> float | None:
     """How much work beyond drag's would make the speed swing within a manoeuvre, relative to the mean speed.
 
     What the accelerations show along the path is freed of a constant and of drag in all manoeuvres alike, and
     integrated. None where they were not measured.
     """
-    if not felt_along(flights):
+    if not measures_path_acceleration(flights):
         return None
     everywhere = [slice(0, flight.n) for flight in flights.flights]
-    beyond = _beyond(flights, [np.ones((flight.n, 1)) for flight in flights.flights], everywhere)
+    beyond = _beyond_drag(flights, [np.ones((flight.n, 1)) for flight in flights.flights], everywhere)
     gained = [np.std(np.cumsum(b) * flight.h) for b, flight in zip(beyond, flights.flights, strict=True)]
     return float(np.mean(gained)) / mean_speed(flights)
 
 
-def unasked(flights: Flights) -> float | None:
+def uncommanded_thrust(flights: Flights) -> float | None:
     """Thrust that swings though the throttle does not, m/s²: median of standard deviations in a manoeuvre.
 
     What the accelerations show along the path while it is flown (a pilot sets the speed before and after) is
@@ -40,7 +40,7 @@ def unasked(flights: Flights) -> float | None:
     and height were measured by other instruments, and know nothing of an accelerometer's noise. None where
     accelerations or height were not measured.
     """
-    if not felt_along(flights) or "height" not in flights.has:
+    if not measures_path_acceleration(flights) or "height" not in flights.has:
         return None
     columns = []
     for number, flight in enumerate(flights.flights):
@@ -50,7 +50,7 @@ def unasked(flights: Flights) -> float | None:
     stretches = [_while_flown(flight) for flight in flights.flights]
     swings_by, explained, swung = [], 0.0, 0.0
     for flight, flown, rest in zip(
-        flights.flights, stretches, _beyond(flights, columns, stretches), strict=True
+        flights.flights, stretches, _beyond_drag(flights, columns, stretches), strict=True
     ):
         swings_by.append(np.std(smooth(rest, _SMOOTHED_S)))
         gained, energy = _swing(np.cumsum(rest) * flight.h), _swing(energy_speed(flight)[flown])
@@ -78,7 +78,7 @@ def _swing(course: FloatArray) -> FloatArray:
     return np.asarray(course - np.polynomial.Polynomial.fit(t, course, 1)(t))
 
 
-def felt_along(flights: Flights) -> bool:
+def measures_path_acceleration(flights: Flights) -> bool:
     """Whether accelerations along the path were measured."""
     return "a_x" in flights.has and {"alpha", "a_z"} <= set(flights.channels)
 
@@ -96,9 +96,9 @@ def _lift(flight: Flight) -> FloatArray:
 
 def _throttle(flight: Flight) -> list[FloatArray]:
     """Each of shape (n,): the throttle, and what engines make of it that follow late."""
-    asked = flight.slow[THROTTLE]
+    commanded = flight.slow[THROTTLE]
     keeps = [float(np.exp(-flight.h / lag_s)) for lag_s in _ENGINES_S]
-    return [asked, *(asked[0] + (1.0 - k) * accumulated(asked - asked[0], k) for k in keeps)]
+    return [commanded, *(commanded[0] + (1.0 - k) * accumulated(commanded - commanded[0], k) for k in keeps)]
 
 
 def _drag(flight: Flight) -> FloatArray:
@@ -106,7 +106,9 @@ def _drag(flight: Flight) -> FloatArray:
     return np.column_stack([flight.slow[SPEED] ** 2, (_lift(flight) / flight.slow[SPEED]) ** 2])
 
 
-def _beyond(flights: Flights, columns: Sequence[FloatArray], stretches: Sequence[slice]) -> list[FloatArray]:
+def _beyond_drag(
+    flights: Flights, columns: Sequence[FloatArray], stretches: Sequence[slice]
+) -> list[FloatArray]:
     """Per manoeuvre, in its stretch: acceleration along the path that neither drag nor columns explain, m/s².
 
     Drag and a propeller's loss of thrust with speed hold an aircraft back. A thrust that swings slowly moves

@@ -23,9 +23,9 @@ from advisor.gap.foresight.marks import Marks
 from advisor.gap.foresight.needs import need_of
 from advisor.gap.noise.probes import disturbance_columns
 from advisor.gap.records.flights import SPEED_CHANGE, Flight, Flights
+from advisor.gap.search.acceptance import least_offset_rad
 from advisor.gap.search.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
-from advisor.gap.search.merit import least_offset_rad
-from advisor.gap.search.ties import breaking
+from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
 
 CLIMB_RATE_STD_M_S = 0.1
@@ -63,7 +63,7 @@ def foresee_air(problem: Problem, fitted: Fitted, marks: Marks, unit_s: float) -
     speed = problem.flights.reference_m_s
     spread = _first(lambda angle: air.expected(angle, 0.0))
     peak = _first(lambda angle: air.expected(0.0, angle))
-    way = breaking("turbulence", "gust")
+    way = way_to_distinguish("turbulence", "gust")
     return [
         Foreseen("turbulence", "sigma_w_m_s", speed * spread, (), ""),
         Foreseen("gust", "amplitude_m_s", speed * peak, (("turbulence", air.inside),), way),
@@ -77,8 +77,8 @@ def speed_mark(problem: Problem, fitted: Fitted, marks: Marks) -> Mark:
     for i, flight in enumerate(problem.flights.flights):
         moved = _at_speed(flight, 1.0 + (_SPEED_STEP if i % 2 else -_SPEED_STEP))
         constant = moved.at_constant_speed()
-        real, believed = (problem.read(f, problem.fly(f, p[i]), p[i]) for f in (moved, constant))
-        columns.append((real - believed) / _SPEED_STEP)
+        real, simulated = (problem.read(f, problem.fly(f, p[i]), p[i]) for f in (moved, constant))
+        columns.append((real - simulated) / _SPEED_STEP)
     return Mark("airspeed_variation", "change", marks.of(columns), SPEED_CHANGE)
 
 

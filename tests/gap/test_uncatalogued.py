@@ -9,7 +9,7 @@ from scipy.signal import butter, lfilter, sosfiltfilt
 from advisor.aircraft import PARAMETERS, Aircraft, Alpha
 from advisor.gap.candidates.between import shift_moments
 from advisor.gap.diagnose import diagnose
-from advisor.gap.fitting.belief import WIDE, log_belief, pull_of
+from advisor.gap.fitting.prior import ERROR_IF_WRONG, log_prior, prior_precision
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.smoothness import is_filtered, is_smoothed
 from advisor.gap.simulator.layout import ENTRIES, INDEX
@@ -117,15 +117,15 @@ def test_the_files_derivatives_tell_a_moment_of_the_angles_rate_from_three_other
 def test_a_derivative_of_nothing_in_the_file_has_a_size_that_can_be_weighed(which):
     believed = BELIEVED.copy()
     believed[which] = 0.0
-    assert np.all(np.isfinite(pull_of(believed, WIDE)))
+    assert np.all(np.isfinite(prior_precision(believed, ERROR_IF_WRONG)))
 
 
 def test_derivatives_near_the_files_are_believed_more_than_others_and_unknown_ones_neither_way():
     sure, unsure = 1e-8 * np.diag(BELIEVED**2), np.diag(BELIEVED**2)
     off = BELIEVED * 1.2
-    gained = log_belief(BELIEVED, sure, BELIEVED) - log_belief(off, sure, BELIEVED)
+    gained = log_prior(BELIEVED, sure, BELIEVED) - log_prior(off, sure, BELIEVED)
     assert gained > 5.0
-    assert log_belief(BELIEVED, unsure, BELIEVED) - log_belief(off, unsure, BELIEVED) == pytest.approx(
+    assert log_prior(BELIEVED, unsure, BELIEVED) - log_prior(off, unsure, BELIEVED) == pytest.approx(
         0.0, abs=0.2
     )
 

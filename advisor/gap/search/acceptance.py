@@ -19,13 +19,13 @@ _UNCONFIRMED = 20.0
 """The same of what a single manoeuvre tells, which no other can confirm."""
 _WITH_THE_AIR = 30.0
 """The same in moving air of what air speed, throttle or height tell: they move with the air themselves ..."""
-_PLAINLY, _PLAIN_SIGMAS = 15.0, 5.0
+_CLEAR_GAIN, _CLEAR_SIGMAS = 15.0, 5.0
 """... unless nothing else was named, it changes ten times the least, and a number is as far from nothing."""
 LEAST_SIGMA = 3.0
 """Standard deviations by which a number of it must differ from nothing."""
 CERTAIN = 30.0
 """Log likelihood from which on there is no doubt that something like the effect is there."""
-BEYOND_DOUBT, _SEEN_CHANGE, _PLAIN_CHANGE = 100.0, 5.0, 10.0
+BEYOND_DOUBT, _VISIBLE_CHANGE, _CLEAR_CHANGE = 100.0, 5.0, 10.0
 """Log likelihood, and changes of the least size, from which on stamps that jitter hide no time, and an effect
 is more than the shape of the air."""
 LEAST_OFFSET_RAD = 0.003
@@ -35,11 +35,11 @@ _SET_WITHIN_RAD = 0.007
 which the path is taken, is set much better than within 0.4 deg ..."""
 _ESTIMATED_WITHIN_RAD = 0.0087
 """... and an autopilot's estimate is off by up to half a degree by itself: that has no name."""
-OFFSET_SIGMAS, _PLAIN_OFFSET_SIGMAS = 5.0, 7.0
+OFFSET_SIGMAS, _SMALL_OFFSET_SIGMAS = 5.0, 7.0
 """Standard deviations that an offset of α must have to be named, and one that small."""
-LEAST_BELIEF = 8.0
+LEAST_PRIOR_GAIN = 8.0
 """Log probability by which an effect must bring derivatives back to the file's to be named for that alone."""
-_SUPPORT = 4.0
+_PRIOR_GAIN_IF_CERTAIN = 4.0
 """The same of an effect that is certain anyway."""
 _HOLD_OUT = "hold-out"
 LEAST_SUPPORT = 1.0
@@ -63,9 +63,9 @@ class Judged:
     """... and what it must exceed where ``gain`` leaves no doubt."""
     smallest: float
     """Size below which it is not worth a name."""
-    belief: float
+    prior_gain: float
     """Log probability gained because the derivatives it leaves agree better with the file's."""
-    beforehand: float
+    prior_terms: float
     """What of ``gain`` is not the motion's: belief, the odds of an arm, less the price of its numbers."""
     support: float
     """Gap that it takes away from a manoeuvre kept out, mean over its standard error over manoeuvres."""
@@ -73,7 +73,7 @@ class Judged:
     std: FloatArray
     sigmas: float
     """Standard deviations by which its size differs from nothing (``uncertainty.sigmas_of``)."""
-    witness: int | None = None
+    sole_maneuver: int | None = None
     """The manoeuvre that alone tells of it: ``gain`` and ``removed`` are the fit's own."""
     with_the_air: bool = False
     """The air moves, and with it the channel that tells of the effect."""
@@ -91,7 +91,7 @@ class Judged:
         return self.variant.block
 
     @property
-    def worth_naming(self) -> bool:
+    def is_accepted(self) -> bool:
         """Better on unseen manoeuvres, by more than noise, and not smaller than matters."""
         return all(decision.holds for decision in self.decisions)
 
@@ -99,7 +99,7 @@ class Judged:
     def decisions(self) -> tuple[Decision, ...]:
         """What is asked of an effect before it has a name; all must hold."""
         certain = self.gain >= CERTAIN
-        of_the_file = self.belief >= (_SUPPORT if certain else LEAST_BELIEF)
+        of_the_file = self.prior_gain >= (_PRIOR_GAIN_IF_CERTAIN if certain else LEAST_PRIOR_GAIN)
         change = 0.0 if of_the_file else self.least_certain if certain else self.least
         asked = [
             ("likelihood", self.gain, self.least_gain, "log likelihood gained"),
@@ -115,7 +115,7 @@ class Judged:
     @property
     def is_foretold(self) -> bool:
         """Whether other manoeuvres foretell its work: neither that of one alone nor the file's numbers."""
-        return self.witness is None and self.belief < LEAST_BELIEF
+        return self.sole_maneuver is None and self.prior_gain < LEAST_PRIOR_GAIN
 
     @property
     def is_supported(self) -> bool:
@@ -130,17 +130,17 @@ class Judged:
     @property
     def least_gain(self) -> float:
         """What ``gain`` must reach; where data leave a choice and the file tells, likelier is enough."""
-        confirmed = LEAST_GAIN if self.witness is None else _UNCONFIRMED
+        confirmed = LEAST_GAIN if self.sole_maneuver is None else _UNCONFIRMED
         if self.with_the_air:
-            return max(confirmed, _PLAINLY) if self.alone and self.changes_plainly else _WITH_THE_AIR
-        if self.witness is not None:
+            return max(confirmed, _CLEAR_GAIN) if self.alone and self.changes_clearly else _WITH_THE_AIR
+        if self.sole_maneuver is not None:
             return confirmed
-        return 0.0 if self.variant.twin is not None and self.belief >= LEAST_BELIEF else LEAST_GAIN
+        return 0.0 if self.variant.twin is not None and self.prior_gain >= LEAST_PRIOR_GAIN else LEAST_GAIN
 
     @property
-    def changes_plainly(self) -> bool:
+    def changes_clearly(self) -> bool:
         """Ten times the least change, by a number that is far from nothing."""
-        return self.removed >= _PLAIN_CHANGE * self.least and self.sigmas > _PLAIN_SIGMAS
+        return self.removed >= _CLEAR_CHANGE * self.least and self.sigmas > _CLEAR_SIGMAS
 
     @property
     def at_its_bounds(self) -> bool:
@@ -162,7 +162,7 @@ class Judged:
     @property
     def least_size(self) -> float:
         """The physical minimum; stamps that jitter hide no time that is plain all the same."""
-        plain = self.gain >= BEYOND_DOUBT and self.removed >= _SEEN_CHANGE * self.least
+        plain = self.gain >= BEYOND_DOUBT and self.removed >= _VISIBLE_CHANGE * self.least
         return min(self.smallest, 2.0 * self.variant.smallest) if plain else self.smallest
 
 
@@ -179,7 +179,7 @@ def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) 
     least = max(_ESTIMATED_WITHIN_RAD if derived else _SET_WITHIN_RAD, OFFSET_SIGMAS * std_rad)
     if derived or not alone:
         return least
-    return min(least, max(LEAST_OFFSET_RAD, _PLAIN_OFFSET_SIGMAS * std_rad))
+    return min(least, max(LEAST_OFFSET_RAD, _SMALL_OFFSET_SIGMAS * std_rad))
 
 
 def size_of(variant: Variant, value: FloatArray) -> float:

@@ -15,11 +15,11 @@ from advisor.gap.decision import Decision
 from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import SENSOR_CHANNELS, Probe, probe_blocks
-from advisor.gap.records.floor import DOUBT
+from advisor.gap.records.floor import STATED_FLOOR_MARGIN
 from advisor.gap.simulator.layout import natural_frequency
-from advisor.gap.unnamed.clock import is_of_the_clock
-from advisor.gap.unnamed.jumps import jumping_sensor
-from advisor.gap.unnamed.unrest import unrest
+from advisor.gap.uncatalogued.activity_power import power_by_activity
+from advisor.gap.uncatalogued.clock_error import is_clock_error
+from advisor.gap.uncatalogued.sensor_jumps import jumping_sensor
 
 LEAST_GAIN = 100.0
 """Log likelihood a disturbance must bring ..."""
@@ -31,7 +31,7 @@ _FAINT_SHARE = 0.05
 """The least share in still air, for a disturbance that is large beside what the named effects took up ..."""
 _FAINT_OF_GAP = 0.25
 """... by this much: then no name came near what is there."""
-_RESTLESS = 2.0
+_ACTIVITY_RATIO = 2.0
 """Power while the stick moves over that in quiet, from which on it is no noise."""
 LEAST_OF_GAP = 0.1
 """Either beside what the named effects took up: less is an effect's shape, known to low order only."""
@@ -39,12 +39,12 @@ OF_PEAK = 0.01
 """Share of a channel's peak that must be left: a simplified model is no better than that ..."""
 _BEYOND_DOUBT, _FAR_LOUDER, _FAR_ABOVE = 0.5, 4.0, 2.0
 """... that share of it where it is so much louder while the stick moves, and above noise in all."""
-_PLAIN = 0.1
+_CLEAR = 0.1
 """Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
 
 
 @dataclass(frozen=True)
-class Leftover:
+class Unexplained:
     """Something without a name, and where it is."""
 
     block: str
@@ -60,19 +60,19 @@ class Leftover:
     """What told it from noise, where numbers were held against limits."""
 
 
-def of_the_wind(found: Leftover | None) -> Leftover:
+def as_wind(found: Unexplained | None) -> Unexplained:
     """What is left where the wind is known to change with height: whatever it looks like, it is the air's."""
     ranking = () if found is None else tuple(pair for pair in found.ranking if pair[0] != "air")
-    return Leftover("air", 1.0 if found is None else found.share, (("air", 1.0), *ranking))
+    return Unexplained("air", 1.0 if found is None else found.share, (("air", 1.0), *ranking))
 
 
-def left_over(
+def unexplained_residual(
     problem: Problem,
     first: Fitted,
     last: Fitted,
     tolerance: FloatArray,
     moving_air: bool,
-) -> Leftover | None:
+) -> Unexplained | None:
     """What the last model leaves, if it is more than noise.
 
     Parameters
@@ -84,12 +84,12 @@ def left_over(
     moving_air
         Whether the air was found to move: then the filter that knows of it is known to low order only.
     """
-    noise = noise_of(problem)
+    noise = innovation_noise(problem)
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     telling = np.isin(np.arange(len(problem.channels)), problem.flights.telling)
-    beyond = np.sqrt(np.maximum(rms_of(problem, last.left) ** 2 - instruments_of(problem) ** 2, 0.0))
+    beyond = np.sqrt(np.maximum(rms_of(problem, last.residuals) ** 2 - instruments_of(problem) ** 2, 0.0))
     peaks = problem.flights.peaks
-    active, quiet = unrest(problem, last.innovations)
+    active, quiet = power_by_activity(problem, last.innovations)
     beyond_doubt = (active > _FAR_LOUDER * quiet) & (powers > _FAR_ABOVE)
     of_peak = np.where(beyond_doubt, _BEYOND_DOUBT, 1.0) * OF_PEAK
     telling &= beyond > np.maximum(of_peak, _of_the_command(problem, last)) * peaks
@@ -101,26 +101,26 @@ def left_over(
     best = probes[0]
     # What a disturbance with a memory describes did not jump.
     if jumping is not None and best.explained < _LEAST_SHARE:
-        return Leftover(jumping, 1.0, ranking_of(probes, jumping), note="It jumps now and then.")
+        return Unexplained(jumping, 1.0, ranking_of(probes, jumping), note="It jumps now and then.")
     if nothing:
         return None
-    loud = telling & (rms_of(problem, last.left) > DOUBT * tolerance)
+    loud = telling & (rms_of(problem, last.residuals) > STATED_FLOOR_MARGIN * tolerance)
     louder = np.where(loud, active / np.maximum(quiet, 1e-300), 1.0)
     faint = best.explained < _LEAST_SHARE
     least_share = _MOVING_SHARE if moving_air else _FAINT_SHARE
     disturbed = best.gain >= LEAST_GAIN and best.explained >= least_share and bool(np.any(loud))
     # What a low-pass leaves of noise is like no noise with a memory: there only the stick can tell.
     disturbed = disturbed and not problem.flights.alpha_is_smoothed
-    if not disturbed and np.max(louder) < _RESTLESS:
+    if not disturbed and np.max(louder) < _ACTIVITY_RATIO:
         return None
-    plain = bool(np.any((louder > _RESTLESS) & (beyond > _PLAIN * peaks)))
-    if faint and not plain and not moving_air and first is not last:
+    clear = bool(np.any((louder > _ACTIVITY_RATIO) & (beyond > _CLEAR * peaks)))
+    if faint and not clear and not moving_air and first is not last:
         # What every block explains as little is the error of the named effects' model.
         return None
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
-    least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _RESTLESS else LEAST_OF_GAP
-    if unexplained < least * taken and not plain:
+    least = _FAINT_OF_GAP if disturbed and faint and np.max(louder) < _ACTIVITY_RATIO else LEAST_OF_GAP
+    if unexplained < least * taken and not clear:
         return None
     block = _block(problem, last, best.block)
     if moving_air and block == "air":
@@ -129,23 +129,23 @@ def left_over(
     decisions = (
         Decision(block, "likelihood", best.gain, LEAST_GAIN, "log likelihood of a disturbance there"),
         Decision(block, "place", best.explained, least_share, "of what is left"),
-        Decision(block, "unrest", float(np.max(louder)), _RESTLESS, "times the power in quiet"),
+        Decision(block, "activity", float(np.max(louder)), _ACTIVITY_RATIO, "times the power in quiet"),
         Decision(block, "size", unexplained, least * taken, "of the power that the names took up"),
     )
-    return Leftover(block, best.explained, ranking_of(probes, block), decisions=decisions)
+    return Unexplained(block, best.explained, ranking_of(probes, block), decisions=decisions)
 
 
-def placed(problem: Problem, last: Fitted) -> Leftover:
+def located(problem: Problem, last: Fitted) -> Unexplained:
     """What is left, in the block whose unknown disturbance explains it best."""
-    probes = probe_blocks(problem, last, noise_of(problem))
+    probes = probe_blocks(problem, last, innovation_noise(problem))
     block = _block(problem, last, probes[0].block)
-    return Leftover(block, probes[0].explained, ranking_of(probes, block))
+    return Unexplained(block, probes[0].explained, ranking_of(probes, block))
 
 
 def _block(problem: Problem, last: Fitted, likeliest: str) -> str:
     """The likeliest block, or timing where a sensor is off by its rate times a delay that changes."""
     channel = SENSOR_CHANNELS.get(likeliest)
-    return "timing" if channel is not None and is_of_the_clock(problem, last, channel) else likeliest
+    return "timing" if channel is not None and is_clock_error(problem, last, channel) else likeliest
 
 
 def _of_the_command(problem: Problem, last: Fitted) -> float:
@@ -162,7 +162,7 @@ def _of_the_command(problem: Problem, last: Fitted) -> float:
     return frequency * interval / 12.0
 
 
-def noise_of(problem: Problem) -> FloatArray:
+def innovation_noise(problem: Problem) -> FloatArray:
     """What innovations are measured against, shape (channels,): 1 where the filter knows the noise."""
     return np.ones(len(problem.channels)) if problem.knows_the_noise else instruments_of(problem)
 

@@ -29,12 +29,12 @@ _LEAST_MANEUVERS = 4
 """That must agree on a gradient."""
 _CHANCE = 1e-3
 """Of a gradient that large by the scatter between so many manoeuvres (Student's t) ..."""
-_PLAIN_CHANCE = 5e-3
+_CLEAR_CHANCE = 5e-3
 """... and the same where heights explain a plain share."""
 _LEAST_SHARE = 0.17
 """Of what the air speed has beyond the accelerations. In air that moves, and where thrust comes late, heights
 explain up to a seventh of it by chance; a wind that changes with height, a fifth and more ..."""
-_PLAIN_SHARE = 0.25
+_CLEAR_SHARE = 0.25
 """... and in air that moves of itself, from this share on it is plain all the same ..."""
 _SURE_CHANCE = 1e-4
 """... or where manoeuvres agree as they would with this chance."""
@@ -70,14 +70,14 @@ class Shear:
     """That it was found in."""
 
     @property
-    def is_feigned(self) -> bool:
+    def is_implausible(self) -> bool:
         """Whether no wind changes by that much: in moving air its gusts, else an air speed that is wrong."""
         return abs(self.gradient_per_s) > _MOST_PER_S
 
     @property
-    def is_plain(self) -> bool:
+    def exceeds_gusts(self) -> bool:
         """Beyond what moving air feigns."""
-        return self.share >= _PLAIN_SHARE or self.is_agreed(_SURE_CHANCE)
+        return self.share >= _CLEAR_SHARE or self.is_agreed(_SURE_CHANCE)
 
     def is_agreed(self, chance: float) -> bool:
         """Whether the manoeuvres agree on it, and it is felt."""
@@ -119,8 +119,10 @@ def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Sh
     if found is None:
         return None
     # An instrument that is late, or indicates less than the true speed, feigns wind as well.
-    left = [_unexplained(_paths_of(maneuvers, true_over_read, late_s, _LATE_S[-1])) for late_s in _LATE_S]
-    return _shear_of(_paths_of(maneuvers, true_over_read, _LATE_S[int(np.argmin(left))]))
+    unexplained_power = [
+        _unexplained(_paths_of(maneuvers, true_over_read, late_s, _LATE_S[-1])) for late_s in _LATE_S
+    ]
+    return _shear_of(_paths_of(maneuvers, true_over_read, _LATE_S[int(np.argmin(unexplained_power))]))
 
 
 def _shear_of(paths: Sequence[_Path]) -> Shear | None:
@@ -128,7 +130,7 @@ def _shear_of(paths: Sequence[_Path]) -> Shear | None:
     if len(paths) < _LEAST_MANEUVERS:
         return None
     everywhere = _gradient(paths)
-    chance = _PLAIN_CHANCE if everywhere.share >= _PLAIN_SHARE else _CHANCE
+    chance = _CLEAR_CHANCE if everywhere.share >= _CLEAR_SHARE else _CHANCE
     if everywhere.share >= _LEAST_SHARE and everywhere.is_agreed(chance):
         return everywhere
     heights = np.concatenate([p.height for p in paths])
@@ -145,12 +147,12 @@ def _shear_of(paths: Sequence[_Path]) -> Shear | None:
     return likeliest if there or undeniable else None
 
 
-def blows_along(maneuvers: Sequence[Maneuver]) -> bool:
+def moves_along_path(maneuvers: Sequence[Maneuver]) -> bool:
     """Whether the air speed swings beyond the accelerations by more than its noise: air moves along the path.
 
     Found in 3 of 480 flights, all in gusts, and in one whose attitude was wrong.
     """
-    slow, plain = [], []
+    slow, above_noise = [], []
     for maneuver in maneuvers:
         path = _path_of(maneuver)
         if path is None:
@@ -158,9 +160,9 @@ def blows_along(maneuvers: Sequence[Maneuver]) -> bool:
         white = float(np.var(np.diff(path.speed))) / 2.0
         swing = float(np.sqrt(max(float(np.var(path.speed)) - white, 0.0)))
         slow.append(swing / float(np.mean(maneuver.channels["airspeed"].y)))
-        plain.append(swing / max(np.sqrt(white), 1e-12))
+        above_noise.append(swing / max(np.sqrt(white), 1e-12))
     enough = len(slow) >= _LEAST_MANEUVERS
-    return enough and bool(np.median(slow) > _ALONG and np.median(plain) > _ABOVE_NOISE)
+    return enough and bool(np.median(slow) > _ALONG and np.median(above_noise) > _ABOVE_NOISE)
 
 
 def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf) -> Shear:

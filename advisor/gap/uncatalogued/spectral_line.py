@@ -32,7 +32,7 @@ _POINTS = 4096
 
 
 @dataclass(frozen=True)
-class Tone:
+class SpectralLine:
     """A swing that goes on by itself."""
 
     hz: float
@@ -43,7 +43,7 @@ class Tone:
     """Shape (channels,): mean square of what it does to each, SI."""
 
 
-def tone_in(problem: Problem, fitted: Fitted, noise: FloatArray) -> Tone | None:
+def spectral_line_in(problem: Problem, fitted: Fitted, noise: FloatArray) -> SpectralLine | None:
     """The tone in what a fit leaves; None where no line stands out of the spectrum of any channel.
 
     Parameters
@@ -58,7 +58,7 @@ def tone_in(problem: Problem, fitted: Fitted, noise: FloatArray) -> Tone | None:
     blocks = [b for b in DYNAMIC if b != "air" or "alpha" in problem.channels]
     blocks += [b for b, channel in SENSOR_CHANNELS.items() if channel in problem.channels]
     found = sorted((_swing(problem, fitted, noise, b, hz) for b in blocks), key=lambda x: -x[0].gain)
-    return Tone(hz, tuple(probe for probe, _ in found), found[0][1])
+    return SpectralLine(hz, tuple(probe for probe, _ in found), found[0][1])
 
 
 def line_of(records: Sequence[FloatArray], interval_s: float) -> tuple[float, float]:
@@ -132,9 +132,9 @@ def _swing(
         r = fitted.innovations[i] * w
         chol = factor(A, fitted.linear[i].prior)
         AB = A.T @ B
-        pull = B.T @ r - AB.T @ solved(chol, A.T @ r)
-        found = np.linalg.lstsq(B.T @ B - AB.T @ solved(chol, AB), pull, rcond=1e-10)[0]
-        gain += 0.5 * float(pull @ found)
+        score = B.T @ r - AB.T @ solved(chol, A.T @ r)
+        found = np.linalg.lstsq(B.T @ B - AB.T @ solved(chol, AB), score, rcond=1e-10)[0]
+        gain += 0.5 * float(score @ found)
         before += float(r @ r)
         sizes.append(float(np.hypot(*found)))
         swung = seen @ found
