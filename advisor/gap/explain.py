@@ -1,4 +1,4 @@
-"""From the plain model to the evidence: effects are added, then what is left is looked at."""
+"""From the baseline model to the evidence: effects are added one by one, then the residual is examined."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -39,20 +39,21 @@ from advisor.gap.uncatalogued.unexplained import Unexplained, located, unexplain
 from advisor.gap.verdict.evidence import Evidence
 
 _HARDLY_DAMPED = 0.02
-"""Damping ratio of a structure that rings: of bare metal, or a boom."""
+"""Damping ratio at which the search for a structural mode starts, of bare metal or a boom. A start far from
+the true value only costs iterations."""
 
 
 def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Progress) -> Evidence:
-    """Build the model up, then look at what is left: the air, and whatever the motion still predicts.
+    """Add effects to the baseline model, then examine the residual: moving air, and unexplained motion.
 
     Parameters
     ----------
     problem, baseline
-        The data, and the plain model fitted to them.
+        The data, and the baseline model fitted to the data.
     aircraft
-        The aircraft file: its effects are in every model.
+        The aircraft file, whose effects are part of every model.
     progress
-        Called with a sentence and the share done.
+        Function that receives a sentence and the share of the work that is done, 0 to 1.
     """
     variants = beyond_servo(aircraft, variants_for(problem.flights))
     variants = beyond_known(aircraft.effects, variants)
@@ -70,7 +71,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
     if unexplained is None:
         unexplained = _unexplained(problem, stages, tolerance, air is not None)
     floor = _floor(problem, stages[-1], tolerance)
-    # A model without the law that was found bends its air speed to it.
+    # Without a law that was found, the model would fit its air speed to the law's motion.
     airspeed_scale = airspeed_scale_of(problem, last) if law is None else None
     if unexplained is not None and unexplained.in_quiet is not None:
         least = np.maximum(stated_floor(problem.flights), tolerance)
@@ -84,7 +85,10 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
 def _unexplained(
     problem: Problem, stages: Sequence[Stage], tolerance: FloatArray, moving_air: bool
 ) -> Unexplained | None:
-    """What swings by itself, or what the last model leaves otherwise. ``tolerance`` as in ``unexplained_residual``."""
+    """Return a sustained oscillation, or else the unexplained residual of the last model.
+
+    ``tolerance`` and ``moving_air`` are defined in ``unexplained_residual``.
+    """
     first, last = stages[0].fitted, stages[-1].fitted
     found = sustained_oscillation(problem, first, last, tolerance)
     if found is not None:
@@ -93,21 +97,23 @@ def _unexplained(
     slight = None if found is None else stages[-1].slight_in(found.block)
     if slight is None:
         return found
-    # A cause that is known, and below its physical minimum, leaves nothing without a name.
+    # A known effect below its physical minimum explains the residual of its block.
     return unexplained_residual(problem, first, slight.fitted, tolerance, moving_air)
 
 
 def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:
-    """Noise of each channel where nothing was flown, shape (channels,), no less than ``tolerance``."""
-    # Stamps that jitter are the instruments', too, but show only where something moves.
+    """Return the noise of each channel where nothing was flown, shape (channels,), at least ``tolerance``."""
+    # Jitter of the stamps belongs to the instruments, but appears only where a channel moves.
     measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
     return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)
 
 
 def evidence_of_one_maneuver(problem: Problem, baseline: Fitted) -> Evidence:
-    """What a single manoeuvre tells: where the gap lies. No cause is sought, for nothing could confirm one.
+    """Return the evidence of a single manoeuvre: where the gap lies. No cause is sought, for lack of a
+    hold-out.
 
-    The gap is what the aircraft file's derivatives leave where they are wrong, or else what fitted ones do.
+    The gap is the residual of the aircraft file's derivatives if these are wrong, otherwise that of fitted
+    ones.
     """
     stage = Stage(baseline, hold_out(problem, baseline), (), None)
     floor, file_model = (
@@ -125,7 +131,7 @@ def evidence_of_one_maneuver(problem: Problem, baseline: Fitted) -> Evidence:
 
 
 def _begun_where_it_rings(variant: Variant, problem: Problem, baseline: Fitted) -> Variant:
-    """A structural mode also sought where the pitch rate rings: hardly damped, it shows nowhere else."""
+    """Return a structural mode with one more start, at the frequency where the pitch rate rings."""
     if variant.effect != "structural_mode":
         return variant
     omega = variant.names.index("omega_rad_s")
@@ -141,25 +147,28 @@ def _begun_where_it_rings(variant: Variant, problem: Problem, baseline: Fitted) 
 def _with_effects(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
 ) -> tuple[list[Stage], Law | None]:
-    """The model built up, and the law without a name that explains more than all of its names, if any."""
+    """Return the stages of the search, and the uncatalogued law that explains more than all effects, if
+    any."""
     stages = one_after_another(problem, baseline, variants, progress)
     law = search_law(problem, stages)
     return (in_full(problem, settled(problem, stages)) if law is None else stages), law
 
 
 def _with_the_air(problem: Problem, stages: list[Stage], law: Law | None) -> tuple[list[Stage], Air | None]:
-    """The names and the air's motion; of a law, the law alone with what air there is beside it."""
+    """Return the stages and the moving air. With a law, only the air that the law leaves unexplained
+    counts."""
     if law is None:
         return stages, _air_with(problem, stages[-1].fitted)
     baseline = reduced_to(problem, stages, [])
     air = _air_with(problem, baseline[-1].fitted)
-    # What the law does is no air: with it in the model there may be none.
+    # Motion of the law is no moving air: with the law in the model the air may be still.
     still = air is None or moving_air(problem, law.fitted) is None
     return baseline, None if still else air
 
 
 def _air_with(problem: Problem, last: Fitted) -> Air | None:
-    """The air's motion beside a model; it is not asked for where nothing hints at it."""
+    """Return the moving air that a model leaves, or None. A white residual without a loud manoeuvre is not
+    searched."""
     nearly_white = np.all(effective_samples(problem, last.innovations) >= 0.5 * counts(problem))
     if not problem.knows_the_noise and nearly_white and not one_maneuver_stands_out(problem, last):
         return None

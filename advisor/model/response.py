@@ -303,7 +303,8 @@ def _specific_force(
     state: FloatArray,
     row: FloatArray,
 ) -> float:
-    """a_z without gravity and bias, from α̇ and q̇ of the model; derivatives into ``row`` (14,) or (0,)."""
+    """Return a_z without gravity and bias, from α̇ and q̇ of the model; derivatives into ``row`` (14,) or
+    (0,)."""
     a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
     alpha_dot = a11 * alpha + a12 * q + s * (shared[2] * delta + local[0]) + known
     q_dot = a21 * alpha + a22 * q + s * s * (shared[5] * delta + local[1])

@@ -60,7 +60,7 @@ class Optimum(NamedTuple):
 
 @kernel()
 def weigh(z: FloatArray, y: FloatArray, channel: Index, floor: FloatArray) -> tuple[FloatArray, float]:
-    """σ of each output from its residuals, Eq. (8), and the cost Σ n_c·log σ_c²."""
+    """Return σ of each output from its residuals, Eq. (8), and the cost Σ n_c·log σ_c²."""
     power = np.zeros(len(OUTPUTS))
     count = np.zeros(len(OUTPUTS))
     for i in range(len(z)):
@@ -102,7 +102,7 @@ def normal_equations(
     free: Index,
     noise: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Information matrix (m, n, n) and gradient (m, n) of each manoeuvre by the n free parameters.
+    """Return the information matrix (m, n, n) and gradient (m, n) of each manoeuvre by the n free parameters.
 
     Only the lower triangles are filled.
     """
@@ -130,7 +130,7 @@ def normal_equations(
 
 @kernel()
 def cholesky(a: FloatArray) -> bool:
-    """Lower factor in place; False when ``a`` is not positive definite to working precision."""
+    """Return the lower factor in place; False when ``a`` is not positive definite to working precision."""
     n = a.shape[0]
     for j in range(n):
         pivot = a[j, j]

@@ -35,7 +35,7 @@ class Whitened:
 
 
 def whitened(place: Place, air: AirModel, instruments: int) -> Whitened | None:
-    """The place seen through the filter; None where the numbers overflow.
+    """Return the place seen through the filter; None where the numbers overflow.
 
     Parameters
     ----------

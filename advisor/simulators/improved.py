@@ -99,7 +99,7 @@ def in_simulator(
 
 
 def _carried(point: Point, problem: Problem, surrogate: Surrogate, flying: Flying) -> Carried:
-    """A model without what the simulator cannot be given, and the names of that."""
+    """Return a model without what the simulator cannot be given, and the names of that."""
     on_paper: list[str] = []
     if not flying.simulator.takes_increments:
         derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
@@ -121,14 +121,14 @@ def _carried(point: Point, problem: Problem, surrogate: Surrogate, flying: Flyin
 
 
 def _found(problem: Problem, points: Sequence[Point]) -> FloatArray:
-    """Shape (manoeuvres, entries): each manoeuvre's model with the effects, without initial states."""
+    """Return each manoeuvre's model with the effects, without initial states, shape (manoeuvres, entries)."""
     still = np.zeros_like(points[0].own)
     rows = [problem.driving(replace(_named(point), own=still))[i] for i, point in enumerate(points)]
     return np.array(rows)
 
 
 def _named(point: Point) -> Point:
-    """The model without what is part of every model: that is the flight's, not the simulator's."""
+    """Return the model without what is part of every model: that is the flight's, not the simulator's."""
     keep = [k for k, effect in enumerate(point.effects) if not effect.is_nuisance]
     return replace(
         point,
@@ -138,7 +138,7 @@ def _named(point: Point) -> Point:
 
 
 def _with(problem: Problem, grids: Sequence[FloatArray], sign: float) -> Problem:
-    """The problem with series on the grid added to what was measured, each by the sign."""
+    """Return the problem with series on the grid added to what was measured, each by the sign."""
     flights = []
     for flight, grid in zip(problem.flights.flights, grids, strict=True):
         t = np.arange(grid.shape[1]) * flight.h
@@ -151,7 +151,7 @@ def _with(problem: Problem, grids: Sequence[FloatArray], sign: float) -> Problem
 
 
 def _without_the_air(examined: Examined, after: HeldOut) -> HeldOut:
-    """The errors without the share that the air's likeliest course takes out of the model's."""
+    """Return the errors without the share that the air's likeliest course takes out of the model's."""
     air, last = examined.evidence.air, examined.evidence.stages[-1].held_out
     if air is None:
         return after

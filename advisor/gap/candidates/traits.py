@@ -1,7 +1,7 @@
-"""The table of effects: what is known of each beforehand, however it is described.
+"""The table of effects: the prior knowledge of each effect, independent of its description in a fit.
 
-Its numbers (parameters, bounds, steps, the smallest size worth a name) are in the variants of its block. What
-an aircraft file may say of it is in ``advisor.aircraft_effects``.
+Parameters, bounds, steps and least sizes are in the variants of each block. Keys of the aircraft file are in
+``advisor.aircraft_effects``.
 """
 
 from advisor.gap.candidates.trait import Need, Trait

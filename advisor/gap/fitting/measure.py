@@ -1,4 +1,4 @@
-"""The gap in numbers: per channel, manoeuvre, phase and frequency band."""
+"""The gap in numbers: by channel, manoeuvre, phase and frequency band."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -14,24 +14,25 @@ from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.records.flights import Flight
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
-"""A short period lies in the middle ones; below is the drift of trim, above structure and noise."""
+"""Limits of the frequency bands in Hz. The short period lies in the middle bands, drift of the trim below,
+structure and noise above."""
 _EDGE_S = 0.2
-"""After each step: what lies between command and surface shows there."""
+"""Time in s after a step that counts as the step's edge, where faults between command and surface show."""
 PHASES = ("step edge", "plateau", "free response")
 
 
 def gap_of(mean_square: FloatArray, floor: FloatArray) -> FloatArray:
-    """Mean square over the floor's square, minus 1; never negative: less than the floor is no gap."""
+    """Return the mean square over the floor's square, minus 1, but never less than 0."""
     return np.maximum(mean_square / floor**2 - 1.0, 0.0)
 
 
 def whole_gap(mean_square: FloatArray, floor: FloatArray) -> float:
-    """The gap over all channels: their mean."""
+    """Return the mean of the gap over the channels."""
     return float(np.mean(gap_of(mean_square, floor)))
 
 
 def by_phase(problem: Problem, residuals: Sequence[FloatArray], floor: FloatArray) -> Mapping[str, float]:
-    """Gap just after the steps, between them, and after the last one."""
+    """Return the gap just after the steps, between them, and after the last one."""
     sums = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
     counts = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
     for flight, residual in zip(problem.flights.flights, residuals, strict=True):
@@ -61,7 +62,7 @@ def _phases(flight: Flight, t: FloatArray) -> Mapping[str, FloatArray]:
 
 
 def by_band(problem: Problem, residuals: Sequence[FloatArray]) -> tuple[tuple[float, float, float], ...]:
-    """From, to, share of the power of the pitch-rate error."""
+    """Return for each band its limits in Hz and its share of the power of the pitch-rate error."""
     if "q" not in problem.channels:
         return ()
     power = np.zeros(len(_BANDS_HZ))
@@ -80,14 +81,14 @@ def by_band(problem: Problem, residuals: Sequence[FloatArray]) -> tuple[tuple[fl
 
 
 def shrink_interval(before: FloatArray, after: FloatArray, floor: FloatArray) -> tuple[float, float]:
-    """95 % interval of the shrink in per cent, by resampling manoeuvres.
+    """Return the 95 % interval of the shrink in per cent, by resampling manoeuvres.
 
     Parameters
     ----------
     before, after
-        Shape (manoeuvres, channels): mean squares of what is left.
+        Shape (manoeuvres, channels): mean squares of the residuals.
     floor
-        Shape (channels,).
+        Shape (channels,): standard deviation of the noise.
     """
     rng = np.random.default_rng(20)
     n = len(before)
@@ -101,14 +102,15 @@ def shrink_interval(before: FloatArray, after: FloatArray, floor: FloatArray) ->
 
 
 def file_model_of(problem: Problem, fitted: Fitted) -> HeldOut | None:
-    """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
+    """Return the residuals of the aircraft file's derivatives, with only initial states, trim and offsets
+    refitted."""
     if problem.prior_derivatives is None:
         return None
     return own_refitted(problem, replace(fitted.point, derivatives=problem.prior_derivatives), fitted.noise)
 
 
 def own_refitted(problem: Problem, point: Point, noise: FloatArray) -> HeldOut:
-    """How a model with these shared numbers does, only initial states, trim and offsets refitted.
+    """Return the residuals of a model with given shared parameters, with only nuisance parameters refitted.
 
     ``noise``, shape (channels,), weighs the channels.
     """

@@ -1,8 +1,8 @@
-"""What the aircraft file is worth as evidence.
+"""The aircraft file as prior of the derivatives.
 
-Either the simulator's derivatives are right, and an effect is missing; or they are off, by tens of per
-cent. Both are given the same chance beforehand. Where the data leave a choice (a dead-band or less
-elevator power, M_α̇ or three other derivatives), what leaves the file's derivatives alone is likelier.
+Either the simulator's derivatives are right and an effect is missing, or they are off by tens of per cent.
+Both cases have equal prior probability. Where the data leave a choice, such as a dead band or less elevator
+power, the explanation that keeps the file's derivatives is likelier.
 """
 
 from dataclasses import dataclass
@@ -12,26 +12,28 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 
 ERROR_IF_RIGHT = 0.03
-"""Relative error of derivatives that are right: linearised, at a nearby speed."""
+"""Relative standard deviation of derivatives that are right: they are linearised, at a nearby speed."""
 ERROR_IF_WRONG = 0.3
-"""Relative error of derivatives that are not."""
+"""Relative standard deviation of derivatives that are wrong."""
 ERROR_IF_FIXED = 0.003
-"""The same where they are held at the file's, to see what else would explain the motion."""
+"""Relative standard deviation of derivatives that are fixed at the file's, in the search for another
+explanation."""
 _LEAST = 0.1
-"""Size below which a derivative is none, 1/s or 1/s²."""
+"""Least size of a derivative for a relative error, 1/s or 1/s². A smaller derivative counts as zero."""
 _CHI_SQUARE_999, _CHI_SQUARE_500 = 22.46, 5.35
-"""Of six degrees of freedom, exceeded once in a thousand times, and every other time."""
+"""Limits of chi square with six degrees of freedom, for probabilities of 99.9 % and 50 %."""
 
 _LOG_ODDS_OTHER_STATED = -4.0
-"""Log odds of an arm that the aircraft file states, against its twin that the file leaves open; and of a
-vane's where the angle of attack is an estimate."""
+"""Log prior odds of an arm that the aircraft file states, relative to an equivalent arm that the file leaves
+open; also of a vane's arm where α is an estimate."""
 _LOG_ODDS_BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
-"""Log odds of an arm that points backwards. The two are one and the same in the data; but a vane
-behind the centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""
+"""Log prior odds of an arm that points backwards. The two arms are equivalent in the data. A vane behind the
+centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""
 
 
 def derivative_scale(prior: FloatArray) -> FloatArray:
-    """Shape (6,): size of each derivative; Z_q beside 1, small ones beside the large ones."""
+    """Return the size of each derivative, shape (6,): 1 for Z_q, and a share of the large derivatives for
+    small ones."""
     z_alpha, _, z_delta, m_alpha, m_q, m_delta = np.abs(prior)
     z_alpha = max(z_alpha, _LEAST)
     return np.array(
@@ -47,19 +49,19 @@ def derivative_scale(prior: FloatArray) -> FloatArray:
 
 
 def prior_precision(prior: FloatArray, tolerance: float) -> FloatArray:
-    """Shape (6,): inverse variances of the file's derivatives, given their relative error."""
+    """Return the inverse variances of the file's derivatives, given their relative error, shape (6,)."""
     return np.asarray(1.0 / (tolerance * derivative_scale(prior)) ** 2)
 
 
 def log_prior(derivatives: FloatArray, covariance: FloatArray, prior: FloatArray) -> float:
-    """Log probability density of fitted derivatives, given the file, up to a constant.
+    """Return the log probability density of fitted derivatives, given the aircraft file, up to a constant.
 
     Parameters
     ----------
     derivatives, covariance
-        Shapes (6,) and (6, 6): what was fitted, and how well it is known.
-    believed
-        Shape (6,): the file's.
+        Shapes (6,) and (6, 6): fitted derivatives and their covariance.
+    prior
+        Shape (6,): derivatives of the aircraft file.
     """
     scale = derivative_scale(prior)
     densities = []
@@ -76,24 +78,24 @@ ARMS = frozenset(_LOG_ODDS_BACKWARD)
 
 @dataclass(frozen=True, slots=True)
 class Distance:
-    """How far fitted derivatives are from the file's, beside their tolerance and their errors."""
+    """Distance of fitted derivatives from the aircraft file's, relative to prior error and covariance."""
 
     statistic: float
-    """Chi square of six degrees of freedom."""
+    """Squared distance; chi square with six degrees of freedom."""
     limit: float
 
     @property
     def is_off(self) -> bool:
-        """Whether the file's cannot be right."""
+        """Whether the file's derivatives cannot be right."""
         return self.statistic > self.limit
 
 
 def distance_of(
     derivatives: FloatArray, covariance: FloatArray, prior: FloatArray, clear_gap: bool
 ) -> Distance:
-    """How far fitted derivatives are from the file's.
+    """Return the distance of fitted derivatives from the file's; ``log_prior`` has the other arguments.
 
-    Arguments as ``log_prior``; where the file's ``clear_gap`` leave a gap, a smaller distance is enough.
+    ``clear_gap``: the file's derivatives leave a clear gap, so that a smaller distance is enough.
     """
     scale = derivative_scale(prior)
     covariance_of_error = covariance / np.outer(scale, scale) + ERROR_IF_RIGHT**2 * np.eye(6)
@@ -106,9 +108,9 @@ def _distance(off: FloatArray, covariance_of_error: FloatArray) -> float:
 
 
 def log_odds_of_arm(effect: str, arm_m: float, in_file: frozenset[str], alpha_is_derived: bool) -> float:
-    """Log odds beforehand between the two arms that are one and the same in the data; 0 for other effects.
+    """Return the log prior odds between the two arms that are equivalent in the data; 0 for other effects.
 
-    ``in_file`` are the effects whose arm the file states.
+    ``in_file`` has the effects whose arm the aircraft file states.
     """
     if effect not in _LOG_ODDS_BACKWARD:
         return 0.0

@@ -1,7 +1,7 @@
-"""At which speed do the aircraft file's numbers hold, where it does not say?
+"""The air speed at which the aircraft file's derivatives hold, where the file states none.
 
-They count for the mean of the manoeuvres then. But a manoeuvre costs speed, and pilots begin one slower than
-the last: numbers of the trim are some per cent off, all by what the speed makes of them.
+The mean speed of the manoeuvres is the default. A manoeuvre costs speed, and pilots begin one slower than the
+last, so derivatives of the trim speed can be off by some per cent, all by their power of the speed.
 """
 
 import numpy as np
@@ -14,16 +14,17 @@ from advisor.gap.simulator.layout import DERIVATIVES, SPEED
 from advisor.model.short_period import SPEED_EXPONENTS
 
 _POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
-"""Of the speed, by which each derivative grows with it."""
+"""Power of the air speed with which each derivative grows."""
 _FARTHEST = 0.06
-"""Relative: numbers that hold at no speed near those of the flight are wrong ones."""
+"""Largest relative distance of the speed from the mean. Derivatives that hold at no speed within it are wrong
+ones."""
 _TRIED = 25
 
 
 def prior_speed(problem: Problem, baseline: Fitted) -> float | None:
-    """The speed in m/s, of those flown, at which the file's numbers are right.
+    """Return the speed in m/s, within those flown, at which the file's derivatives are right.
 
-    None where they may be right at the mean of the manoeuvres, or are wrong at any speed.
+    None where they may be right at the mean speed of the manoeuvres, or are wrong at every speed.
     """
     flights, prior = problem.flights, problem.prior_derivatives
     if prior is None or not flights.speed_measured or not file_is_off(problem, baseline, clear_gap=True):

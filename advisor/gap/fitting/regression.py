@@ -1,4 +1,4 @@
-"""A first guess of the derivatives by equation error: rates regressed on angle, pitch rate and command."""
+"""First estimates of the derivatives by equation error: rates regressed on angle, pitch rate and command."""
 
 from typing import NamedTuple
 
@@ -9,28 +9,31 @@ from advisor.flight.motion import integrated
 from advisor.gap.records.flights import Flight, Flights
 
 _STEP_S = 0.02
-"""Grid of the regression, s."""
+"""Step of the regression's grid, s."""
 _SPAN = 10
-"""Steps over which the equations are integrated, to spare derivatives of the data."""
+"""Number of steps over which the equations are integrated, so that no data need be differentiated."""
 _RIDGE = 1e-6
-"""Keeps directions that a flight does not excite from running away."""
+"""Ridge of the regression, relative to the mean square of a regressor: bounds directions that a flight does
+not excite."""
 _IN_STEP = 0.01
-"""Share of the rates' power that is left, both equations' together, where the channels belong together ..."""
+"""Product of the residual shares of both equations below which the channels are in step, and no shift is
+tried."""
 _BETTER = 0.5
-"""... and the share of that which one of them shifted must leave at most."""
+"""Residual share with one channel shifted, relative to that without, below which the shifted regression is a
+start too."""
 
 
 class Late(NamedTuple):
-    """By how many seconds the channels are late."""
+    """Delay of each channel in s."""
 
     alpha_s: float = 0.0
     q_s: float = 0.0
     surface_s: float = 0.0
-    """Behind the command."""
+    """Delay of the surface behind the command, s."""
 
 
 _SHIFTS_S = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)
-"""Up to about a radian of a fast short period."""
+"""Shifts of a channel that are tried, s: up to about one radian of a fast short period."""
 _ONE_LATE = (
     *(Late(q_s=shift) for shift in _SHIFTS_S),
     *(Late(alpha_s=shift) for shift in _SHIFTS_S),
@@ -39,10 +42,10 @@ _ONE_LATE = (
 
 
 def regressions(flights: Flights) -> list[FloatArray]:
-    """Derivatives to begin from, each of shape (6,).
+    """Return starting values of the derivatives, each of shape (6,).
 
-    Where a channel is late by a good part of a radian of the short period, the regression goes astray, even
-    in sign, and no search comes back from there: then the one with a channel shifted is a start, too.
+    A channel that is late by a large part of a radian of the short period leads the regression astray, even
+    in sign, and no search recovers. The regression with that channel shifted is then a start too.
     """
     as_stamped, left_share = _regressed(flights, Late())
     if left_share < _IN_STEP:
@@ -52,7 +55,7 @@ def regressions(flights: Flights) -> list[FloatArray]:
 
 
 def _regressed(flights: Flights, late: Late) -> tuple[FloatArray, float]:
-    """Derivatives, shape (6,), and the product of the shares of power that the two equations leave."""
+    """Return derivatives, shape (6,), and the product of the residual shares of the two equations."""
     systems = [_system(flight, late) for flight in flights.flights]
     moment, left_share = _solved([s[0] for s in systems], [s[1] for s in systems])
     force, left_of_lift = np.zeros(2), 1.0
@@ -63,7 +66,7 @@ def _regressed(flights: Flights, late: Late) -> tuple[FloatArray, float]:
 
 
 def _system(f: Flight, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Rows and rates of the moment's and the force's equation, in integral form."""
+    """Return regressors and rates of the moment equation and of the force equation, in integral form."""
     t = np.arange(0.0, f.duration_s, _STEP_S)
     q = np.interp(t + late.q_s, f.outputs["q"].t, f.outputs["q"].y)
     d = np.interp(t - late.surface_s, f.t_u, f.u) - f.u_trim
@@ -82,7 +85,7 @@ def _system(f: Flight, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, 
 
 
 def _solved(rows: list[FloatArray], rates: list[FloatArray]) -> tuple[FloatArray, float]:
-    """Ridge regression, and the share of the power that it leaves."""
+    """Return the ridge regression, and the share of the power in its residual."""
     X, y = np.vstack(rows), np.concatenate(rates)
     scale = np.sqrt(np.mean(X**2, axis=0)) + 1e-12
     Xs = X / scale

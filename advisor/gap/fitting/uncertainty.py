@@ -1,4 +1,4 @@
-"""How well a fit knows its shared numbers, and what that says of the aircraft file's."""
+"""Uncertainty of the shared parameters, and the distance of the fit from the aircraft file."""
 
 from collections.abc import Sequence
 
@@ -11,11 +11,12 @@ from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.records.floor import effective_sample_size
 
 CLEAR_GAP = 0.5
-"""Gap of the file's own derivatives beside fitted ones from which on it takes less to call them wrong."""
+"""Gap that fitted derivatives remove from the file's, above which a smaller distance is enough to reject the
+file's derivatives."""
 
 
 def effective_samples(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
-    """Shape (channels,): independent samples of each channel over all manoeuvres."""
+    """Return the effective sample size of each channel over all manoeuvres, shape (channels,)."""
     total = np.zeros(len(problem.channels))
     for flight, residual in zip(problem.flights.flights, residuals, strict=True):
         for c, rows in enumerate(problem.rows(flight)):
@@ -24,7 +25,7 @@ def effective_samples(problem: Problem, residuals: Sequence[FloatArray]) -> Floa
 
 
 def log_prior_of(problem: Problem, fitted: Fitted, effective: FloatArray) -> float:
-    """Log probability of the derivatives, given the aircraft file; 0 without one."""
+    """Return the log prior density of the fitted derivatives, given the aircraft file; 0 without a file."""
     if problem.prior_derivatives is None:
         return 0.0
     n = len(problem.prior_derivatives)
@@ -33,12 +34,13 @@ def log_prior_of(problem: Problem, fitted: Fitted, effective: FloatArray) -> flo
 
 
 def file_is_off(problem: Problem, fitted: Fitted, clear_gap: bool) -> bool:
-    """Whether what was fitted says that the aircraft file's derivatives are wrong; see ``distance_of``."""
+    """Return whether the fit rejects the aircraft file's derivatives; ``distance_of`` explains
+    ``clear_gap``."""
     return distance_from_file(problem, fitted, clear_gap).is_off
 
 
 def distance_from_file(problem: Problem, fitted: Fitted, clear_gap: bool) -> Distance:
-    """How far the fitted derivatives are from the aircraft file's; none without a file."""
+    """Return the distance of the fitted derivatives from the aircraft file's, or zero without a file."""
     if problem.prior_derivatives is None:
         return Distance(0.0, np.inf)
     n = len(problem.prior_derivatives)
@@ -47,22 +49,23 @@ def distance_from_file(problem: Problem, fitted: Fitted, clear_gap: bool) -> Dis
 
 
 def shared_std(problem: Problem, fitted: Fitted, effective: FloatArray, trusted: bool = False) -> FloatArray:
-    """Shape (k,): standard deviations of the shared numbers; arguments as ``covariance``."""
+    """Return the standard deviations of the shared parameters, shape (k,); arguments are those of
+    ``covariance``."""
     return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, effective, trusted)), 0.0)))
 
 
 def sigmas_of(values: FloatArray, known: FloatArray, places: Sequence[bool]) -> float:
-    """Standard deviations by which the size of an effect differs from nothing, the largest of its numbers.
+    """Return the largest number of standard deviations by which a parameter of an effect differs from zero.
 
     Parameters
     ----------
     values
-        Shape (k,): numbers of an effect.
+        Shape (k,): parameters of an effect.
     known
-        Shape (k, k): their covariance.
+        Shape (k, k): covariance of the parameters.
     places
-        Which of them say where, when or how fast, not how much. They count as known: a step that a single
-        manoeuvre shows has no size of its own if it may have come gradually, and is there all the same.
+        Whether each parameter is a position, time or rate instead of a size. Such parameters count as known:
+        a step in a single manoeuvre has no certain size if it may be gradual, and exists all the same.
     """
     at = np.array(places)
     size, place = known[np.ix_(~at, ~at)], known[np.ix_(at, at)]
@@ -73,10 +76,10 @@ def sigmas_of(values: FloatArray, known: FloatArray, places: Sequence[bool]) -> 
 
 
 def covariance(problem: Problem, fitted: Fitted, effective: FloatArray, trusted: bool = False) -> FloatArray:
-    """Shape (k, k): covariance of the shared numbers, widened for coloured residuals.
+    """Return the covariance of the shared parameters, widened for coloured residuals, shape (k, k).
 
-    What is expected beforehand is not. Where the file's derivatives are trusted, they count as measured
-    within their tolerance: that is how well an effect is known that trades against them.
+    The prior is not widened. With ``trusted`` the file's derivatives count as measured within their
+    tolerance, for an effect that is correlated with them.
     """
     widened = float(np.mean(counts(problem) / np.maximum(effective, 1.0)))
     expected = problem.prior_of(fitted.point)[0]

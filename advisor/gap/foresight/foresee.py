@@ -1,7 +1,7 @@
-"""What a plan can detect, before it is flown; and what a flight could not have shown.
+"""Effects that a plan can detect before it is flown, and effects that a flight could not have shown.
 
-The smallest size of an effect is where its mark (``marks``) has the power that the diagnosis
-asks for before it names one: enough likelihood, and enough of a change to matter.
+An effect has its smallest detectable size where its signature (``signatures``) has the power that the
+diagnosis requires: enough likelihood, and enough change to matter.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,52 +25,54 @@ from advisor.gap.search.score import least_change
 from advisor.gap.simulator.layout import INDEX
 
 CONFUSED_AT = 0.95
-"""Cosine of two marks from which on one effect passes for the other."""
+"""Cosine between two signatures above which one effect passes for the other."""
 _LISTED_AT = 0.8
 _MOST_CONFUSIONS = 3
-"""Cosine from which on a likeness is listed, and how many are."""
+"""Cosine above which a similar effect is listed, and the most effects listed."""
 _DETECTED_AT = 5.0
-"""Standard deviations a size must have to be found in nearly every flight, not only in half of them."""
+"""Number of standard deviations of a size that is found in nearly every flight, instead of in half of
+them."""
 _GROWTH = 3.0
 _CLOSE = 0.02
-"""A size that does not show is tried so many times larger, until two in a row are as close as this."""
+"""Factor on a size without a signature, and relative difference of two sizes in a row at which the refinement
+ends."""
 _CURVES = {
     "M_alpha2": ("M_alpha", "alpha"),
     "Z_alpha2": ("Z_alpha", "alpha"),
     "M_delta2": ("M_delta_e", "elevator"),
 }
-"""Curved terms: the linear term they bend, and over what."""
+"""Nonlinear terms: the linear term that they modify, and the channel of their argument."""
 
 
 @dataclass(frozen=True, slots=True)
 class Foreseen:
-    """What a plan can do for one effect."""
+    """Detectability of one effect by a plan."""
 
     effect: str
     parameter: str
     smallest: float
-    """Smallest size that can be told from nothing, in the parameter's unit; infinite when invisible."""
+    """Smallest detectable size, in the parameter's unit; infinite for an invisible effect."""
     confused_with: tuple[tuple[str, float], ...]
-    """Other effects and the cosine between their marks in the data."""
+    """Similar effects, each with the cosine between the signatures."""
     add: str = ""
-    """Channel or manoeuvre that would tell it apart, or show it at all."""
+    """Channel or manoeuvre that would distinguish the effect, or make it visible."""
     share: float | None = None
-    """Of a curved term: its smallest size as a share of the linear term at the plan's amplitude."""
+    """Smallest size of a nonlinear term as a share of the linear term, at the plan's amplitude."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """One effect's mark at unit size."""
+    """The signature of one effect at unit size."""
 
     effect: str
     parameter: str
     vector: FloatArray
     least: float
-    """Size below which the effect is not worth a name."""
+    """Least size for which the effect is named."""
     most: float = float("inf")
-    """Size beyond which nobody looks for it."""
+    """Largest size for which the effect is sought."""
     numbers: int = 1
-    """Parameters, each at the price of ½ ln N."""
+    """Number of parameters, each at the price of ½ ln N."""
     inverted: bool = False
 
 
@@ -82,16 +84,16 @@ def foresee(
     others: Sequence[Mark] = (),
     rounds: int = 4,
 ) -> list[Foreseen]:
-    """Smallest detectable size and confusions of every effect, at the fitted (or believed) model.
+    """Return the smallest detectable size and the similar effects of every effect, at the fitted model.
 
     Parameters
     ----------
     noise
-        Shape (channels,): standard deviation of each channel; where a filter knows the noise, its own counts.
+        Shape (channels,): noise of each channel; where a filter knows the noise, that of the filter is used.
     others
-        Marks of effects that are no variant of the model.
+        Signatures of effects that are no variant of the model.
     rounds
-        How often a size is refined where the response is not in proportion to it.
+        Number of refinements of a size where the response is not proportional to it.
     """
     marks = Marks(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
     present = {e.effect for e in fitted.point.effects}
@@ -111,7 +113,7 @@ def foresee(
 def unseen_effects(
     problem: Problem, fitted: Fitted, variants: Sequence[Variant], noise: FloatArray, present: set[str]
 ) -> tuple[Unseen, ...]:
-    """Effects this flight could not have shown, and why."""
+    """Return the effects that this flight could not have shown, each with the reason."""
     tried = {v.effect for v in variants} | {"alpha_bias", "airspeed_variation", "turbulence", "gust"}
     if "climb_rate" not in problem.flights.has:
         tried.discard("alpha_bias")
@@ -134,7 +136,7 @@ def unseen_effects(
 
 
 def _one_each(variants: Sequence[Variant]) -> list[Variant]:
-    """One variant an effect: the first, or of steps at several places the middle one."""
+    """Return one variant of each effect: the first, or the middle one of steps at several places."""
     groups: dict[str, list[Variant]] = {}
     for v in variants:
         groups.setdefault(v.effect, []).append(v)
@@ -146,13 +148,13 @@ def _one_each(variants: Sequence[Variant]) -> list[Variant]:
 
 
 def _reach(variant: Variant) -> float:
-    """The size, with its sign, beyond which nobody looks for an effect."""
+    """Return the largest size, with its sign, for which an effect is sought."""
     low, high = variant.bounds[0]
     return high if high >= -low or variant.starts[0][0] > 0.0 else low
 
 
 def _first_size(variant: Variant) -> float:
-    """The size, with its sign, at which an effect's response is taken first."""
+    """Return the size, with its sign, at which an effect's response is evaluated first."""
     return float(np.copysign(abs(variant.starts[0][0]) or variant.steps[0], _reach(variant)))
 
 
@@ -165,11 +167,11 @@ def _mark_of(
     vector: FloatArray,
     rounds: int,
 ) -> Mark:
-    """The model's response to an effect, per unit of its first parameter.
+    """Return the model's response to an effect, per unit of its first parameter.
 
-    An effect whose search starts at nothing is linear there, and its derivative serves. The others bend: a
-    limit that no command reaches leaves no mark at all. Their response is taken at the size that just shows.
-    ``vector`` is the mark at the first size.
+    An effect whose search starts at zero is linear there, and its derivative is used. Others are nonlinear: a
+    limit that no command reaches leaves no signature. Their response is evaluated at the size that just
+    shows. ``vector`` is the signature at the first size.
     """
     reach = _reach(variant)
     numbers = len(variant.names)
@@ -188,7 +190,7 @@ def _mark_of(
 def _responses(
     problem: Problem, fitted: Fitted, sized: Sequence[tuple[Variant, float]]
 ) -> list[list[FloatArray]]:
-    """Per effect: change of every manoeuvre's channels, shape (rows,), per unit of the effect's size."""
+    """Return per effect the change of every manoeuvre's channels, shape (rows,), per unit of size."""
     driving = []
     for variant, size in sized:
         sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
@@ -198,7 +200,7 @@ def _responses(
         ]
     changes: list[list[FloatArray]] = [[] for _ in sized]
     for i, flight in enumerate(problem.flights.flights):
-        # All effects at once: the simulations of a manoeuvre share packs.
+        # All effects at once, because the simulations of a manoeuvre share packs.
         seen = problem.fly_and_read(flight, np.stack([p[i] for p in driving]))
         for k, (_, size) in enumerate(sized):
             changes[k].append((seen[:, 2 * k] - seen[:, 2 * k + 1]) / size)
@@ -206,9 +208,10 @@ def _responses(
 
 
 def _needed(marks: Marks, numbers: int) -> float:
-    """Power a mark must have: found in nearly every flight, worth its numbers, enough of a change."""
+    """Return the least power of a signature: detection in nearly every flight, the parameters' price, enough
+    change."""
     price = numbers * float(np.log(marks.rows))
-    # A filter of moving air leaves of a change far less than the outputs show of it.
+    # A filter of moving air leaves far less of a change than the outputs show.
     doubted = least_change(marks.problem) * float(np.mean(floor_margins(marks.problem.flights) ** 2))
     change = 0.0 if marks.filtered else doubted * marks.rows
     return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
@@ -236,9 +239,10 @@ def _foreseen(mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mappi
 
 
 def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:
-    """Curved terms to their share of the linear one, per unit, at the largest motion there is.
+    """Return nonlinear terms as shares of the linear one, per unit of size, at the largest motion of the
+    plan.
 
-    A linear term of nothing has no shares.
+    A linear term of zero has no shares.
     """
     p = problem.driving(fitted.point)
     flights = problem.flights.flights

@@ -1,12 +1,12 @@
-"""Effects that are judged apart from the fits, foreseen: the air, the air speed, the offset of α.
+"""Foresight of effects that are judged outside the fits: moving air, air speed, and the offset of α.
 
-Moving air is found when a filter that knows of it explains the data far better than still air does; its
-expected gain in log likelihood follows from the eigenvalues of the responses to it. For a disturbance of
-size s with independent unit coefficients, seen through gains λ,
+Moving air is found when a filter that knows of it explains the data far better than still air. The expected
+gain in log likelihood follows from the eigenvalues of the responses. For a disturbance of size s with
+independent unit coefficients and gains λ,
 
     E{gain} = ½ Σ (λ + s²λ² + a²g²) s_f²/(1 + s_f²λ) − ½ Σ ln(1 + s_f²λ),
 
-where s_f is the size the filter assumes, and a²g² the part of a gust of given course.
+where s_f is the size that the filter assumes, and a²g² the part of a gust of given course.
 """
 
 from collections.abc import Callable
@@ -29,26 +29,27 @@ from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
 
 CLIMB_RATE_STD_M_S = 0.1
-"""Noise taken for a climb rate that nobody has measured yet; one independent reading a second."""
+"""Noise assumed for an unmeasured climb rate, m/s, with one independent reading per second."""
 _ANGLES = np.geomspace(1e-5, 0.5, 200)
 """Gust angles that are tried, rad; a filter assumes one of them."""
 _SPEED_STEP = 0.01
-"""Relative change of speed by which its mark is taken."""
+"""Relative change of speed with which the signature of the air speed is evaluated."""
 
 
 @dataclass(frozen=True)
 class _Air:
-    """All responses to the air in their own axes, over the manoeuvres it is sought in."""
+    """Responses to moving air along their principal axes, over the manoeuvres in which air is sought."""
 
     gains: FloatArray
-    """λ of every axis, noise's variance per rad²."""
+    """λ of every axis, in units of the noise's variance per rad²."""
     gust: FloatArray
     """g of every axis for a gust of 1 rad."""
     inside: float
-    """Cosine between the gust and its nearest course of turbulence."""
+    """Cosine between the gust and the nearest course of turbulence."""
 
     def expected(self, spread: float, peak: float) -> float:
-        """Expected gain for air of this spread and a gust of this peak, rad, at the filter's best size."""
+        """Return the expected gain for turbulence and a gust, rad, at the best size that a filter may
+        assume."""
         power = self.gains + (spread * self.gains) ** 2 + (peak * self.gust) ** 2
         assumed = (_ANGLES**2)[:, None]
         taken = assumed / (1.0 + assumed * self.gains) * power - np.log1p(assumed * self.gains)
@@ -56,7 +57,8 @@ class _Air:
 
 
 def foresee_air(problem: Problem, fitted: Fitted, marks: Marks, unit_s: float) -> list[Foreseen]:
-    """Smallest spread of turbulence and smallest (1 − cos) gust, two time units of the input long."""
+    """Return the smallest turbulence and the smallest (1 − cos) gust, which lasts two time units of the
+    input."""
     if "alpha" not in problem.channels:
         return [impossible(effect, problem.flights) for effect in ("turbulence", "gust")]
     air = _air(problem, fitted, marks, 2.0 * unit_s)
@@ -71,7 +73,8 @@ def foresee_air(problem: Problem, fitted: Fitted, marks: Marks, unit_s: float) -
 
 
 def speed_mark(problem: Problem, fitted: Fitted, marks: Marks) -> Mark:
-    """Every other manoeuvre flown faster, the others slower, less what a simulator at constant speed does."""
+    """Return the signature of alternately fast and slow manoeuvres, relative to a simulator at constant
+    speed."""
     p = problem.driving(fitted.point)
     columns = []
     for i, flight in enumerate(problem.flights.flights):
@@ -83,7 +86,8 @@ def speed_mark(problem: Problem, fitted: Fitted, marks: Marks) -> Mark:
 
 
 def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
-    """A constant offset of α against θ minus the climb angle; no derivative enters."""
+    """Return the detectability of a constant offset of α, from θ minus the climb angle, without
+    derivatives."""
     flights = problem.flights
     if not {"alpha", "theta"} <= set(flights.channels) or not {"climb_rate", "airspeed"} <= flights.has:
         return impossible("alpha_bias", flights)
@@ -95,13 +99,13 @@ def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
 
 
 def impossible(effect: str, flights: Flights) -> Foreseen:
-    """An effect that the plan cannot show at any size, with what to add."""
+    """Return an effect that the plan cannot show at any size, with the channel or manoeuvre to add."""
     need = need_of(effect, flights)
     return Foreseen(effect, need.parameter, float("inf"), (), need.add)
 
 
 def _air(problem: Problem, fitted: Fitted, marks: Marks, length_s: float) -> _Air:
-    """The gust falls into the first manoeuvre, after its last step."""
+    """Return the responses to moving air; a gust falls into the first manoeuvre, after its last step."""
     p = problem.driving(fitted.point)
     gains, gusts = [], []
     for i, flight in enumerate(problem.flights.flights[:AIR_MANEUVERS]):
@@ -117,7 +121,7 @@ def _air(problem: Problem, fitted: Fitted, marks: Marks, length_s: float) -> _Ai
 
 
 def _gust(problem: Problem, flight: Flight, p: FloatArray, length_s: float) -> FloatArray:
-    """Response of all channels, shape (rows,), to a (1 − cos) gust of 1 rad at its peak."""
+    """Return the response of all channels, shape (rows,), to a (1 − cos) gust of 1 rad at its peak."""
     n = max(round(length_s / flight.h), 2)
     shape = 0.5 * (1.0 - np.cos(2.0 * np.pi * (np.arange(n) + 0.5) / n))
     pulse = pulse_response(problem, flight, p, DISTURB_AIR)
@@ -132,6 +136,6 @@ def _at_speed(flight: Flight, factor: float) -> Flight:
 
 
 def _first(gain: Callable[[float], float]) -> float:
-    """The smallest gust angle whose expected gain suffices."""
+    """Return the smallest gust angle with enough expected gain."""
     angles = [a for a in _ANGLES if a >= LEAST_GUST_ANGLE]
     return next((float(a) for a in angles if gain(a) >= AIR_GAIN), float("inf"))

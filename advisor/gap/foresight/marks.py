@@ -1,9 +1,9 @@
-"""The mark an effect leaves in the data: its response, less what the model's own numbers can mimic.
+"""The signature of an effect in the data: its response without the part that other parameters imitate.
 
-The length of a mark in standard deviations of the noise says how small an effect can be and still show;
-the angle between two marks how easily one is taken for the other. Numbers with a prior (the edges of
-the command) are eliminated with it, as rows of their own, so that lengths and angles are those of the
-marginal likelihood. Latency may absorb an effect, too, but not beyond its bounds.
+The length of a signature, in standard deviations of the noise, gives the smallest detectable size. The angle
+between two signatures tells how easily one effect is taken for the other. Parameters with a prior, such as
+the edges of the command, are eliminated with it as additional rows, so that lengths and angles are those of
+the marginal likelihood. Latency may absorb an effect too, but only within its bounds.
 """
 
 from collections.abc import Sequence
@@ -16,11 +16,11 @@ from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem, row_weights
 
 _RANK = 1e-7
-"""Relative size of a direction of the shared numbers below which it is none."""
+"""Relative singular value of a direction of the shared parameters below which the direction is ignored."""
 
 
 class Marks:
-    """The model's own freedom about a point, ready to be taken out of any response."""
+    """Signatures about a point of the model: responses with the effect of all parameters removed."""
 
     def __init__(self, problem: Problem, fitted: Fitted, noise: FloatArray) -> None:
         self.problem = problem
@@ -44,19 +44,22 @@ class Marks:
         self._latency_bounds = LATENCY.bounds[0][0] - now, LATENCY.bounds[0][1] - now
 
     def of(self, columns: Sequence[FloatArray]) -> FloatArray:
-        """The mark of a response given per manoeuvre, each shape (rows,) in the units of the channels."""
+        """Return the signature of a response, given per manoeuvre with shape (rows,), in the units of the
+        channels."""
         parts = [self.within(i, column[:, None])[:, 0] for i, column in enumerate(columns)]
         return self._freed_of_shared(np.concatenate(parts))
 
     def within(self, i: int, columns: FloatArray) -> FloatArray:
-        """Responses of manoeuvre ``i``, shape (rows, k), weighted and freed of its own numbers alone."""
+        """Return weighted responses of manoeuvre ``i``, shape (rows, k), without the effect of its nuisance
+        parameters."""
         weighted = self.problem.innovations(i, columns) * self._weights[i][:, None]
         return self._freed_of_own(i, weighted)
 
     def smallest(self, mark: FloatArray, power: float) -> float:
-        """Size at which a mark has this power, whatever latency takes of it; infinite when it leaves none.
+        """Return the size at which a signature has this power, whatever latency absorbs; infinite where none
+        has.
 
-        The smallest s with min |s·x − λ·l|² = power over the latencies λ within their bounds.
+        That is the smallest s with min |s·x − λ·l|² = power over the latencies λ within their bounds.
         """
         x, latency = mark, self._latency
         own, ll = float(x @ x), float(latency @ latency)
@@ -80,6 +83,6 @@ class Marks:
 
 
 def _latency_at(fitted: Fitted) -> int | None:
-    """Where the latency is among the shared numbers."""
+    """Return the index of the latency among the shared parameters."""
     point = fitted.point
     return point.place(point.effects.index(LATENCY)).start if LATENCY in point.effects else None

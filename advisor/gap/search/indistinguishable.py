@@ -1,4 +1,4 @@
-"""What cannot be told apart, exactly or nearly, and what would break the tie."""
+"""Effects that the data cannot distinguish, exactly or nearly, and what would distinguish them."""
 
 from collections.abc import Sequence
 
@@ -6,18 +6,18 @@ from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.search.acceptance import Judged
 
 NEAR = 5.0
-"""Difference of held-out log likelihood below which two explanations are a tie."""
+"""Difference of the gain in log likelihood below which two explanations are indistinguishable."""
 _LITTLE = 0.1
-"""Difference in gain below which twin effects tie, as a share of the gain of either."""
+"""Difference of the gain below which twin effects are indistinguishable, as a share of the gain."""
 
 
 def way_to_distinguish(effect: str, other: str) -> str:
-    """What would tell two effects apart; empty when nothing particular is known."""
+    """Return what would distinguish two effects; empty when nothing particular is known."""
     return TRAITS[effect].distinguished_by.get(other) or TRAITS[other].distinguished_by.get(effect, "")
 
 
 def _is_as_good(a: Judged, b: Judged) -> bool:
-    """As good as each other; twins if what parts them is little beside what either explains."""
+    """Return whether two effects are equally good; twins may differ by a share of their gain."""
     twins = TRAITS[a.effect].twin == b.effect or TRAITS[b.effect].twin == a.effect
     return abs(a.gain - b.gain) < (max(NEAR, _LITTLE * abs(b.gain)) if twins else NEAR)
 
@@ -25,7 +25,7 @@ def _is_as_good(a: Judged, b: Judged) -> bool:
 def indistinguishable_from(
     best: Judged, others: Sequence[Judged], channels: Sequence[str]
 ) -> tuple[tuple[str, ...], str]:
-    """Effects that explain the data as well as ``best``, and what would tell them apart."""
+    """Return the effects that explain the data as well as ``best``, and what would distinguish them."""
     names = [j.effect for j in others if j.effect != best.effect and _is_as_good(j, best) and j.gain > 0.0]
     ways = []
     for name in names:

@@ -1,4 +1,4 @@
-"""What the accelerations along the path show: the work of an engine, and whether anyone asked for it."""
+"""Accelerations along the flight path: the work of an engine, and whether the throttle commanded it."""
 
 from collections.abc import Sequence
 
@@ -12,16 +12,17 @@ from advisor.oem.recursion import accumulated
 from advisor.standard_gravity import GRAVITY_M_S2
 
 _ENGINES_S = (0.4, 1.5)
-"""Lags of engines; those between are nearly mixtures of the two."""
+"""Lags of engines in s; engines with a lag between them are nearly mixtures of the two."""
 _SMOOTHED_S = 1.0
-"""Thrust does not swing faster, accelerometers do."""
+"""Length in s of the average over accelerations. Thrust does not vary faster; noise of accelerometers
+does."""
 
 
 def energy_swing(flights: Flights) -> float | None:
-    """How much work beyond drag's would make the speed swing within a manoeuvre, relative to the mean speed.
+    """Return the standard deviation of the speed from work beyond drag's, relative to the mean speed.
 
-    What the accelerations show along the path is freed of a constant and of drag in all manoeuvres alike, and
-    integrated. None where they were not measured.
+    Accelerations along the path are integrated without a constant and without drag, common to all manoeuvres.
+    None where they were not measured.
     """
     if not measures_path_acceleration(flights):
         return None
@@ -32,13 +33,12 @@ def energy_swing(flights: Flights) -> float | None:
 
 
 def uncommanded_thrust(flights: Flights) -> float | None:
-    """Thrust that swings though the throttle does not, m/s²: median of standard deviations in a manoeuvre.
+    """Return the varying thrust without throttle, m/s²: the median of its standard deviations in a manoeuvre.
 
-    What the accelerations show along the path while it is flown (a pilot sets the speed before and after) is
-    freed of a constant in each manoeuvre, of drag, of an instrument that leans, and of what follows the
-    throttle, at once or late. It counts for the share of the energy's swing that it accounts for: air speed
-    and height were measured by other instruments, and know nothing of an accelerometer's noise. None where
-    accelerations or height were not measured.
+    A pilot sets the speed before and after a manoeuvre, so only the part in between counts. A constant, drag,
+    a tilted instrument and the response to the throttle, at once or late, are removed. The result is weighted
+    by the share of the energy's variation that it explains, because air speed and height come from other
+    instruments. None where accelerations or height were not measured.
     """
     if not measures_path_acceleration(flights) or "height" not in flights.has:
         return None
@@ -60,59 +60,61 @@ def uncommanded_thrust(flights: Flights) -> float | None:
 
 
 def _while_flown(flight: Flight) -> slice:
-    """From the first step on, without the last second; all of it where next to nothing would be left."""
+    """Return the part from the first step to a second before the end; all of it where too little would
+    remain."""
     first = max(int(flight.first_step_s / flight.h), 0)
     last = flight.n - int(_SMOOTHED_S / flight.h)
     return slice(first, last) if last - first > int(2.0 * _SMOOTHED_S / flight.h) else slice(0, flight.n)
 
 
 def energy_speed(flight: Flight) -> FloatArray:
-    """√(V² + 2 g h), shape (n,), m/s, heights from the manoeuvre's mean: the speed without climbs."""
+    """Return √(V² + 2 g h), shape (n,), m/s: the speed without climbs, with h relative to the manoeuvre's
+    mean."""
     climbed = flight.slow[HEIGHT] - np.mean(flight.slow[HEIGHT])
     return np.asarray(np.sqrt(np.maximum(flight.slow[SPEED] ** 2 + 2.0 * GRAVITY_M_S2 * climbed, 0.0)))
 
 
 def _swing(course: FloatArray) -> FloatArray:
-    """What is left of a course without its mean and its steady change."""
+    """Return a course without its mean and its linear trend."""
     t = np.linspace(-1.0, 1.0, len(course))
     return np.asarray(course - np.polynomial.Polynomial.fit(t, course, 1)(t))
 
 
 def measures_path_acceleration(flights: Flights) -> bool:
-    """Whether accelerations along the path were measured."""
+    """Return whether accelerations along the path were measured."""
     return "a_x" in flights.has and {"alpha", "a_z"} <= set(flights.channels)
 
 
 def mean_speed(flights: Flights) -> float:
-    """Over all manoeuvres, m/s."""
+    """Return the mean air speed over all manoeuvres, m/s."""
     return float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))
 
 
 def _lift(flight: Flight) -> FloatArray:
-    """Shape (n,): specific force across the path, as it was measured, m/s²."""
+    """Return the measured specific force across the path, m/s², shape (n,)."""
     a_z = flight.outputs["a_z"]
     return np.asarray(np.interp((np.arange(flight.n) + 0.5) * flight.h, a_z.t, a_z.y))
 
 
 def _throttle(flight: Flight) -> list[FloatArray]:
-    """Each of shape (n,): the throttle, and what engines make of it that follow late."""
+    """Return the throttle and its lagged responses, each of shape (n,)."""
     commanded = flight.slow[THROTTLE]
     keeps = [float(np.exp(-flight.h / lag_s)) for lag_s in _ENGINES_S]
     return [commanded, *(commanded[0] + (1.0 - k) * accumulated(commanded - commanded[0], k) for k in keeps)]
 
 
 def _drag(flight: Flight) -> FloatArray:
-    """Shape (n, 2): V² and (lift / V)², what the parts of a parabolic polar go with."""
+    """Return V² and (lift/V)², the regressors of a parabolic drag polar, shape (n, 2)."""
     return np.column_stack([flight.slow[SPEED] ** 2, (_lift(flight) / flight.slow[SPEED]) ** 2])
 
 
 def _beyond_drag(
     flights: Flights, columns: Sequence[FloatArray], stretches: Sequence[slice]
 ) -> list[FloatArray]:
-    """Per manoeuvre, in its stretch: acceleration along the path that neither drag nor columns explain, m/s².
+    """Return by manoeuvre the acceleration along the path that neither drag nor ``columns`` explain, m/s².
 
-    Drag and a propeller's loss of thrust with speed hold an aircraft back. A thrust that swings slowly moves
-    the speed with it and would pass for the contrary: a part of the polar that pushes is left out.
+    Drag and a propeller's loss of thrust with speed decelerate. A slowly varying thrust moves the speed with
+    it and would pass for a negative drag, so a part of the polar that accelerates is left out.
     """
     cut = list(zip(flights.flights, columns, stretches, strict=True))
     along = np.concatenate([GRAVITY_M_S2 * flight.slow[THRUST][flown] for flight, _, flown in cut])

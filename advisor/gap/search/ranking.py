@@ -1,4 +1,5 @@
-"""Which: every effect is screened, the few worth it are fitted fully, and the best judgement comes first."""
+"""The ranking of effects: all are screened, the promising ones are fitted fully, and the best judgement comes
+first."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -17,27 +18,27 @@ from advisor.gap.search.screen import Screen, Screened, likeliest_first
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _PROMISE = 0.7
-"""Share of the least that the screening must promise before a full fit is spent on a candidate."""
+"""Share of the least gain that the screening must promise before a full fit."""
 _ITERATIONS = 8
 _TO_THE_END = 25
-"""Of a full fit of a candidate, and of the one that comes out first."""
+"""Most iterations of the best candidate's fit; other candidates get ``_ITERATIONS``."""
 _FITS = 5
-"""Candidates that get a full fit after the screening."""
+"""Most candidates with a full fit after the screening."""
 _RIVAL = 0.3
-"""Share of the best promise below which a candidate is no rival."""
+"""Least promise of a candidate for a full fit, as a share of the best promise."""
 _LACKING = 0.2
-"""Share of what the best explains that a candidate may lack and still be followed to its end."""
+"""Share of the best decrease of the cost that a candidate may lack and still be fitted to the end."""
 _GROSS = 300.0
-"""Log likelihood promised by the best from which on the right model is far from where the screening looks."""
+"""Promised log likelihood above which the right model is far from the range of the screening."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
-"""Full fits then, and the share of the best promise that earns one."""
+"""Most full fits in that case, and the least share of the best promise that earns one."""
 _TELLS = 3.0
-"""Log probability beforehand by which one effect must be likelier than another to be believed for that."""
+"""Least difference of the prior terms for which one effect is preferred to another with equal motion."""
 
 
 def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]) -> list[Screened]:
-    """The screening, without the effects the model has already."""
+    """Return the screened effects that the model does not have yet."""
     present = {e.effect for e in fitted.point.effects}
     effective = counts(problem)
     known = covariance(problem, fitted, effective)[: len(DERIVATIVES), : len(DERIVATIVES)]
@@ -57,9 +58,10 @@ def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]
 def _from_the_prior(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], prior_gain: Callable[[Point], float]
 ) -> list[Screened]:
-    """Effects that fitted numbers hide, from where the aircraft file's are right; none where those are near.
+    """Return fits of hidden effects from the aircraft file's derivatives; none where the fitted ones are near
+    these.
 
-    A wing that is stalled throughout has another lift slope, and next to nothing else to show for it.
+    A wing that is stalled throughout has another lift slope, and hardly any other symptom.
     """
     if problem.prior_derivatives is None or not is_baseline(baseline):
         return []
@@ -74,7 +76,7 @@ def _from_the_prior(
 def judge(
     problem: Problem, before: Fitted, held_before: HeldOut, candidates: Sequence[Screened]
 ) -> list[Judged]:
-    """Full fits of the best variants of the best effects; the best judgement first."""
+    """Return full fits of the best variants of the best effects, best judgement first."""
     fits: list[Fitted] = []
     for s in shortlist(problem, before, candidates):
         first_description, *otherwise = (
@@ -91,20 +93,20 @@ def judge(
         best.setdefault(one.effect, one)
     first, *rest = best.values()
     if first.fitted.iterations == _ITERATIONS:
-        # Far from the plain model the search is long; only what comes out first is followed to its end.
+        # Far from the baseline model the search is long, so only the best candidate is fitted to the end.
         ended = fit(problem, first.fitted.point, first.fitted.noise, _TO_THE_END, tolerance=0.5)
         first = addition(problem, before, held_before, ended, first.effect, effective)
     return [first, *rest]
 
 
 def _no_rival(before: Fitted, fits: Sequence[Fitted]) -> float:
-    """Cost of one that explains a fraction of what another does: no rival, wherever its search would end."""
+    """Return the cost above which a candidate is no rival, wherever its search would end."""
     best = min((before.cost, *(f.cost for f in fits)))
     return best + _LACKING * (before.cost - best)
 
 
 def _described(point: Point) -> list[Point]:
-    """The point, and the same with its last effect described in other ways, where there are any."""
+    """Return the point, and those with the alternative descriptions of its last effect."""
     last, values = point.effects[-1], point.values[-1]
     before = replace(point, effects=point.effects[:-1], values=point.values[:-1])
     return [
@@ -117,11 +119,12 @@ def _described(point: Point) -> list[Point]:
 
 
 def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
-    """The best judgement first; what predicts the same motion has its likelihood, if likelier beforehand.
+    """Return the judgements, best first. An effect with equal motion and better prior terms gets the best
+    likelihood.
 
-    No description to low order is better than some share of the motion: where two differ by less, what the
-    likelihood prefers is which of them takes up more of the description's own error. What is known
-    beforehand decides: above all, which of them leaves the aircraft file's derivatives alone.
+    A low-order description misses a share of the motion. Where two descriptions differ by less, the
+    likelihood prefers the one that absorbs more of its own error. The prior decides instead: above all, which
+    of them keeps the aircraft file's derivatives.
     """
     best = max(judged, key=lambda j: j.gain)
 
@@ -135,10 +138,10 @@ def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
 
 
 def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) -> list[Screened]:
-    """Candidates worth a full fit; ``candidates`` come best first.
+    """Return the candidates for a full fit; ``candidates`` come best first.
 
-    One too small to be named is no rival of the others. Where the gap is gross the order and the sizes that
-    the screening finds are worth less: more effects are fitted then, and two variants of each.
+    An effect too small to be named is no rival of others. Where the gap is large, order and sizes of the
+    screening are less reliable: more effects are fitted then, and two variants of each.
     """
 
     def promise(c: Screened) -> float:
@@ -161,7 +164,7 @@ def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) 
         if promises and promise(c) + c.prior_gain >= least and same < (2 if gross else 1):
             chosen.append(c)
     chosen = chosen[: _GROSS_FITS if gross else _FITS]
-    # A twin of wrong numbers is as far from the plain model as they are: there the screening's sensitivities
-    # are another model's, and say little of how well it fits.
+    # A twin of wrong derivatives is as far from the baseline model as these are. The screening's
+    # sensitivities are those of another model and say little about such a fit.
     twins = [c for c in candidates if c.variant.twin is not None and c.prior_gain >= LEAST_PRIOR_GAIN]
     return [*chosen, *(c for c in twins if c not in chosen)]

@@ -1,4 +1,4 @@
-"""What an effect adds to a model, judged on manoeuvres that the fit has not seen."""
+"""The addition of an effect to a model, judged on held-out manoeuvres."""
 
 import numpy as np
 
@@ -20,29 +20,30 @@ from advisor.gap.records.floor import floor_margins
 from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, LEAST_SUPPORT, Judged, size_of
 
 LEAST_GAP = 0.05
-"""What it must change there, mean square over the noise of the instruments, averaged over channels."""
+"""Least mean square change of the outputs for a named effect, relative to the instruments' noise, averaged
+over channels."""
 _FAINT = 0.15
-"""Share of it that is enough of what is certain, where the air is still and nothing else there, but for what
-every aircraft has to some degree; and times must be twice the least, and steps that may have come between
-any two manoeuvres."""
+"""Share of the least change that is enough for an effect that is certain, in still air and without another
+effect. Effects that every aircraft has are excepted. A time must be twice its least size then, and so must a
+step that may lie between any two manoeuvres."""
 _OF_PEAK = 0.003
-"""Share of each channel's peak that an effect must change."""
+"""Least change of the outputs by an effect, as a share of each channel's peak."""
 TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
 """Parameters that are times."""
 TIME_ERROR_S = 0.0006
-"""Error of a delay, lag or skew for the simulation's grid and the stamps' resolution."""
+"""Error of a delay, lag or skew in s, for the simulation's grid and the resolution of the stamps."""
 _ANY_TIME = 1.5
-"""Physical minima that a step must reach which may have come between any two manoeuvres."""
+"""Factor on the physical minimum for a step that may lie between any two manoeuvres."""
 _JITTERS = 3.0
-"""Standard deviations of the stamps by which a time must exceed its physical minimum, besides."""
+"""Number of standard deviations of the stamps that are added to the physical minimum of a time."""
 _NOT_SEEN = 0.005
-"""Difference of two predictions, mean square beside the instruments' noise, that no flight shows."""
+"""Mean square difference of two predictions, relative to the instruments' noise, that no flight shows."""
 
 
 def smallest_of(problem: Problem, variant: Variant, gain: float = 0.0) -> float:
-    """Size of an effect's first parameter below which it is not worth a name, the stamps as they are.
+    """Return the least size of an effect's first parameter for acceptance, given the jitter of the stamps.
 
-    ``gain`` is the log likelihood that it brings.
+    ``gain`` is the log likelihood that the effect brings.
     """
     smallest = variant.smallest * (variant.if_beyond_doubt if gain >= BEYOND_DOUBT else 1.0)
     if variant.names[0] in TIMES:
@@ -58,17 +59,17 @@ def addition(
     effect: str,
     effective: FloatArray,
 ) -> Judged:
-    """What an effect of a fitted model adds to the model without it."""
+    """Judge an effect of a fitted model as an addition to the model without it."""
     point = fitted.point
     k = point.index_of(effect)
     variant, value, place = point.effects[k], point.values[k], point.place(k)
     held = hold_out(problem, fitted)
-    # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
+    # Throttle or height may have moved in one manoeuvre only: without it, the others know nothing.
     sole_maneuver = sole_informative_maneuver(fitted, place.start) if variant.needs else None
     lone = sole_maneuver is not None
     known_before, known = held_before, held
     if others := _told_alone(fitted, but=k):
-        # What the others predict of that manoeuvre is anyone's guess, with this effect or without.
+        # The others cannot predict that manoeuvre, with or without this effect.
         known_before = measured_in(problem, held_before, before, others)
         known = measured_in(problem, held, fitted, others)
     seen_before, seen_after = (before, fitted) if lone else (known_before, known)
@@ -100,7 +101,7 @@ def addition(
 
 
 def _told_alone(fitted: Fitted, but: int) -> set[int]:
-    """Manoeuvres that alone tell of some effect of the model, other than the ``but``-th."""
+    """Return the manoeuvres that alone determine some effect of the model, other than the ``but``-th."""
     point = fitted.point
     others = [k for k, v in enumerate(point.effects) if v.needs and not v.is_nuisance and k != but]
     told = (sole_informative_maneuver(fitted, point.place(k).start) for k in others)
@@ -108,13 +109,13 @@ def _told_alone(fitted: Fitted, but: int) -> set[int]:
 
 
 def price_of(variant: Variant, effective: FloatArray) -> float:
-    """k/2 ln N of an effect's k numbers, one of them for the choice of what is fixed in it (Schwarz)."""
+    """Return k/2 ln N for the k parameters of an effect, plus one for a choice among variants (Schwarz)."""
     numbers = len(variant.names) + (1 if variant.fixed else 0)
     return 0.5 * numbers * float(np.log(np.sum(effective)))
 
 
 def log_odds_in(problem: Problem, effect: str, size: float) -> float:
-    """Log odds beforehand of an arm of that size, 0 for other effects."""
+    """Return the log prior odds of an arm of that size; 0 for other effects."""
     return log_odds_of_arm(effect, size, problem.arms_in_file, problem.flights.alpha_is_derived)
 
 
@@ -126,10 +127,10 @@ def log_likelihood_gained(
     effective: FloatArray,
     support: float | None = -np.inf,
 ) -> float:
-    """What was gained on manoeuvres kept out, but by luck not more than in the fit itself.
+    """Return the gain in log likelihood on held-out manoeuvres, but at most that of the fit.
 
-    ``support``: see ``support_of``; a loss within its standard error is none. None: no other manoeuvre could
-    confirm it, so the fit is asked alone.
+    A loss within the standard error of ``support`` counts as none. With a support of None no other manoeuvre
+    can confirm the effect, so the fit alone decides.
     """
     fitted, kept_out = (
         float(np.sum(effective / 2.0 * np.log(ratio)))
@@ -143,7 +144,7 @@ def log_likelihood_gained(
 
 
 def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:
-    """Of the least change: what is enough where an effect is certain."""
+    """Return the share of the least change that is enough where an effect is certain."""
     if not is_baseline(before) or problem.knows_the_noise or variant.effect in BY_NATURE:
         return 1.0
     times = 2.0 if variant.names[0] in TIMES or variant.comes_at_any_time else 1.0
@@ -151,12 +152,12 @@ def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: Flo
 
 
 def is_baseline(before: Fitted) -> bool:
-    """Whether the model has nothing yet that is anyone's fault."""
+    """Return whether the model has only nuisance parameters, and no effect yet."""
     return all(effect.is_nuisance for effect in before.point.effects)
 
 
 def price_of_edges(problem: Problem, fitted: Fitted) -> float:
-    """What the cost has beside noise and belief: edges and air speeds off where they likely were.
+    """Return the cost of edges and air speeds away from their likely values: all but noise and prior.
 
     A wrong model buys some of its fit by shifting them.
     """
@@ -165,10 +166,11 @@ def price_of_edges(problem: Problem, fitted: Fitted) -> float:
 
 
 def least_change(problem: Problem) -> float:
-    """Mean square change of the outputs, beside the instruments' noise, from which an effect is worth a name.
+    """Return the least mean square change of the outputs for a named effect, relative to the instruments'
+    noise.
 
-    Where instruments are very good, what matters is no longer their noise: a description to low order is
-    itself no better than a share of each channel's peak.
+    With very good instruments their noise does not limit. A low-order description is itself no better than a
+    share of each channel's peak.
     """
     if problem.instruments is None:
         return LEAST_GAP
@@ -176,7 +178,7 @@ def least_change(problem: Problem) -> float:
 
 
 def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
-    """Whether two predictions differ by next to nothing, or by what a description to low order may err."""
+    """Return whether two predictions are equal but for the error of a low-order description."""
     differences = rms_of(problem, [a - b for a, b in zip(one.residuals, other.residuals, strict=True)])
     return (
         bool(np.all(differences < _OF_PEAK * problem.flights.peaks))
@@ -185,9 +187,10 @@ def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
 
 
 def support_of(problem: Problem, before: HeldOut, after: HeldOut) -> float:
-    """Standard errors over manoeuvres by which the second leaves less of those kept out than the first.
+    """Return by how many standard errors over manoeuvres the second model lowers the held-out gap of the
+    first.
 
-    Only what tells a cause by itself counts; see ``Flights.telling``. 0 for a single manoeuvre.
+    Only channels that identify a cause count (``Flights.telling``). 0 for a single manoeuvre.
     """
     noise = np.ones(len(problem.channels)) if problem.instruments is None else problem.instruments
     removed = (before.by_maneuver - after.by_maneuver) / noise**2
@@ -202,9 +205,9 @@ def support_of(problem: Problem, before: HeldOut, after: HeldOut) -> float:
 def difference(
     problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted, maneuver: int | None = None
 ) -> float:
-    """Mean over channels of the squared change of the prediction, beside the noise that may be doubted.
+    """Return the squared change of the prediction relative to noise and floor margin, mean over channels.
 
-    ``maneuver``: in this manoeuvre, where no other tells of it.
+    ``maneuver`` restricts the mean to one manoeuvre, where no other determines the effect.
     """
     changed = mean_squares(problem, [a - b for a, b in zip(before.residuals, after.residuals, strict=True)])
     noise = 1.0 if problem.instruments is None else problem.instruments * floor_margins(problem.flights)

@@ -1,4 +1,4 @@
-"""One stage of the waterfall: a model, what was thought of adding to it, and what was added."""
+"""One stage of the waterfall: a model, the candidates for an addition, and the addition."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,30 +13,30 @@ from advisor.gap.search.score import addition
 
 @dataclass(frozen=True)
 class Stage:
-    """The model at one stage, and what was thought of adding to it."""
+    """The model at one stage, with the candidates for its next addition."""
 
     fitted: Fitted
     held_out: HeldOut
     considered: tuple[Judged, ...]
-    """Candidates for the next addition, best first; of a stage that was put elsewhere, those of its addition,
-    and none where no more names were asked for."""
+    """Candidates for the next addition, best first. A reordered stage has those of its own addition. The last
+    of ``MOST_EFFECTS`` stages has none."""
     added: Judged | None
-    """What was added to this stage's model to reach the next one."""
+    """Effect whose addition leads to the next stage; None at the last stage."""
 
     @property
     def disputed(self) -> Judged | None:
-        """The likeliest candidate, where nothing was added and manoeuvres kept out alone refuse it."""
+        """The likeliest candidate, where nothing was added and held-out manoeuvres alone reject it."""
         first = next(iter(self.considered), None)
         return first if first is not None and self.added is None and first.is_disputed else None
 
     def slight_in(self, block: str) -> Judged | None:
-        """What is beyond doubt in a block, and too small for a name only."""
+        """Return the effect of a block that is beyond doubt and only too small to be named."""
         found = (j for j in self.considered if j.block == block and j.gain >= BEYOND_DOUBT)
         return next((j for j in found if not j.large_enough and not j.at_its_bounds), None)
 
 
 def added_in(stages: Sequence[Stage]) -> list[Judged]:
-    """What was added, stage by stage."""
+    """Return the added effects, stage by stage."""
     return [stage.added for stage in stages if stage.added is not None]
 
 
@@ -48,7 +48,7 @@ def rebuilt(
     considered: Mapping[str, tuple[Judged, ...]],
     last: tuple[Judged, ...],
 ) -> list[Stage]:
-    """Stages of the effects in another order."""
+    """Return the stages with the effects in another order."""
     effective = effective_samples(problem, full.innovations)
     before, held = first.fitted, first.held_out
     stages = []
@@ -61,5 +61,5 @@ def rebuilt(
 
 
 def fit_with_effects(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
-    """The model with some of its effects, fitted."""
+    """Return the fitted model with some of the effects."""
     return fit(problem, full.point.with_only(names), full.noise, iterations=8, tolerance=0.5)

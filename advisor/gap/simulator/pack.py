@@ -1,6 +1,8 @@
-"""A pack of simulations, an array of shape (``ROWS``, ``LANES``): what stands in each row, and how it begins.
+"""A pack of simulations: an array of shape (``ROWS``, ``LANES``), the meaning of its rows, and its initial
+values.
 
-The first rows are the driving numbers of ``advisor.gap.simulator.layout``, one simulation a column, or lane.
+The first rows are the driving numbers of ``advisor.gap.simulator.layout``. Each column, or lane, is one
+simulation.
 """
 
 import numpy as np
@@ -10,10 +12,10 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.layout import AT, TRIM
 
 LANES = 8
-"""Simulations in a pack: the numbers in the widest registers."""
+"""Number of simulations in a pack: as many as the widest registers hold doubles."""
 _ANYWHERE = 9.0
-"""Angle of a vane without stops, rad."""
-# Rows of a pack behind the driving numbers: what follows from them once, the state, what a step hands on.
+"""Stop angle of a vane without stops, rad: larger than any angle of attack."""
+# Rows behind the driving numbers: constants of the run, the state, and values handed on within a step.
 (
     DOSE, ENGINE_DECAY, LIFT_DECAY, VANE_DECAY, VANE_RAMP, FADE, SWING_COS, SWING_SIN, SOFTNESS,
     ALPHA, Q, THETA, ENGINE, LIFT, FOLLOWED, VANE_BEFORE, VANE_OUT, SHOWN,
@@ -27,16 +29,16 @@ _ANYWHERE = 9.0
 def begin(
     x: FloatArray, lane: int, p: FloatArray, dose: float, h: float, speed: float, trim: FloatArray
 ) -> None:
-    """Fill a lane of a pack with its driving numbers, what follows from them, and the state at the start."""
+    """Fill one lane of a pack with its driving numbers, the constants of the run, and the initial state."""
     x[: len(p), lane] = p
     x[DOSE, lane] = dose
     x[ENGINE_DECAY, lane] = np.exp(-h / max(p[AT.engine_lag_s], 1e-3 * h))
     x[LIFT_DECAY, lane] = np.exp(-h / max(p[AT.lift_lag_s], 0.2 * h))
-    # First order in the lag, so that the sensitivity to a lag exists at no lag at all.
+    # First order in the lag, so that the sensitivity to a lag exists at a lag of zero.
     tau = p[AT.alpha_lag_s]
     decay = np.exp(-h / tau) if tau > 1e-6 else 0.0
     x[VANE_DECAY, lane], x[VANE_RAMP, lane] = decay, (tau / h) * (1.0 - decay)
-    # The mode is solved exactly: it is fast beside the step. ``SWING_SIN`` is sin(ω_d h) ω/ω_d.
+    # The mode is solved exactly, because it is fast relative to the step. ``SWING_SIN`` is sin(ω_d h) ω/ω_d.
     omega, zeta = p[AT.mode_rad_s], p[AT.mode_damping]
     damped = np.sqrt(max(1.0 - zeta * zeta, 1e-6))
     x[FADE, lane] = np.exp(-zeta * omega * h)

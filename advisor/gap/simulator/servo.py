@@ -5,19 +5,20 @@ import numpy as np
 from advisor.compiled import kernel
 
 ARRIVED_RAD = 1e-9
-"""Deflection, rad, below which the servo has arrived."""
+"""Deflection error in rad below which the servo counts as arrived."""
 _PARTS = 8
-"""Of a piece of the command, at most: at its limit, lagging, and at its limit the other way."""
+"""Most parts of one piece of the command: at the rate limit, lagging, and at the opposite limit."""
 
 
 @kernel()
 def through_servo(
     servo: float, link: float, begin: float, end: float, dt: float, tau: float, most: float, play: float
 ) -> tuple[float, float, float]:
-    """Servo and linkage after a piece in which the command moves linearly, and the deflection's integral.
+    """Return servo and linkage at the end of a linear piece of the command, and the integral of the
+    deflection.
 
-    The servo moves by (command − servo)/τ, but no faster than ``most``: it lags by an exponential or runs at
-    its limit, and a piece holds a few such parts. The linkage rests until the servo has crossed its play.
+    The servo moves by (command − servo)/τ, but no faster than ``most`` rad/s. A piece therefore consists of a
+    few exponential and linear parts. The linkage rests until the servo has crossed its play.
     """
     slope, left, command, area = (end - begin) / dt, dt, begin, 0.0
     way, limit = np.sign(slope), most * tau
@@ -52,11 +53,12 @@ def through_servo(
 def through_friction(
     link: float, way: float, begin: float, end: float, dt: float, holds: float, drags: float, tau: float
 ) -> tuple[float, float, float]:
-    """Surface, which way it slides, and its integral, after a piece in which the command moves linearly.
+    """Return surface, direction of sliding and integral of the deflection after a linear piece of the
+    command.
 
-    A position loop against dry friction: at rest it holds until the command is ``holds`` away. While it
-    slides friction drags: it lags by ``tau`` behind what is ``drags`` short of the command, and rests again
-    where that would turn it round.
+    The model is a position loop with dry friction. At rest the surface holds until the command is ``holds``
+    rad away. A sliding surface lags by ``tau`` s behind a point ``drags`` rad short of the command, and rests
+    where its direction would reverse.
     """
     slope, left, command, area = (end - begin) / dt, dt, begin, 0.0
     tau = max(tau, 1e-3)

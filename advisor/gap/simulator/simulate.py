@@ -1,8 +1,8 @@
-"""The simulator under diagnosis: short-period motion at a measured air speed, with every effect in it.
+"""The simulator under diagnosis: short-period motion at a measured air speed, with every candidate effect.
 
-Eqs. (1)-(2) about the trim of each manoeuvre, with the exact kinematics of the accelerometer and
-the attitude and, where the speed is measured, derivatives that scale with it. The low-order terms
-of the candidate effects are in the same loop, each switched off by a zero (``advisor.gap.simulator.layout``).
+The equations are Eqs. (1)-(2) about the trim of each manoeuvre, with exact kinematics of accelerometer and
+attitude. Where the air speed is measured, derivatives scale with it. Terms of the candidate effects are of
+low order, and a zero switches each off (``advisor.gap.simulator.layout``).
 
     v = V/V_r,  Δα = α − α_trim,  Δδ = δ − δ_trim
     N  = v (1 + k_h e^(−h/b)) (Z_trim + Z_α Δα_e + Z_δe Δδ + ...) + Z_q q       normal force over m·V
@@ -10,12 +10,13 @@ of the candidate effects are in the same loop, each switched off by a zero (``ad
     q̇ = v² (M_trim + M_α Δα + M_δe Δδ + ...) + v (M_q q + M_|q| |q| + M_α̇ α̇) + M_T ΔT + M_P (1 − v²)
     θ̇ = q cos φ − r sin φ,   a_z cos α = V N + a_x sin α
 
-Where forces do not go with V², lift is multiplied by v^n besides, and all moments of α and δ by v^m. V is
-what was measured, and a parabola in time that it may be wrong by. The last is the exact
-a_z = V cos α (α̇ − q) + V̇ sin α − g cos θ with V̇ replaced by what a_x measures.
+Where forces do not grow with V², lift is also multiplied by v^n, and moments of α and δ by v^m. V is the
+measured air speed plus a parabola in time for its error. The last equation is the exact a_z = V cos α (α̇ −
+q) + V̇ sin α − g cos θ with V̇ taken from a_x.
 
-A step has to wait for the one before, which leaves a processor idle. Many sets of parameters are flown with
-the same inputs, so the loop advances a pack of them side by side, each in a lane: it takes the time of one.
+A step depends on the step before, so a single simulation leaves most of the processor idle. Many parameter
+sets fly the same inputs. The loop therefore advances a pack of simulations side by side, each in its lane, in
+the time of one.
 """
 
 import numpy as np
@@ -58,23 +59,23 @@ def simulate(
     delta
         Shape (packs, n, LANES). Mean deflection over each step relative to trim, from ``surfaces``.
     above
-        Shape (packs, n, LANES). What that is above the deflection at the step's start.
+        Shape (packs, n, LANES). Mean deflection minus the deflection at the start of the step.
     slow
-        Shape (7, n). Speed m/s, a_x m/s², bank rad, throttle relative to its start, height m, thrust less
-        drag over weight, less its mean, and what a turn takes from θ̇, r sin φ, rad/s.
+        Shape (7, n). Speed (m/s), a_x (m/s²), bank (rad), throttle relative to its start, height (m), thrust
+        minus drag over weight relative to its mean, and r sin φ (rad/s), which a turn subtracts from θ̇.
     disturbance
         Shape (4, n), or (4, 0) for none: added to δ, α̇, q̇ and the angle of the air.
     doses
-        Shape (k,). How much of the disturbance each simulation gets.
+        Shape (k,). Factor of the disturbance in each simulation.
     trim
         Shape (4,). α, θ at the start, reference speed; and 1 when derivatives scale with speed.
     p
-        Shape (k, entries). Parameters of each simulation laid out as ``layout.ENTRIES``.
+        Shape (k, entries). Driving numbers of each simulation, in the order of ``layout.ENTRIES``.
 
     Returns
     -------
     Shape (packs, n + 1, 4, LANES): α and q as their sensors read them, a_z at the accelerometer, θ; of
-    simulation j in lane j % LANES of pack j // LANES. Lanes to spare repeat the last.
+    simulation j in lane j % LANES of pack j // LANES. Spare lanes repeat the last simulation.
 
     Raises
     ------
@@ -109,7 +110,8 @@ def simulate(
                 near_ground(x, lanes, slow[SLOW.height, j])
             forced = (d_delta, d_force, d_moment)
             hold_over_step(x, lanes, delta[k, j], above[k, j], slow[:, j], level[j], forced)
-            # The midpoint rule: at a hundredth of the period a step its error is far below any derivative's.
+            # The midpoint rule: with a step of a hundredth of the period, its error is far below that of any
+            # derivative.
             for stage in range(2):
                 if stalls:
                     stall(x, lanes, h, d_air)

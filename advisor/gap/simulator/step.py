@@ -58,21 +58,23 @@ from advisor.gap.simulator.pack import (
 from advisor.standard_gravity import GRAVITY_M_S2
 
 _inlined = kernel(error_model="numpy", fastmath={"contract"}, inline="always")
-"""Decorator of a part of a step. Called instead of inlined, the parts take more than four times as long."""
+"""Decorator of a part of a step. As calls instead of inlined code, the parts take more than four times as
+long."""
 
 
 @kernel()
 def _attached(beyond: float) -> float:
-    """Share of the lift that is left, the flow separated over half the chord at 0 (Kirchhoff's flow)."""
+    """Return the attached share of the lift. At 0 the flow is separated over half the chord (Kirchhoff's
+    flow)."""
     chord = 1.0 / (1.0 + np.exp(2.0 * beyond))
     return float(0.25 * (1.0 + np.sqrt(chord)) ** 2)
 
 
 @kernel(error_model="numpy")
 def _separate(x: FloatArray, m: int, before: float, now: float) -> None:
-    """The flow separates above one angle, and attaches again below another: a relay's memory.
+    """Separate the flow above one angle and attach it again below another, with the memory of a relay.
 
-    What a step misses because the angle was met within it is made up for in the next one.
+    The angle is met within a step; the next step makes up for the part that was missed.
     """
     x[MISSING, m] = x[SEPARATED, m]
     if x[SEPARATED, m] == 0.0 and now > x[AT.separation_rad, m]:
@@ -103,7 +105,7 @@ def take_speed(
     for m in range(lanes):
         bowed = x[AT.speed_slope_m_s, m] + along * x[AT.speed_bow_m_s, m]
         off = x[AT.speed_level_m_s, m] + along * bowed
-        # Derivatives are given at the speed as it is read; what bends the path is the true one.
+        # Derivatives are given at the speed as it is read; the true speed bends the path.
         x[AIRSPEED, m] = (speed + off) * (1.0 + x[AT.speed_scale, m])
         x[RATIO, m] = (speed + off) / reference if scaled else 1.0
     if powers:
@@ -114,12 +116,12 @@ def take_speed(
 
 @_inlined
 def near_ground(x: FloatArray, lanes: int, height: float) -> None:
-    """Write how near the ground is, e^(−h/b), at a height h in m; 0 in lanes without ground effect."""
+    """Write the ground proximity e^(−h/b) at a height h in m; 0 in lanes without ground effect."""
     scale, near = 0.0, 0.0
     for m in range(lanes):
         if x[AT.scale_m, m] != scale:
             scale = x[AT.scale_m, m]
-            # Heights count from a place that may lie above the ground; a trial scale may be tiny.
+            # Heights count from a place that may lie above the ground, and a trial scale may be tiny.
             near = np.exp(min(-height / max(scale, 1e-3), 3.0)) if scale > 0.0 else 0.0
         x[NEAR, m] = near
 
@@ -129,12 +131,13 @@ def hold_over_step(
     x: FloatArray, lanes: int, delta: FloatArray, above: FloatArray, slow: FloatArray, level: float,
     disturbed: tuple[float, float, float],
 ) -> None:  # fmt: skip
-    """Write what stays over a step: gravity, and the parts of forces and moments that no state changes.
+    """Write the values that stay constant over a step: gravity, and forces and moments independent of the
+    state.
 
     Parameters
     ----------
     delta, above
-        Shape (LANES,), as ``simulate`` takes them.
+        Shape (LANES,): rows of the arguments of ``simulate``.
     slow
         Shape (7,): the slow inputs of the step.
     level
@@ -176,7 +179,7 @@ def hold_over_step(
 
 @_inlined
 def stall(x: FloatArray, lanes: int, h: float, d_air: float) -> None:
-    """Write the share of the lift that is left, at half a step of ``h`` s ahead of the state."""
+    """Write the attached share of the lift, half a step of ``h`` s ahead of the state."""
     for m in range(lanes):
         if x[AT.stall_sharpness, m] > 0.0:
             a = x[ALPHA, m] + 0.5 * h * x[KA, m] + x[DOSE, m] * d_air
@@ -185,9 +188,10 @@ def stall(x: FloatArray, lanes: int, h: float, d_air: float) -> None:
 
 @_inlined
 def rates(x: FloatArray, lanes: int, h: float, d_air: float, alpha_trim: float, first: bool) -> None:
-    """Write α̇ and q̇ half a step ahead of the state by the rates known so far, Eqs. (1)-(2).
+    """Write α̇ and q̇ by Eqs. (1)-(2), half a step ahead of the state by the rates known so far.
 
-    ``first``: those rates are zero, so that the result belongs to the start of the step, as outputs do.
+    ``first``: the rates known so far are zero, so the result belongs to the start of the step, like the
+    outputs.
     """
     for m in range(lanes):
         a = x[ALPHA, m] + 0.5 * h * x[KA, m] + x[DOSE, m] * d_air
@@ -224,7 +228,7 @@ def read_sensors(
         alpha, q, air = x[ALPHA, m], x[Q, m], x[DOSE, m] * d_air
         x[AIR, m] = air
         vane = alpha + air - x[AT.vane_arm_m, m] * q / x[AIRSPEED, m]
-        # The air may move from the first step on, though all was steady before.
+        # The air may move after the first step, although the vane was steady at the start.
         x[VANE_OUT, m] = (x[VANE_DECAY, m] * (x[VANE_OUT, m] - x[VANE_BEFORE, m]) + vane
                           - x[VANE_RAMP, m] * (vane - x[VANE_BEFORE, m]))  # fmt: skip
         x[VANE_BEFORE, m] = vane
@@ -251,19 +255,19 @@ def read_sensors(
 def advance(
     x: FloatArray, lanes: int, h: float, alpha_trim: float, level: float, turning: float, separates: bool
 ) -> None:
-    """Carry the state over a step of ``h`` s: motion, lift with a lag or a memory, structural mode.
+    """Advance the state over a step of ``h`` s: motion, lift with a lag or a memory, structural mode.
 
     Parameters
     ----------
     level, turning
-        Cosine of the bank, and what a turn takes from θ̇, rad/s.
+        Cosine of the bank, and r sin φ in rad/s, which a turn subtracts from θ̇.
     separates
         Whether the flow may separate in any lane.
     """
     for m in range(lanes):
         alpha, q, theta = x[ALPHA, m], x[Q, m], x[THETA, m]
         air, d = x[AIR, m], x[DEFLECTION, m]
-        # A search may try an unstable aircraft: its motion stays finite, and is rejected by its cost.
+        # A search may try an unstable aircraft: the clipped motion stays finite, and its cost rejects it.
         x[ALPHA, m] = min(max(alpha + h * x[KA, m], -1.5), 1.5)
         x[Q, m] = min(max(q + h * x[KQ, m], -15.0), 15.0)
         x[THETA, m] = theta + h * (0.5 * (q + x[Q, m]) * level - turning)

@@ -12,10 +12,10 @@ _READ = (
     AT.half_play_rad, AT.play_side, AT.half_deadband_rad, AT.neutral_rad, AT.stop_up_rad, AT.stop_down_rad,
     AT.breakaway_rad, AT.sliding_share, AT.loop_s,
 )  # fmt: skip
-"""Entries on which a deflection depends."""
+"""Entries that change a deflection."""
 
 _UNLIMITED = 1e6
-"""Rate of a servo without a limit, rad/s: a jump takes no time."""
+"""Rate of a servo without a rate limit, rad/s: fast enough for a step to take no time."""
 
 
 @kernel()
@@ -23,11 +23,12 @@ def surfaces(
     layout: int, h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray,
     lanes: int,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Deflections for every row of ``p``, shape (k, entries), in lanes as ``simulate`` takes them.
+    """Return the deflections for every row of ``p``, shape (k, entries), in the lanes of ``simulate``.
 
-    Each of shape (packs, n, lanes): the mean over each step, and what that is above the step's start. Most
-    rows differ in numbers of which the surface knows nothing: those share a deflection. Lanes to spare repeat
-    the last one. Raises ValueError where the surface was compiled for another ``layout`` (``layout.LAYOUT``).
+    Both arrays have shape (packs, n, lanes): the mean over each step, and that mean minus the deflection at
+    the start of the step. Rows that differ in no entry of the surface share a deflection. Spare lanes repeat
+    the last row. Raises ValueError where the function was compiled for another ``layout``
+    (``layout.LAYOUT``).
     """
     if layout != LAYOUT or p.shape[1] != len(AT):
         raise ValueError(OTHER_LAYOUT)
@@ -64,10 +65,10 @@ def _differ(one: FloatArray, other: FloatArray) -> bool:
 
 @kernel()
 def above_start(mean: FloatArray) -> FloatArray:
-    """What the mean over each step is above the value at its start.
+    """Return the mean over each step minus the value at the start of the step, shape (n,).
 
-    Of the two steps that meet there the flatter one tells: a jump within the other leaves the value as it
-    was, or already is.
+    Two steps meet at that point, and the flatter one decides: a jump within the other leaves the value
+    unchanged, or has happened already.
     """
     n = len(mean)
     out = np.empty(n)
@@ -82,7 +83,7 @@ def above_start(mean: FloatArray) -> FloatArray:
 
 @kernel()
 def _lesser(one: float, other: float) -> float:
-    """The smaller of two differences of one sign; zero where they differ in sign."""
+    """Return the smaller of two differences of equal sign; zero where their signs differ."""
     if one * other <= 0.0:
         return 0.0
     return one if abs(one) < abs(other) else other
@@ -92,11 +93,12 @@ def _lesser(one: float, other: float) -> float:
 def surface(
     h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray
 ) -> FloatArray:
-    """Mean deflection over each step, relative to trim, after everything between stick and surface.
+    """Return the mean deflection over each step, relative to trim, behind all parts between stick and
+    surface.
 
-    The command comes in pieces that end at its stamps. What is not linear takes every piece by itself, so
-    that an edge inside a step keeps its area; all else is solved for the command's mean over the step.
-    The result is smooth in the delay.
+    The command consists of pieces that end at its stamps. Nonlinear parts take every piece separately, so
+    that an edge inside a step keeps its area. Linear parts are solved for the mean of the command over the
+    step. The result is smooth in the delay.
     """
     out = np.empty(n)
     k = 0
@@ -104,7 +106,7 @@ def surface(
     tau, slow = p[AT.lag_s], p[AT.slowness_s_rad]
     play = max(p[AT.half_play_rad], 0.0)
     decay = np.exp(-h / tau) if tau > 1e-6 else 0.0
-    # A servo of second order that trails a ramp by τ = 2 ζ/ω, solved exactly for what it is told in a step.
+    # A second-order servo that trails a ramp by τ = 2 ζ/ω, solved exactly for the mean command of a step.
     zeta = p[AT.lag_damping] if tau > 1e-3 else 0.0
     omega = 2.0 * zeta / max(tau, 1e-3)
     damped = np.sqrt(max(1.0 - zeta * zeta, 1e-6))
@@ -172,7 +174,7 @@ def surface(
 
 @kernel()
 def _limited(begin: float, end: float, p: FloatArray) -> tuple[float, float, float]:
-    """Ends and mean of a linear piece of the command behind the dead band and the stops.
+    """Return the ends and the mean of a linear piece of the command behind the dead band and the stops.
 
     ``begin`` and ``end`` are relative to trim, rad; ``p`` has shape (entries,).
     """
@@ -211,7 +213,8 @@ def _beyond(x: float, dead: float) -> float:
 
 @kernel()
 def _mean_beyond(begin: float, end: float, dead: float) -> float:
-    """Mean of what lies beyond the dead band while its argument moves linearly from begin to end."""
+    """Return the mean of the part beyond the dead band while the argument moves linearly from begin to
+    end."""
     if abs(end - begin) < ARRIVED_RAD:
         return float(_beyond(begin, dead))
     squares = max(abs(end) - dead, 0.0) ** 2 - max(abs(begin) - dead, 0.0) ** 2
@@ -220,7 +223,7 @@ def _mean_beyond(begin: float, end: float, dead: float) -> float:
 
 @kernel()
 def _mean_over(begin: float, end: float, top: float) -> float:
-    """Mean of what lies above a stop while its argument moves linearly from begin to end."""
+    """Return the mean of the part above a stop while the argument moves linearly from begin to end."""
     if abs(end - begin) < ARRIVED_RAD:
         return float(max(begin - top, 0.0))
     squares = max(end - top, 0.0) ** 2 - max(begin - top, 0.0) ** 2

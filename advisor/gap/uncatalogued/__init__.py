@@ -1,1 +1,1 @@
-"""What no effect of the catalogue explains, and in which block it is."""
+"""Residuals that no effect of the catalogue explains, and the blocks in which they arise."""

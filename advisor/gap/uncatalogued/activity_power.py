@@ -1,4 +1,5 @@
-"""Noise does not care what the stick does: power under the stick beside that in quiet."""
+"""Residual power while the elevator moves, compared with that in quiet: noise does not depend on the
+stick."""
 
 from collections.abc import Sequence
 
@@ -9,7 +10,7 @@ from advisor.gap.fitting.problem import Problem
 
 
 def power_by_activity(problem: Problem, residuals: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Mean squares while the elevator works, and while all is quiet; both shape (channels,)."""
+    """Return the mean squares while the elevator moves, and while all is quiet; both of shape (channels,)."""
     sums, counts = np.zeros((2, len(problem.channels))), np.zeros((2, len(problem.channels)))
     for flight, residual in zip(problem.flights.flights, residuals, strict=True):
         free = flight.duration_s - flight.last_step_s
@@ -20,5 +21,5 @@ def power_by_activity(problem: Problem, residuals: Sequence[FloatArray]) -> tupl
                 sums[k, c] += float(np.sum(residual[rows][inside] ** 2))
                 counts[k, c] += np.count_nonzero(inside)
     active_power, quiet_power = sums / np.maximum(counts, 1.0)
-    # Without a quiet stretch there is nothing to compare with.
+    # Without a quiet stretch there is no comparison.
     return active_power, np.where(counts[1] > 0, quiet_power, active_power)

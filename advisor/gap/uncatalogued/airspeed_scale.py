@@ -1,7 +1,8 @@
-"""Do air speed and accelerometer fit together? Both tell how the path bends; every model lets them differ.
+"""Consistency of air speed and accelerometer: both determine the curvature of the flight path.
 
-By a few per cent they always do: a static port reads what the wing makes of the pressure there. By more one
-of the two is wrong; but an air speed may be indicated, and the true one above it in thin air.
+Every model has a nuisance parameter for their difference. A difference of a few per cent is normal, because a
+static port reads a pressure that the wing changes. With a larger difference one of the two is wrong, unless
+the air speed is an indicated one in thin air.
 """
 
 from dataclasses import dataclass
@@ -13,47 +14,53 @@ from advisor.gap.fitting.uncertainty import effective_samples, shared_std
 from advisor.gap.uncatalogued.weight_check import WeightReading
 
 _REPORTED, _WRONG = 0.02, 0.06
-"""Relative difference from which on it is said, and from which on something is wrong ..."""
+"""Least relative difference that is reported, and least difference that shows an error."""
 _FELT = 0.03
-"""... from which on it is felt that an indicated air speed changes by less than the true one ..."""
+"""Least relative difference for which an indicated air speed is assumed, because its changes are too
+small."""
 _INDICATED = 0.25
-"""... which is the most that thin air makes of an indicated air speed, at 4,000 m and above ..."""
+"""Largest relative difference that thin air explains, at 4,000 m and above."""
 _ITS_OWN = 0.5
-"""... where the accelerometer does not carry the weight wrongly by this share of it ..."""
+"""Largest error of the weight that the accelerometer reads, as a share of the difference, for an indicated
+air speed."""
 _AS_MUCH = 0.05
-"""Difference of the two shares at which they are the same: an accelerometer's zero has its part in one."""
+"""Largest difference between the errors of curvature and weight for which both are the accelerometer's. An
+offset of the accelerometer contributes to one of them."""
 _SIGMAS = 5.0
-"""... and the standard deviations it must have ..."""
+"""Least number of standard deviations of a difference that is reported."""
 _SIGMAS_IN_GUSTS = 8.0
-"""... to be wrong in moving air: a wave that is met in every manoeuvre is read as a wrong speed, too."""
+"""Least number of standard deviations of a difference that shows an error in moving air. A wave in every
+manoeuvre looks like a wrong air speed."""
 
 
 @dataclass(frozen=True)
 class AirspeedScale:
-    """By how much the motion's air speed is above the one in use, or the accelerometer reads too high."""
+    """Relative excess of the air speed in the motion over the one in use; an accelerometer scale error looks
+    the same."""
 
     scale: float
     std: float
 
     def is_wrong(self, moving_air: bool, weight: WeightReading | None) -> bool:
-        """Whether no air speed indicator of an aircraft is that far off.
+        """Return whether the difference exceeds the error of any air speed indicator.
 
-        ``weight``: what the accelerometer reads of it, where that is known.
+        ``weight`` is the accelerometer's reading of the weight, where that is known.
         """
         least = _INDICATED if self.is_indicated(weight) else _WRONG
         return abs(self.scale) > max(least, _SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
 
     def is_indicated(self, weight: WeightReading | None) -> bool:
-        """Whether it may be an indicated air speed in thin air, for the accelerometer reads its weight."""
+        """Return whether the air speed may be an indicated one in thin air: the accelerometer reads the
+        weight right."""
         return weight is not None and self.scale > max(_FELT, (weight.share - 1.0) / _ITS_OWN)
 
     def is_the_accelerometers(self, weight: WeightReading | None) -> bool:
-        """Whether as much is missing of the weight as of what bends the path: no air speed does that."""
+        """Return whether weight and curvature lack an equal share, which no air speed error causes."""
         return weight is not None and weight.is_off and abs(self.scale - (weight.share - 1.0)) < _AS_MUCH
 
     @property
     def sentence(self) -> str:
-        """For the reader of the diagnosis."""
+        """Sentence for the reader of the diagnosis."""
         too = "too high" if self.scale > 0.0 else "too low"
         off = f"{100.0 * self.scale:+.1f} ± {100.0 * self.std:.1f} %"
         return (
@@ -64,12 +71,12 @@ class AirspeedScale:
 
 
 def true_over_read(found: AirspeedScale | None, weight: WeightReading | None) -> float:
-    """How many times the air speed that is read the true one is, where it may be an indicated one; else 1."""
+    """Return the ratio of true to read air speed where the latter may be an indicated one; otherwise 1."""
     return 1.0 + found.scale if found is not None and found.is_indicated(weight) else 1.0
 
 
 def airspeed_scale_of(problem: Problem, fitted: Fitted) -> AirspeedScale | None:
-    """What the fitted model says of it; None where that is next to nothing, or no channel shows it."""
+    """Return the difference that the fitted model shows; None where it is insignificant, or not measured."""
     point = fitted.point
     if TRUE_AIR_SPEED not in point.effects:
         return None

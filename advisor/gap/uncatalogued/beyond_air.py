@@ -1,4 +1,4 @@
-"""Names in moving air must explain most of what the air does not: otherwise they only resemble something."""
+"""Effects in moving air: they must explain most of the residual that moving air does not explain."""
 
 from collections.abc import Sequence
 
@@ -8,18 +8,19 @@ from advisor.gap.search.acceptance import LEAST_PRIOR_GAIN
 from advisor.gap.search.stage import Stage, added_in
 
 _BESIDE_THE_AIR = 0.5
-"""Share that right names take away at least of what the air does not explain."""
+"""Least share of the residual beyond moving air that the right effects remove."""
 _OF_A_RIGHT_MODEL = 2.5
-"""What each of its numbers adds to the squared innovations of manoeuvres kept out, together, in those of one
-sample: they are fitted to two thirds, of a motion that bends a little (1 to 7 in 25 flights) ..."""
+"""Excess of the squared innovations on held-out manoeuvres per shared parameter of a right model, over all
+samples, in units of one sample. Two thirds of the manoeuvres are fitted, and the motion is slightly
+nonlinear: 1 to 7 was found in 25 flights."""
 _AT_MOST = 0.3
-"""... but that share of what is there without the names: the rest is something."""
+"""Largest such excess, as a share of the excess without effects. More is an unexplained residual."""
 
 
 def explain_little_beyond_air(stages: Sequence[Stage]) -> bool:
-    """Whether names in moving air leave most of what the air does not explain.
+    """Return whether effects in moving air leave most of the residual that moving air does not explain.
 
-    What brings derivatives back to the aircraft file's need not take away anything.
+    Effects with a large prior gain need not remove any residual.
     """
     named = added_in(stages)
     if not named or max(judged.prior_gain for judged in named) >= LEAST_PRIOR_GAIN:
@@ -29,10 +30,10 @@ def explain_little_beyond_air(stages: Sequence[Stage]) -> bool:
 
 
 def removed_beyond_air(stages: Sequence[Stage]) -> float | None:
-    """Share of what the air does not explain that the named effects take away, on manoeuvres kept out.
+    """Return the share of the residual beyond moving air that the effects remove, on held-out manoeuvres.
 
-    Measured in the innovations, which are freed of the air, beyond what a right model leaves there for its
-    numbers being those of the other manoeuvres. None where that is everything.
+    The innovations contain no moving air. The excess of a right model, whose parameters come from the other
+    manoeuvres, is subtracted. None where that excess is everything.
     """
     last = stages[-1]
     noise, samples = last.fitted.noise**2, sum(map(len, last.fitted.innovations))

@@ -1,10 +1,10 @@
-"""Simple laws that have no name in the catalogue: readings out of proportion, moments that bend, losses.
+"""Simple laws outside the catalogue: nonlinear readings, nonlinear damping, losses, friction and stops.
 
-α and q may be scaled by name; a_z and θ may not, no reading may be bent, and no gyro feel an acceleration.
-A moment may bend by name with the deflection and with α, but not with the pitch rate, nor with products. A
-servo may lag or run at its limit, but neither overshoot nor meet a stop. α may lag, but no vane rub or meet a
-stop; other channels may be late, but not rounded. Lift may bend and come late, but not come back another way
-than it went. Ice takes of the wing and the elevator, but nothing of the elevator alone.
+The catalogue scales α and q, but not a_z and θ. It has no nonlinear reading, and no gyro that is sensitive to
+acceleration. Its moments are nonlinear in deflection and α, but not in pitch rate. Its servo may lag or reach
+a rate limit, but neither overshoots nor meets a stop. Its α may lag, but no vane has friction or a stop. Its
+channels may be late, but not filtered. Its lift may be nonlinear and delayed, but has no hysteresis. Ice
+reduces lift and elevator power, but no effect reduces elevator power alone.
 """
 
 import numpy as np
@@ -20,13 +20,14 @@ from advisor.gap.uncatalogued.mechanical_stops import SURFACE_STOP, VANE_STOP, s
 
 
 def _scale(name: str, block: str, channel: str) -> Variant:
-    """A factor of what is read."""
+    """Return a scale error of a reading."""
     entries = (f"{channel}_scale",)
     return Variant(name, block, ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.03, entries=entries)
 
 
 def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
-    """Factors of what is read, of its square and of its cube (IEEE Std 1293); ``unit``: a usual change."""
+    """Return a reading with linear, quadratic and cubic errors (IEEE Std 1293); ``unit`` is a typical
+    change."""
     return Variant(
         name, block, ("scale", "square", "cube"), ((0.0, 0.0, 0.0),),
         (0.002, 0.002 / unit, 0.002 / unit**2),
@@ -36,7 +37,7 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
 
 
 def _filter(block: str, channel: str) -> Variant:
-    """A filter of first or second order that nobody compensates: late, and rounded besides."""
+    """Return a filter of first or second order in a reading, which nothing compensates."""
 
     def pass_through(p: FloatArray, values: Values, _: Flights) -> None:
         p[:, [INDEX[name] for name in FILTER]] = (*values, OUTPUTS.index(channel))
@@ -51,7 +52,7 @@ _PULLED, _RINGS, _RUBS, _FILTERED = "gyro_pulled", "servo_rings", "vane_friction
 _STICKS = "servo_sticks"
 _WEAKER = "elevator_loss"
 MUST_LEAVE_LITTLE = frozenset({_PULLED, SURFACE_STOP, _RINGS})
-"""Laws that leave little where they are the truth: what they resemble is of another kind."""
+"""Laws that leave a small residual where they are true. Faults that resemble them leave more."""
 _READINGS = {
     "a_z": (
         _curve("accelerometer_curve", "accelerometer", "a_z", 5.0),
@@ -59,7 +60,7 @@ _READINGS = {
     ),
     "alpha": (
         _curve("alpha_curve", "alpha_sensor", "alpha", 0.05),
-        # Dry friction: a play as that of the elevator's linkage, in the vane's bearing.
+        # Dry friction in the vane's bearing, modelled as a play like that of the elevator's linkage.
         Variant(
             _RUBS,
             "alpha_sensor",
@@ -74,7 +75,7 @@ _READINGS = {
     "theta": (_scale("attitude_scale", "attitude_sensor", "theta"), _filter("attitude_sensor", "theta")),
     "q": (
         _filter("pitch_rate_sensor", "q"),
-        # IEEE Std 1431: drift that goes with acceleration, and with its square.
+        # IEEE Std 1431: drift proportional to acceleration, and to its square.
         Variant(
             _PULLED,
             "pitch_rate_sensor",
@@ -100,7 +101,7 @@ _MOMENTS = (
 
 
 def _rings(p: FloatArray, values: Values, _: Flights) -> None:
-    """What the file says of the servo's lag gives way: it is late by 2ζ/ω, however long it rings."""
+    """Replace the file's servo lag by a second-order servo, which is late by 2ζ/ω."""
     omega, damping = values
     p[:, INDEX["lag_s"]], p[:, INDEX["lag_damping"]] = 2.0 * damping / omega, damping
 
@@ -134,7 +135,7 @@ _SENTENCES = {
 
 
 def _sticking(flights: Flights) -> Variant:
-    """A surface that dry friction holds until the command has run away from it."""
+    """Return a surface that dry friction holds until the command is far enough away."""
     most = float(np.median([np.max(np.abs(flight.u - flight.u_trim)) for flight in flights.flights]))
     return Variant(
         _STICKS, "input", ("breakaway_rad", "sliding_share", "loop_s"),
@@ -146,7 +147,7 @@ def _sticking(flights: Flights) -> Variant:
 
 
 def _weaker(flights: Flights) -> list[Variant]:
-    """An elevator that does less from some manoeuvre on, whatever else stays."""
+    """Return an elevator that loses power after some manoeuvre, with all else unchanged."""
     if len(flights) < 3:
         return []
     columns = [INDEX["Z_delta_e"], INDEX["M_delta_e"]]
@@ -159,7 +160,7 @@ def _weaker(flights: Flights) -> list[Variant]:
 
 
 def laws_for(flights: Flights) -> list[Variant]:
-    """Every law of the readings that tell, of the moment, of the surface and of the lift."""
+    """Return all laws of the identifying readings, of the moment, of the surface and of the lift."""
     readings = [flights.channels[c] for c in flights.telling]
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
     of_readings += vane_stops(flights) if "alpha" in readings else []
@@ -169,7 +170,7 @@ def laws_for(flights: Flights) -> list[Variant]:
 
 
 def sentence_of(law: Judged) -> str:
-    """What the law is, and what else would look like it."""
+    """Return a sentence about the law, with its size."""
     degrees = " and ".join(f"{np.degrees(value):.1f}" for value in law.value)
     first = float(law.value[0])
     return _SENTENCES[law.effect].format(

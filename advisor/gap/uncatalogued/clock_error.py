@@ -1,8 +1,7 @@
-"""Wrong values or wrong times: what a sensor without a named fault gets wrong.
+"""Clock errors of a sensor, distinguished from errors of its values.
 
-A channel whose clock drifts or wanders is off by its own rate of change times a delay that is hardly ever the
-same. A sensor that reads wrong is off by something else: its error does not vanish wherever
-the channel turns round.
+The error of a channel with a drifting clock is the channel's rate times a varying delay. An error of the
+values does not vanish where the channel's rate is zero.
 """
 
 import numpy as np
@@ -14,16 +13,16 @@ from advisor.gap.noise.stamps import rates_of
 
 _LAG_OF = {"alpha": "alpha_lag"}
 _MOSTLY = 0.5
-"""Share of a channel's error, beyond its noise, that delays of each manoeuvre must explain."""
+"""Least share of a channel's error, beyond its noise, that a delay in each manoeuvre must explain."""
 _BETTER = 2.0
-"""How much more of it they must explain than a scale of each manoeuvre does."""
+"""Least ratio of the error explained by delays to that explained by a scale in each manoeuvre."""
 
 
 def is_clock_error(problem: Problem, fitted: Fitted, channel: str) -> bool:
-    """Whether what is left of a channel is its rate times a delay that changes between manoeuvres.
+    """Return whether the residual of a channel is its rate times a delay that changes between manoeuvres.
 
-    In each manoeuvre the delay may grow or shrink steadily. Where the channel was found to lag, it is the lag
-    that changes: a sensor's.
+    The delay may grow or shrink steadily within a manoeuvre. Where a lag of the channel was found, the lag
+    itself changes, and the sensor is at fault.
     """
     if any(effect.effect == _LAG_OF.get(channel) for effect in fitted.point.effects):
         return False
@@ -41,6 +40,7 @@ def is_clock_error(problem: Problem, fitted: Fitted, channel: str) -> bool:
 
 
 def _taken(residual: FloatArray, times: FloatArray) -> float:
-    """Sum of squares that a factor takes up which is constant or grows steadily over a manoeuvre."""
+    """Return the sum of squares explained by ``times`` with a factor that is linear in time over a
+    manoeuvre."""
     basis = np.linalg.qr(np.column_stack([times, times * np.linspace(-1.0, 1.0, len(times))]))[0]
     return float(np.sum((basis.T @ residual) ** 2))

@@ -1,6 +1,6 @@
-"""A simple law without a name, where it explains more than everything that was named.
+"""The search for a simple law outside the catalogue that explains more than all named effects.
 
-Two or three named effects together imitate such a law well. One law that explains more than all of them do is
+Two or three effects together imitate such a law well. A single law that explains more than all of them is
 likelier.
 """
 
@@ -29,49 +29,50 @@ from advisor.gap.uncatalogued.candidate_laws import MUST_LEAVE_LITTLE, RINGING, 
 from advisor.gap.uncatalogued.unexplained import Unexplained
 
 _FITTED_SHARE = 0.2
-"""Share of the likeliest law's gain in the screening from which on another is fitted, too."""
+"""Least share of the likeliest law's gain in the screening for a full fit of another."""
 _OUT_OF_REACH = 200.0
-"""Cost beyond that of another law, or of all names together, at which the search for one is given up."""
+"""Cost above that of the best law, or of all effects together, at which the fit of a law is given up."""
 _LIKELIER = 10.0
-"""... and by how much it must beat all that was named together."""
+"""Least gain in log likelihood of a law over all effects together."""
 _LEAVES = 0.3
-"""Share of some channel's power that a plain law leaves at most: an attitude that leans looks much like a
-gyro that feels acceleration, and a propeller that beats a little like a surface that stops."""
+"""Largest residual share of some channel's power for a law of ``MUST_LEAVE_LITTLE``. A tilted attitude
+resembles a gyro that is sensitive to acceleration, and a vibrating propeller resembles a surface stop."""
 _IN_MOST = 0.6
-"""Share of the manoeuvres that any law leaves less of: what holds in fewer is no law but a gust, or a fault
-that comes and goes."""
+"""Least share of manoeuvres in which a law reduces the residual. An improvement in fewer is a gust, or a
+fault that comes and goes."""
 _LITTLE = 0.004
-"""Change, beside a channel's peak, below which a law is not worth a word: what has a name and is too small
-for it is taken for one."""
+"""Least change by a law as a share of a channel's peak. A smaller one may be a catalogued effect too small to
+be named."""
 _SEVERAL = 2
-"""Names that together imitate a law."""
+"""Number of effects that may imitate a law together."""
 _SEPARATE_SHARE = 0.5
-"""What the named effects bring beside the law, of what they bring without, where they are another matter;
-certain is enough. And they must change that share of what the law removes: a speed that is off has
-side effects."""
+"""Least gain of the effects in addition to the law, as a share of their gain without it, for separate causes;
+a certain gain is enough. They must also change the outputs by that share of the law's change. A wrong air
+speed has side effects."""
 
 _MISSING = 0.03
-"""Share of some channel's peak that names leave beyond the noise where most of the motion is another."""
+"""Residual of all effects beyond noise, as a share of some channel's peak, above which a ringing servo is
+tried from every start."""
 
 
 @dataclass(frozen=True)
 class Law:
-    """A law that was found, and what it brings."""
+    """A law that was found, with its fit."""
 
     unexplained: Unexplained
     fitted: Fitted
-    """The plain model with the law."""
+    """The baseline model with the law."""
 
 
 def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
-    """The law that explains more than everything that was named; None where none does."""
+    """Return the law that explains more than all named effects; None where there is none."""
     baseline, held = stages[0].fitted, stages[0].held_out
     named_cost = stages[-1].fitted.cost
     found = Screen(problem, baseline).quick_fits(laws_for(problem.flights), baseline.cost - named_cost)
     samples = float(np.sum(effective_samples(problem, baseline.innovations)))
     best = min((s.cost for s in found), default=baseline.cost)
     most = baseline.cost - 2.0 * max(CERTAIN, 0.5 * _FITTED_SHARE * (baseline.cost - best))
-    # A law that changes what the derivatives are takes more steps than a screening makes.
+    # A law that changes the derivatives takes more steps than a screening makes.
     fits: list[tuple[Variant, Fitted]] = []
     lost = named_cost + _OUT_OF_REACH
     for s in sorted(found, key=lambda s: s.cost):
@@ -81,7 +82,8 @@ def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
     noise = 0.0 if problem.instruments is None else problem.instruments
     missing = np.sqrt(np.maximum(stages[-1].held_out.mean_square - noise**2, 0.0))
     if np.any(missing > _MISSING * problem.flights.peaks):
-        # Nothing small leads to a servo that rings for the whole record: its search begins everywhere.
+        # No small change leads to a servo that rings for the whole record: the search begins at every
+        # frequency.
         points = [baseline.point.with_effect(RINGING, start) for start in RINGING.starts]
         fits += [(RINGING, fit(problem, p, baseline.noise, tolerance=0.5, beaten_by=lost)) for p in points]
     if not fits:
@@ -89,7 +91,7 @@ def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
     law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
     effective = effective_samples(problem, fitted.innovations)
     judged = addition(problem, baseline, held, fitted, law.effect, effective)
-    # What one sample is worth depends on the fit that says so: both are held against the same.
+    # Effective sample sizes depend on the fit that gives them: both are compared with the same ones.
     disputed = stages[-1].disputed
     named = max(_gain_of_all(problem, stages, effective), 0.0 if disputed is None else disputed.gain)
     if not judged.is_accepted or judged.gain < max(CERTAIN, named + _LIKELIER):
@@ -99,7 +101,8 @@ def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
         return None
     alike = difference(problem, stages[-1].held_out, judged.held_out) < judged.least
     if alike and len(added_in(stages)) < _SEVERAL:
-        # Next to the same motion as what was named: one name stays, several in concert are no likelier.
+        # The motion nearly equals that of the effects: a single effect stays; several in concert are less
+        # likely.
         return None
     if len(stages) > 1 and _are_separate_causes(problem, stages, judged, effective):
         return None
@@ -115,13 +118,14 @@ def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
 
 
 def _changes_visibly(problem: Problem, before: HeldOut, after: HeldOut) -> bool:
-    """Whether a law changes some channel of some manoeuvre by more than any simulator is good for."""
+    """Return whether a law changes some channel of some manoeuvre by more than the accuracy of a
+    simulator."""
     changes = [a - b for a, b in zip(before.residuals, after.residuals, strict=True)]
     return bool(np.any(np.sqrt(mean_squares(problem, changes)) > _LITTLE * problem.flights.peaks))
 
 
 def _gain_of_all(problem: Problem, stages: list[Stage], effective: FloatArray) -> float:
-    """What the named effects bring together, as ``Judged.gain`` counts; 0 without any."""
+    """Return the gain of all effects together, by the definition of ``Judged.gain``; 0 without any."""
     first, last = stages[0], stages[-1]
     named = added_in(stages)
     if not named:
@@ -140,7 +144,7 @@ def _gain_of_all(problem: Problem, stages: list[Stage], effective: FloatArray) -
 def _are_separate_causes(
     problem: Problem, stages: list[Stage], judged: Judged, effective: FloatArray
 ) -> bool:
-    """Whether what was named explains beside the law much of what it explains without, and matters."""
+    """Return whether the effects explain much in addition to the law, and change the outputs enough."""
     first, last = stages[0], stages[-1]
     law = set(judged.variant.entries)
     others = [v.effect for v in last.fitted.point.effects if not law & set(v.entries)]
@@ -162,5 +166,5 @@ def _are_separate_causes(
 
 
 def _share(judged: Judged, best: Judged) -> float:
-    """Gain beside the best's, 0 to 1."""
+    """Return the gain relative to the best one, 0 to 1."""
     return round(float(np.clip(judged.gain / best.gain, 0.0, 1.0)), 4)

@@ -1,4 +1,4 @@
-"""Lift that is another on the way up than on the way down: hysteresis, as a play has it and as a relay."""
+"""Lift with hysteresis: gradual like a play, or sudden like a relay."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ _FORCE = "force_equation"
 
 
 def lift_memory(flights: Flights) -> Variant:
-    """Lift with the memory of a play, the elementary hysteresis of what gives way little by little."""
+    """Return lift with the hysteresis of a play, the elementary one of a gradual stall."""
     swing = float(np.median([np.ptp(f.outputs["alpha"].y) for f in flights.flights]))
     return Variant(
         LIFT_MEMORY, _FORCE, ("Z_memory", "half_width_rad"),
@@ -23,7 +23,7 @@ def lift_memory(flights: Flights) -> Variant:
 
 
 def flow_lets_go(flights: Flights) -> Variant:
-    """Lift that is lost at one angle of attack and comes back at a lower one: a relay."""
+    """Return lift that is lost at one angle of attack and returns at a lower one, like a relay."""
     trims = np.array([flight.alpha_trim for flight in flights.flights])
     above = [float(np.max(f.outputs["alpha"].y)) - f.alpha_trim for f in flights.flights]
     most, middle = float(np.median(above)), float(np.median(trims))

@@ -1,4 +1,4 @@
-"""What goes no further than to a stop, wherever it was trimmed: a surface, or a vane."""
+"""Mechanical stops of a surface or of a vane, at the same angles in all manoeuvres."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -12,18 +12,18 @@ from advisor.gap.simulator.layout import INDEX
 
 SURFACE_STOP, VANE_STOP = "surface_stop", "vane_stop"
 _TRIMMED_RAD = 0.002
-"""Nearest to its trim that anything may be stopped."""
+"""Least distance of a stop from trim, rad."""
 
 
 def surface_stops(flights: Flights) -> list[Variant]:
-    """An elevator that moves no further than to a stop, up, down or both."""
+    """Return an elevator with a stop up, down or both."""
     trims = np.array([flight.u_trim for flight in flights.flights])
     flown = np.concatenate([flight.u for flight in flights.flights])
     return _stops(SURFACE_STOP, "input", ("stop_up_rad", "stop_down_rad"), trims, flown)
 
 
 def vane_stops(flights: Flights) -> list[Variant]:
-    """A vane that turns no further than to a stop, up, down or both."""
+    """Return a vane with a stop up, down or both."""
     trims = np.array([flight.alpha_trim for flight in flights.flights])
     flown = np.concatenate([flight.outputs["alpha"].y for flight in flights.flights])
     return _stops(VANE_STOP, "alpha_sensor", ("vane_stop_up_rad", "vane_stop_down_rad"), trims, flown)
@@ -32,9 +32,9 @@ def vane_stops(flights: Flights) -> list[Variant]:
 def _stops(
     effect: str, block: str, entries: tuple[str, str], trims: FloatArray, flown: FloatArray
 ) -> list[Variant]:
-    """Stops at the same angles in all manoeuvres, told from the middle of their trims.
+    """Return stops at the same angles in all manoeuvres, given relative to the median trim.
 
-    ``trims`` has shape (manoeuvres,), ``flown`` is all that was commanded or read, in rad.
+    ``trims`` has shape (manoeuvres,); ``flown`` has all commands or readings, rad.
     """
     middle = float(np.median(trims))
     furthest = float(np.max(flown)) - middle, middle - float(np.min(flown))

@@ -1,4 +1,4 @@
-"""A sensor that jumps: spikes, dropped bits, a plug that is loose."""
+"""A sensor that jumps, for spikes, dropped bits or a loose plug."""
 
 import numpy as np
 
@@ -10,23 +10,23 @@ from advisor.gap.noise.probes import SENSOR_CHANNELS
 from advisor.gap.records.floor import STATED_FLOOR_MARGIN
 
 _FAR, _SURPRISE = 6.0, 4.0
-"""Standard deviations beyond which a change between two samples, and its innovation, are a jump ..."""
+"""Least change between two samples, and least innovation, in standard deviations, that make a jump."""
 _JUMPS = 0.005
-"""... share of them from which on a sensor jumps ..."""
+"""Least share of jumps among the samples for a jumping sensor."""
 _SELDOM = 0.1
-"""... and what another sensor may have of that share."""
+"""Largest share of jumps in another sensor, relative to that of the jumping one."""
 _OUT_OF_STEP, _MOSTLY_IN_STEP = 0.15, 0.5
-"""Departure of an interval from the usual one at which a propeller's vibration, sampled at nearly the same
-place of every turn, is met at another; and the share of intervals without, from which on only those count."""
+"""Largest relative departure of an interval from the usual one, for samples in step; and least share of such
+intervals for which others are ignored. A propeller's vibration, sampled at nearly one place of every turn,
+jumps where the interval differs."""
 
 
 def jumping_sensor(problem: Problem, last: Fitted, tolerance: FloatArray) -> str | None:
-    """The block of the one sensor that jumps now and then where nothing is flown; None where none does.
+    """Return the block of the only sensor that jumps where nothing is flown; None where none does.
 
-    What a model leaves is smooth, and what a gust leaves is no surprise to a filter that knows of it; no
-    step of the command falls into these stretches. An autopilot's estimate of α is not judged. Where samples
-    come in step, those that do not are left out: there it is the vibration that jumps.
-    ``tolerance``, shape (channels,), is what is called noise of channels that were filtered.
+    The residual of a model is smooth, the filter expects the residual of a gust, and no step of the command
+    falls into quiet stretches. An autopilot's estimate of α is not judged. Samples out of step are ignored
+    where most are in step. ``tolerance``, shape (channels,), is the assumed noise of filtered channels.
     """
     jumps = {}
     for c, name in enumerate(problem.channels):
@@ -40,7 +40,7 @@ def jumping_sensor(problem: Problem, last: Fitted, tolerance: FloatArray) -> str
         changes, surprises = np.concatenate(parts).T
         usual = [robust_std(y) if len(y) else 0.0 for y in (changes, surprises)]
         far = max(_FAR * usual[0], STATED_FLOOR_MARGIN * float(tolerance[c]))
-        # Values that mostly repeat say nothing about how rough they are.
+        # Values that mostly repeat give no roughness.
         jumped = (changes > far) & (surprises > _SURPRISE * usual[1])
         jumps[name] = float(np.mean(jumped)) if min(usual) > 0.0 else 0.0
     worst = max(jumps, key=lambda name: jumps[name])
@@ -53,7 +53,7 @@ def jumping_sensor(problem: Problem, last: Fitted, tolerance: FloatArray) -> str
 
 
 def _in_step(t: FloatArray) -> np.ndarray:
-    """Whether each interval is the usual one; all are where few would be."""
+    """Return whether each interval is the usual one; all where few would be."""
     intervals = np.diff(t)
     usual = np.median(intervals)
     in_step = np.abs(intervals - usual) < _OUT_OF_STEP * usual

@@ -1,10 +1,9 @@
-"""What swings of itself: one frequency, in quiet as much as under the stick.
+"""Sustained oscillations: a line in the spectrum, in quiet as well as with a moving stick.
 
-A propeller's beat, fuel that sloshes, a servo that hunts or a sensor that shakes go on where nothing is
-flown, and there a flight's noise is learnt: most of such a swing passes for noise with a memory. But no
-memory gathers power in one line of the spectrum. What is left of a line after the noise's own filter shows
-it; where it comes from, is said by the block in which a swing of that frequency, of any amplitude and phase
-in each manoeuvre, explains all channels best.
+Propeller vibration, sloshing fuel, a hunting servo or a shaking sensor continue where nothing is flown. The
+noise of the flight is estimated there, so most of such an oscillation passes for coloured noise. Coloured
+noise, however, does not concentrate power in one line, and the whitened residual shows the line. The block in
+which an oscillation of that frequency explains all channels best is its source.
 """
 
 from collections.abc import Sequence
@@ -22,34 +21,35 @@ from advisor.gap.noise.probes import DYNAMIC, SENSOR_CHANNELS, Probe
 from advisor.gap.simulator.layout import OUTPUTS
 
 _SWINGS = 5.0
-"""Periods that a record must hold: slower motion is a drift, or the aircraft's own."""
+"""Least number of periods in a record. Slower motion is a drift, or the aircraft's own."""
 _LINE = 3.0
-"""Half the width of a line, over the inverse of a record's length (Hann's window and a little damping)."""
+"""Half width of a line, in inverse lengths of a record: Hann's window and a little damping."""
 _ABOVE = 3.8
-"""Power of the line, over the white noise's and over the highest elsewhere: a damped motion reaches 3.4."""
+"""Least power of a line relative to white noise, and relative to the highest power elsewhere. A damped motion
+reaches 3.4."""
 _POINTS = 4096
-"""Of the spectrum, at least."""
+"""Least number of points of the spectrum."""
 
 
 @dataclass(frozen=True)
 class SpectralLine:
-    """A swing that goes on by itself."""
+    """A sustained oscillation."""
 
     hz: float
-    """Its frequency."""
+    """Frequency, Hz."""
     probes: tuple[Probe, ...]
-    """Every block with a swing of this frequency, likeliest first; sizes are amplitudes."""
+    """Oscillation of that frequency in every block, likeliest first; sizes are amplitudes."""
     power: FloatArray
-    """Shape (channels,): mean square of what it does to each, SI."""
+    """Shape (channels,): mean square of the oscillation in each channel, SI."""
 
 
 def spectral_line_in(problem: Problem, fitted: Fitted, noise: FloatArray) -> SpectralLine | None:
-    """The tone in what a fit leaves; None where no line stands out of the spectrum of any channel.
+    """Return the oscillation in the residual of a fit; None where no channel has a line in its spectrum.
 
     Parameters
     ----------
     noise
-        Shape (channels,): of the innovations.
+        Shape (channels,): noise of the innovations.
     """
     lines = (line_of(*_records(problem, fitted, c)) for c in problem.flights.telling)
     hz, stands_out = max(lines, key=lambda line: line[1])
@@ -62,10 +62,10 @@ def spectral_line_in(problem: Problem, fitted: Fitted, noise: FloatArray) -> Spe
 
 
 def line_of(records: Sequence[FloatArray], interval_s: float) -> tuple[float, float]:
-    """The strongest line of the records' spectrum, Hz, and how far it stands out.
+    """Return the frequency of the strongest line, Hz, and its prominence.
 
-    That is the smaller of its power over white noise's of the same variance and over the highest power
-    off the line. Samples count as equally far apart.
+    The prominence is the power of the line over white noise of equal variance, or over the highest power off
+    the line, whichever is smaller. Samples count as equally spaced.
     """
     long = [r for r in records if len(r) > 2.0 * _SWINGS]
     if not long:
@@ -83,7 +83,8 @@ def line_of(records: Sequence[FloatArray], interval_s: float) -> tuple[float, fl
 
 
 def ringing_hz(problem: Problem, fitted: Fitted, lowest: float, highest: float) -> float | None:
-    """Where between two frequencies a model leaves most power of the pitch rate; None without samples."""
+    """Return the frequency between two limits with the most residual power of the pitch rate; None without
+    samples."""
     if "q" not in problem.channels:
         return None
     records, interval_s = _records(problem, fitted, problem.channels.index("q"))
@@ -95,14 +96,14 @@ def ringing_hz(problem: Problem, fitted: Fitted, lowest: float, highest: float) 
 
 
 def _spectrum(record: FloatArray, points: int) -> FloatArray:
-    """Power at each frequency, 1 in the mean for white noise."""
+    """Return the power at each frequency, with a mean of 1 for white noise."""
     window = np.hanning(len(record))
     swing = np.fft.rfft((record - record.mean()) * window, points)
     return np.asarray(np.abs(swing) ** 2 / max(float(window @ window) * float(np.var(record)), 1e-300))
 
 
 def _records(problem: Problem, fitted: Fitted, channel: int) -> tuple[list[FloatArray], float]:
-    """Innovations of one channel by manoeuvre, and the interval of its samples in s."""
+    """Return the innovations of one channel by manoeuvre, and the interval of its samples in s."""
     name = problem.channels[channel]
     records, intervals = [], []
     for flight, e in zip(problem.flights.flights, fitted.innovations, strict=True):
@@ -114,7 +115,8 @@ def _records(problem: Problem, fitted: Fitted, channel: int) -> tuple[list[Float
 def _swing(
     problem: Problem, fitted: Fitted, noise: FloatArray, block: str, hz: float
 ) -> tuple[Probe, FloatArray]:
-    """A swing in one block, its amplitude and phase free in every manoeuvre; and its power by channel."""
+    """Return a swing in one block, its amplitude and phase free in every manoeuvre; and its power by
+    channel."""
     p = problem.driving(fitted.point)
     gain, before, sizes = 0.0, 0.0, []
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))

@@ -1,4 +1,4 @@
-"""Something that swings at one frequency, and where it is."""
+"""A sustained oscillation as unexplained residual, and the block in which it arises."""
 
 import numpy as np
 
@@ -18,18 +18,21 @@ from advisor.gap.uncatalogued.unexplained import (
 )
 
 _OF_PEAK_SWINGING = 0.005
-"""Share of a channel's peak that a swing of the aircraft must be: no error of a model looks like that."""
+"""Least amplitude of an oscillation of the aircraft, as a share of a channel's peak: no model error is like it."""
 _VISIBLE = 0.05
-"""Power of a swing, beside the instruments' noise, from which on there is something to explain."""
+"""Least power of an oscillation relative to the instruments' noise, for an unexplained residual."""
 _SHAKEN = 4.0
-"""Power of a swing of the accelerometer alone: an engine shakes every one, and samples make a slow swing of
-that."""
+"""Least power of an oscillation in the accelerometer alone, relative to its noise. An engine shakes every
+accelerometer, and sampling turns that into a slow oscillation."""
 
 
 def sustained_oscillation(
     problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArray
 ) -> Unexplained | None:
-    """What swings of itself, where it is more than an instrument's noise. Arguments as in ``unexplained_residual``."""
+    """Return a sustained oscillation that exceeds the instruments' noise, or None.
+
+    The arguments are those of ``unexplained_residual``.
+    """
     noise, instruments = innovation_noise(problem), np.maximum(instruments_of(problem), 1e-12)
     line = spectral_line_in(problem, last, noise)
     if line is None or line.probes[0].gain < LEAST_GAIN or line.probes[0].block == "air":
@@ -50,7 +53,10 @@ def sustained_oscillation(
 
 
 def _may_be_vibration(line: SpectralLine) -> bool:
-    """Whether a swing is the accelerometer's, or a force's so fast that nothing else feels it."""
+    """Return whether the oscillation may be vibration of the accelerometer.
+
+    A force that varies too fast for other channels looks the same.
+    """
     best = line.probes[0]
     accelerometer = next((p.gain for p in line.probes if p.block == "accelerometer"), 0.0)
     return best.block in ("accelerometer", "force_equation") and accelerometer > best.gain - LEAST_GAIN

@@ -1,8 +1,8 @@
-"""Is anything left that noise does not explain? The question behind "none" and "unknown".
+"""The test for an unexplained residual, which decides between "none" and "unknown".
 
-What stays after the last named effect, freed of the flight's own noise, should be white, and no
-louder while the stick moves than in quiet. Otherwise something is there without a name; where, is said by the
-block whose unknown disturbance takes up most of it. A sensor that jumps now and then is no noise either.
+The whitened residual of the last model should be white, and no louder while the stick moves than in quiet.
+Otherwise a cause outside the catalogue exists, in the block whose unknown disturbance explains most of the
+residual. A sensor that jumps is no noise either.
 """
 
 from collections.abc import Sequence
@@ -22,46 +22,52 @@ from advisor.gap.uncatalogued.clock_error import is_clock_error
 from advisor.gap.uncatalogued.sensor_jumps import jumping_sensor
 
 LEAST_GAIN = 100.0
-"""Log likelihood a disturbance must bring ..."""
+"""Least gain in log likelihood of a disturbance in some block."""
 _LEAST_SHARE = 0.2
-"""... and share of what is left that it must take up: less is the roughness of any model."""
+"""Least share of the residual that a disturbance must explain. A smaller share is the roughness of any
+model."""
 _MOVING_SHARE = 0.1
-"""The same where the air moves: its filter is known to low order only, and leaves a few per cent."""
+"""Least share in moving air, whose low-order filter leaves a few per cent."""
 _FAINT_SHARE = 0.05
-"""The least share in still air, for a disturbance that is large beside what the named effects took up ..."""
+"""Least share in still air, of a disturbance that is large relative to the explained residual."""
 _FAINT_OF_GAP = 0.25
-"""... by this much: then no name came near what is there."""
+"""Least ratio of an unexplained to an explained residual for the smaller share in still air: no effect comes
+near the cause then."""
 _ACTIVITY_RATIO = 2.0
-"""Power while the stick moves over that in quiet, from which on it is no noise."""
+"""Ratio of the residual power while the stick moves to that in quiet, above which the residual is no
+noise."""
 LEAST_OF_GAP = 0.1
-"""Either beside what the named effects took up: less is an effect's shape, known to low order only."""
+"""Least ratio of an unexplained to an explained residual. A smaller one is the low-order description of an
+effect."""
 OF_PEAK = 0.01
-"""Share of a channel's peak that must be left: a simplified model is no better than that ..."""
+"""Least residual as a share of a channel's peak. A simplified model is no more accurate."""
 _BEYOND_DOUBT, _FAR_LOUDER, _FAR_ABOVE = 0.5, 4.0, 2.0
-"""... that share of it where it is so much louder while the stick moves, and above noise in all."""
+"""Share of that limit that is enough for an evident residual; and the ratio to the quiet power, and to the
+noise, at which a residual is evident."""
 _CLEAR = 0.1
-"""Share of a channel's peak that no shape of a named effect leaves, however much it took up."""
+"""Residual as a share of a channel's peak that no description of an effect leaves, however much it
+explains."""
 
 
 @dataclass(frozen=True)
 class Unexplained:
-    """Something without a name, and where it is."""
+    """An unexplained residual, and the block in which it arises."""
 
     block: str
     share: float
-    """Of the power that is left, taken up by an unknown disturbance there."""
+    """Share of the residual power that an unknown disturbance in the block explains."""
     ranking: tuple[tuple[str, float], ...]
-    """Block and score, 1 for the likeliest."""
+    """Blocks with their scores; the likeliest block scores 1."""
     in_quiet: FloatArray | None = None
-    """Shape (channels,): mean square of what it does where nothing is flown, too; None: next to nothing."""
+    """Shape (channels,): mean square of the cause in quiet stretches; None where it is negligible."""
     note: str = ""
-    """What is known of it, in a sentence."""
+    """A sentence about the cause."""
     decisions: tuple[Decision, ...] = ()
-    """What told it from noise, where numbers were held against limits."""
+    """Statistics that were compared with limits."""
 
 
 def as_wind(found: Unexplained | None) -> Unexplained:
-    """What is left where the wind is known to change with height: whatever it looks like, it is the air's."""
+    """Return the residual as one of the air, where the wind is known to change with height."""
     ranking = () if found is None else tuple(pair for pair in found.ranking if pair[0] != "air")
     return Unexplained("air", 1.0 if found is None else found.share, (("air", 1.0), *ranking))
 
@@ -73,16 +79,16 @@ def unexplained_residual(
     tolerance: FloatArray,
     moving_air: bool,
 ) -> Unexplained | None:
-    """What the last model leaves, if it is more than noise.
+    """Return the residual of the last model, if it is more than noise.
 
     Parameters
     ----------
     first, last
-        The plain model and the one with every named effect.
+        The baseline model, and the model with every named effect.
     tolerance
-        Shape (channels,): tolerance of channels that were filtered before they were recorded, else 0.
+        Shape (channels,): assumed noise of channels that were filtered before storage, else 0.
     moving_air
-        Whether the air was found to move: then the filter that knows of it is known to low order only.
+        Whether the air moves. Its filter is then a low-order approximation.
     """
     noise = innovation_noise(problem)
     powers = (rms_of(problem, last.innovations) / noise) ** 2
@@ -99,7 +105,7 @@ def unexplained_residual(
         return None
     probes = probe_blocks(problem, last, noise)
     best = probes[0]
-    # What a disturbance with a memory describes did not jump.
+    # A residual that a Gauss-Markov disturbance describes did not jump.
     if jumping is not None and best.explained < _LEAST_SHARE:
         return Unexplained(jumping, 1.0, ranking_of(probes, jumping), note="It jumps now and then.")
     if nothing:
@@ -109,13 +115,13 @@ def unexplained_residual(
     faint = best.explained < _LEAST_SHARE
     least_share = _MOVING_SHARE if moving_air else _FAINT_SHARE
     disturbed = best.gain >= LEAST_GAIN and best.explained >= least_share and bool(np.any(loud))
-    # What a low-pass leaves of noise is like no noise with a memory: there only the stick can tell.
+    # Low-pass filtered noise resembles no Gauss-Markov noise, so there only the stick's activity decides.
     disturbed = disturbed and not problem.flights.alpha_is_smoothed
     if not disturbed and np.max(louder) < _ACTIVITY_RATIO:
         return None
     clear = bool(np.any((louder > _ACTIVITY_RATIO) & (beyond > _CLEAR * peaks)))
     if faint and not clear and not moving_air and first is not last:
-        # What every block explains as little is the error of the named effects' model.
+        # Every block explains equally little: the residual is the model error of the named effects.
         return None
     unexplained = max(best.explained * float(np.sum(powers)), float(np.sum(powers * (1.0 - 1.0 / louder))))
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
@@ -124,7 +130,7 @@ def unexplained_residual(
         return None
     block = _block(problem, last, best.block)
     if moving_air and block == "air":
-        # What the filter leaves of the air, whose shape is known to low order only.
+        # The filter leaves a part of the moving air, whose spectrum it knows to low order only.
         return None
     decisions = (
         Decision(block, "likelihood", best.gain, LEAST_GAIN, "log likelihood of a disturbance there"),
@@ -136,24 +142,24 @@ def unexplained_residual(
 
 
 def located(problem: Problem, last: Fitted) -> Unexplained:
-    """What is left, in the block whose unknown disturbance explains it best."""
+    """Return the residual, in the block whose unknown disturbance explains it best."""
     probes = probe_blocks(problem, last, innovation_noise(problem))
     block = _block(problem, last, probes[0].block)
     return Unexplained(block, probes[0].explained, ranking_of(probes, block))
 
 
 def _block(problem: Problem, last: Fitted, likeliest: str) -> str:
-    """The likeliest block, or timing where a sensor is off by its rate times a delay that changes."""
+    """Return the likeliest block, or timing where a sensor's error is its rate times a varying delay."""
     channel = SENSOR_CHANNELS.get(likeliest)
     return "timing" if channel is not None and is_clock_error(problem, last, channel) else likeliest
 
 
 def _of_the_command(problem: Problem, last: Fitted) -> float:
-    """Share of a response's peak, as an RMS, that hangs on how the command went between two stamps.
+    """Return the share of a response's peak, as RMS, that depends on the command between two stamps.
 
-    A step is known as a ramp from one stamp to the next, shifted as fits best. While it lasts the pitch rate
-    is off by up to ω T/4 of its peak, ω being the short period's frequency; the steps of an input take about
-    a tenth of its record.
+    A step is known as a ramp from one stamp to the next. While it lasts, the pitch rate is off by up to ω T/4
+    of its peak, where ω is the frequency of the short period. The steps of an input take about a tenth of a
+    record.
     """
     if problem.held:
         return 0.0
@@ -163,17 +169,17 @@ def _of_the_command(problem: Problem, last: Fitted) -> float:
 
 
 def innovation_noise(problem: Problem) -> FloatArray:
-    """What innovations are measured against, shape (channels,): 1 where the filter knows the noise."""
+    """Return the noise of the innovations, shape (channels,): 1 where the filter knows the noise."""
     return np.ones(len(problem.channels)) if problem.knows_the_noise else instruments_of(problem)
 
 
 def instruments_of(problem: Problem) -> FloatArray:
-    """White noise of the instruments, shape (channels,); 0 where it is not known."""
+    """Return the white noise of the instruments, shape (channels,); 0 where it is not known."""
     return np.zeros(len(problem.channels)) if problem.instruments is None else problem.instruments
 
 
 def ranking_of(probes: Sequence[Probe], first: str) -> tuple[tuple[str, float], ...]:
-    """Blocks and their scores, 1 for the first."""
+    """Return the blocks with their scores; ``first`` scores 1."""
     best = max(probes[0].gain, 1e-9)
     scores = {first: 1.0}
     for p in probes:

@@ -1,8 +1,8 @@
-"""Does the accelerometer carry the weight? Its mean against the path, without any aerodynamics.
+"""The accelerometer's reading of the weight: its mean compared with the flight path, without aerodynamics.
 
-Over a manoeuvre a_z = (V (α̇ − q − G) + a_x sin α)/cos α, G = (g/V)(cos α cos θ cos φ + sin α sin θ), as in
-``simulate``. The fit leaves every channel an offset of its own in each manoeuvre; one of more than a seventh
-of the weight is no accelerometer's zero.
+Over a manoeuvre a_z = (V (α̇ − q − G) + a_x sin α)/cos α, with G = (g/V)(cos α cos θ cos φ + sin α sin θ) as
+in ``simulate``. The fit has an offset for every channel and manoeuvre. An offset of more than a seventh of
+the weight is no zero error of an accelerometer.
 """
 
 from collections.abc import Sequence
@@ -16,32 +16,32 @@ from advisor.standard_gravity import GRAVITY_M_S2
 
 _NEEDED = ("a_z", "alpha", "theta")
 _LEAST_MANEUVERS = 3
-"""A scatter needs as many."""
+"""Least number of manoeuvres for a scatter."""
 _LEVEL_RAD = 0.26
-"""Bank beyond which the pitch angle's rate is no measure of the pitch rate."""
+"""Largest bank in rad at which the rate of the pitch angle equals the pitch rate."""
 _ENDS_S = 0.3
-"""Over which both ends of an angle are averaged."""
+"""Length in s of the average over each end of an angle."""
 _LEAST = 0.15
-"""Departure from one that no offset of an accelerometer is ..."""
+"""Least departure of the share from 1 that no offset of an accelerometer explains."""
 _SIGMAS = 5.0
-"""... and the standard errors it must have, from the scatter between manoeuvres."""
+"""Least number of standard errors of that departure, from the scatter between manoeuvres."""
 
 
 @dataclass(frozen=True)
 class WeightReading:
-    """What the accelerometer reads of what weight and path demand."""
+    """The share of the required specific force that the accelerometer reads."""
 
     share: float
     std: float
 
     @property
     def is_off(self) -> bool:
-        """Whether it is plainly not one, by more than the offset of any accelerometer."""
+        """Whether the share differs from 1 by more than an accelerometer's offset."""
         return abs(self.share - 1.0) > max(_LEAST, _SIGMAS * self.std)
 
     @property
     def sentence(self) -> str:
-        """For the reader of the diagnosis."""
+        """Sentence for the reader of the diagnosis."""
         return (
             f"The accelerometer reads {self.share:.2f} ± {self.std:.2f} of what weight and path demand: "
             "its scale or its zero is off."
@@ -49,9 +49,9 @@ class WeightReading:
 
 
 def weight_reading(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> WeightReading | None:
-    """The share that is read; None where too few manoeuvres tell.
+    """Return the share that the accelerometer reads; None where too few manoeuvres are usable.
 
-    ``airspeed_m_s`` is taken where none was logged.
+    ``airspeed_m_s`` is used where no air speed was logged.
     """
     pairs = [p for p in (_means(m, airspeed_m_s) for m in maneuvers) if p is not None]
     if len(pairs) < _LEAST_MANEUVERS:
@@ -62,7 +62,7 @@ def weight_reading(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> Weight
 
 
 def _means(maneuver: Maneuver, airspeed_m_s: float) -> tuple[float, float] | None:
-    """Mean of a_z as it is read, and as it must be."""
+    """Return the mean of a_z as measured, and as the flight path requires."""
     channels = maneuver.channels
     if not all(name in channels and len(channels[name]) > 1 for name in _NEEDED):
         return None

@@ -1,9 +1,8 @@
-"""Does the wind change with height? The air speed against the accelerations, without any aerodynamics.
+"""Wind that changes with height: the air speed compared with accelerations, without aerodynamics.
 
-In air that moves steadily the air speed changes as the accelerometers have it. Where the wind changes with
-height, it changes by the gradient times the climb besides: everywhere, or in a layer above and below which
-the wind is the same. Of both, a parabola in time is taken out of every manoeuvre: the drift of the integral,
-and the slow wandering of the wind.
+In steadily moving air the air speed changes by the integral of the accelerations. Where the wind changes with
+height, it also changes by the gradient times the climb, everywhere or in a layer. A parabola in time is
+removed from every manoeuvre, for the drift of the integral and for slow changes of the wind.
 """
 
 from collections.abc import Sequence
@@ -20,105 +19,110 @@ from advisor.standard_gravity import GRAVITY_M_S2
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
-"""Of the air speed in a manoeuvre, beyond the parabola's three."""
+"""Least number of air speed samples in a manoeuvre beyond the parabola's three."""
 _LEAST_PER_S = 0.08
-"""Change of the wind, m/s per metre, from which on it is felt: a knot in six metres."""
+"""Least gradient of the wind, 1/s, that matters: a knot in six metres."""
 _MOST_PER_S = 0.5
-"""A wind shear that airports call severe begins at 0.2 1/s (ICAO Doc 9817)."""
+"""Largest plausible gradient of the wind, 1/s. Wind shear that airports call severe begins at 0.2 1/s (ICAO
+Doc 9817)."""
 _LEAST_MANEUVERS = 4
-"""That must agree on a gradient."""
+"""Least number of manoeuvres that must agree on a gradient."""
 _CHANCE = 1e-3
-"""Of a gradient that large by the scatter between so many manoeuvres (Student's t) ..."""
+"""Largest probability of the gradient by chance, from the scatter between the manoeuvres (Student's t)."""
 _CLEAR_CHANCE = 5e-3
-"""... and the same where heights explain a plain share."""
+"""Largest probability by chance where heights explain a clear share."""
 _LEAST_SHARE = 0.17
-"""Of what the air speed has beyond the accelerations. In air that moves, and where thrust comes late, heights
-explain up to a seventh of it by chance; a wind that changes with height, a fifth and more ..."""
+"""Least share of the air speed's residual that heights explain. In moving air, and with delayed thrust,
+heights explain up to a seventh by chance; a wind gradient explains a fifth and more."""
 _CLEAR_SHARE = 0.25
-"""... and in air that moves of itself, from this share on it is plain all the same ..."""
+"""Share that is clear evidence of a gradient, even in moving air."""
 _SURE_CHANCE = 1e-4
-"""... or where manoeuvres agree as they would with this chance."""
+"""Probability by chance that is clear evidence of a gradient, even in moving air."""
 _LAYER_CHANCE, _LAYER_SHARE = 1e-2, 0.3
-"""Of a layer's gradient: few manoeuvres tell of a layer, and leaving one of them out scatters by much. In 770
-flights of simulators without it two layers explain 0.25 and none more, but where an attitude was wrong."""
+"""Largest probability by chance, and least share, for a gradient in a layer. Few manoeuvres meet a layer, and
+leaving one out changes the result. In 770 simulated flights without a gradient two layers explain 0.25 and
+none more, except with a wrong attitude."""
 _UNDENIABLE_SHARE = 0.4
-"""Far beyond all of these: then few manoeuvres may have met the layer ..."""
+"""Share that is evidence of a layer although few manoeuvres met it."""
 _NOT_ONE_ALONE = 1.5
-"""... but not one, left out without which nothing of a gradient stays: it is its own scatter then."""
+"""Least ratio of such a gradient to its standard deviation. A gradient from one manoeuvre alone vanishes when
+that one is left out."""
 _ALONG, _ABOVE_NOISE = 0.015, 3.0
-"""Swing of the air speed in a usual manoeuvre, relative, and beside its white noise."""
+"""Least standard deviation of the air speed's residual, relative to the air speed, and relative to its white
+noise, in the median manoeuvre."""
 _ALONE = 1e-3
-"""Share of the heights' changes that all manoeuvres but one must hold."""
+"""Least share of the squared height changes that all manoeuvres but one must hold."""
 _LATE_S = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
-"""By which an air speed may be late: a long line to the tube, and a filter."""
+"""Delays of the air speed that are tried, s: a long line to the tube, and a filter."""
 _HEIGHTS = 14
 _THINNEST_M = 2.0
-"""Heights between which a layer is sought, as many in every part of what was flown; and the least of one."""
+"""Least thickness of a layer, m. A layer is sought between any two of ``_HEIGHTS`` quantiles of the
+height."""
 
 
 @dataclass(frozen=True)
 class Shear:
-    """Wind that changes with height."""
+    """A wind that changes with height."""
 
     gradient_per_s: float
     """Change of the air speed per metre climbed, 1/s."""
     std: float
-    """From leaving out one manoeuvre after the other."""
+    """Standard deviation from leaving out one manoeuvre after the other, 1/s."""
     share: float
-    """Of what the air speed has beyond the accelerations, that heights explain."""
+    """Share of the air speed's residual, beyond the accelerations, that heights explain."""
     maneuvers: int
-    """That it was found in."""
+    """Number of manoeuvres that determine the gradient."""
 
     @property
     def is_implausible(self) -> bool:
-        """Whether no wind changes by that much: in moving air its gusts, else an air speed that is wrong."""
+        """Whether the gradient is larger than any wind's: a gust in moving air, or a wrong air speed."""
         return abs(self.gradient_per_s) > _MOST_PER_S
 
     @property
     def exceeds_gusts(self) -> bool:
-        """Beyond what moving air feigns."""
+        """Whether the gradient exceeds what moving air can imitate."""
         return self.share >= _CLEAR_SHARE or self.is_agreed(_SURE_CHANCE)
 
     def is_agreed(self, chance: float) -> bool:
-        """Whether the manoeuvres agree on it, and it is felt."""
+        """Return whether the manoeuvres agree on the gradient, and whether it matters."""
         scatter = float(stdtrit(self.maneuvers - 1, 1.0 - 0.5 * chance)) * self.std
         return abs(self.gradient_per_s) >= max(_LEAST_PER_S, scatter)
 
 
 @dataclass(frozen=True)
 class _Path:
-    """What one manoeuvre tells, shape (n,) each, at the stamps of the air speed."""
+    """Path and air speed of one manoeuvre, each of shape (n,), at the stamps of the air speed."""
 
     height: FloatArray
-    """m; NaN where none was measured."""
+    """Height, m; NaN where it was not measured."""
     climbed: FloatArray
-    """m, without the parabola."""
+    """Height climbed without the parabola, m."""
     speed: FloatArray
-    """Air speed beyond the accelerations, m/s, without the parabola."""
+    """Air speed minus the integral of the accelerations, without the parabola, m/s."""
     parabola: FloatArray
-    """Shape (n, 3): orthonormal."""
+    """Shape (n, 3): orthonormal basis of the parabola."""
 
     def freed(self, y: FloatArray) -> FloatArray:
-        """A course without its parabola."""
+        """Return a course without its parabola."""
         return np.asarray(y - self.parabola @ (self.parabola.T @ y))
 
 
 def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Shear | None:
-    """The gradient of the wind when it is there; None when the air speed follows from the accelerations.
+    """Return the gradient of the wind; None where the air speed follows from the accelerations.
 
-    Wind may change in a layer only: then the height of every sample says what it does.
+    A wind that changes in a layer only depends on the height of every sample.
 
     Parameters
     ----------
     maneuvers
-        With the channels that the path is computed from; others do not count.
+        Manoeuvres; those without the channels of the path are ignored.
     true_over_read
-        How many times the air speed that is read the true one is.
+        Ratio of the true air speed to the air speed that is read.
     """
     found = _shear_of(_paths_of(maneuvers))
     if found is None:
         return None
-    # An instrument that is late, or indicates less than the true speed, feigns wind as well.
+    # A late instrument, or an indicated air speed, imitates a wind gradient as well.
     unexplained_power = [
         _unexplained(_paths_of(maneuvers, true_over_read, late_s, _LATE_S[-1])) for late_s in _LATE_S
     ]
@@ -126,7 +130,7 @@ def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Sh
 
 
 def _shear_of(paths: Sequence[_Path]) -> Shear | None:
-    """The gradient everywhere, or in the likeliest layer; None where there is none."""
+    """Return the gradient everywhere, or in the likeliest layer; None where there is none."""
     if len(paths) < _LEAST_MANEUVERS:
         return None
     everywhere = _gradient(paths)
@@ -148,9 +152,9 @@ def _shear_of(paths: Sequence[_Path]) -> Shear | None:
 
 
 def moves_along_path(maneuvers: Sequence[Maneuver]) -> bool:
-    """Whether the air speed swings beyond the accelerations by more than its noise: air moves along the path.
+    """Return whether the air speed varies beyond accelerations and noise: the air moves along the path.
 
-    Found in 3 of 480 flights, all in gusts, and in one whose attitude was wrong.
+    Found in 3 of 480 flights, all with gusts, and in one with a wrong attitude.
     """
     slow, above_noise = [], []
     for maneuver in maneuvers:
@@ -166,14 +170,14 @@ def moves_along_path(maneuvers: Sequence[Maneuver]) -> bool:
 
 
 def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf) -> Shear:
-    """The gradient over all manoeuvres, of a wind that changes between two heights only."""
+    """Return the gradient over all manoeuvres, of a wind that changes between two heights only."""
     whole = not np.isfinite(high - low)
     winds = [p.climbed if whole else p.freed(np.clip(p.height, low, high)) for p in paths]
     products = np.array([float(w @ p.speed) for w, p in zip(winds, paths, strict=True)])
     squares = np.array([float(w @ w) for w in winds])
     n, rest = len(paths), np.sum(squares) - squares
     if np.min(rest) <= _ALONE * np.sum(squares):
-        # One manoeuvre that tells alone agrees with no other.
+        # A single informative manoeuvre agrees with no other.
         return Shear(0.0, np.inf, 0.0, n)
     gradient = float(np.sum(products) / np.sum(squares))
     without = (np.sum(products) - products) / rest
@@ -190,7 +194,7 @@ def _paths_of(
 
 
 def _unexplained(paths: Sequence[_Path]) -> float:
-    """Power of the air speed that neither accelerations nor a wind that changes with height explain."""
+    """Return the power of the air speed that neither accelerations nor a wind gradient explain."""
     power = sum(float(p.speed @ p.speed) for p in paths)
     return power * (1.0 - max(_gradient(paths).share, 0.0))
 
@@ -198,9 +202,9 @@ def _unexplained(paths: Sequence[_Path]) -> float:
 def _path_of(
     maneuver: Maneuver, true_over_read: float = 1.0, late_s: float = 0.0, skipped_s: float = 0.0
 ) -> _Path | None:
-    """What a manoeuvre tells, by an instrument that is late; None without channels, or with few samples.
+    """Return path and air speed of a manoeuvre with a late instrument; None without channels or samples.
 
-    ``skipped_s`` of its beginning are left out: what delays leave is compared over the same samples.
+    The first ``skipped_s`` seconds are left out, so that all delays are compared over the same samples.
     """
     found = maneuver.channels
     if not all(name in found and len(found[name]) > _LEAST_SAMPLES for name in _NEEDED):
@@ -218,7 +222,7 @@ def _path_of(
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return None
     stamps, measured = stamps[inside], found["airspeed"].y[inside]
-    # Barometers are coarse and late: they say how high a manoeuvre was flown, not how it climbed.
+    # Barometers are coarse and late: they give the height of a manoeuvre, not its climb.
     height, begun = found.get("height"), np.nan
     if height is not None and len(height):
         begun = float(np.mean(height.y - np.interp(height.t, t, climbed)))

@@ -1,4 +1,4 @@
-"""From evidence to the answer: the numbers beside the judgement, and the sentence."""
+"""From the evidence to the diagnosis: verdict, causes, numbers and sentence."""
 
 from dataclasses import replace
 
@@ -42,7 +42,7 @@ def answer(
     kinematics: KinematicCheck,
     holdout: int | None,
 ) -> Diagnosis:
-    """Turn the evidence into the diagnosis."""
+    """Return the diagnosis that follows from the evidence."""
     e, kept = on_holdout(e, holdout)
     problem, stages = e.problem, e.stages
     judged = judgement(e, kinematics)
@@ -55,7 +55,7 @@ def answer(
     before = over_maneuvers(problem, before, kept)
     with_air = last.mean_square
     if e.air is not None:
-        # From here on the air is one of the causes: the floor is the instruments' noise without its motion.
+        # Moving air counts as a cause here, so the floor is the instruments' noise alone.
         least = np.maximum(e.air.instruments, tolerance_of(problem.flights))
         last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, least))
     gap = gap_numbers(problem, e.floor, before, last)
@@ -91,12 +91,14 @@ def answer(
 
 
 def _speed_is_known(problem: Problem, aircraft: Aircraft) -> bool:
-    """Whether the derivatives' speed was measured, is the file's, or what the motion shows."""
+    """Return whether the air speed of the derivatives was measured, stated in the file, or derived from the
+    motion."""
     return problem.flights.speed_measured or aircraft.stated_airspeed_m_s is not None
 
 
 def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) -> dict[str, dict[str, float]]:
-    """What the improved simulator gets: the named effects, and the propeller's share where it shows."""
+    """Return the effects of the improved simulator: the named ones, and the propeller's terms where
+    significant."""
     effects = {c.effect: {k: v.value for k, v in c.parameters.items()} for c in causes if c.present}
     point = fitted.point
     if PROPELLER in point.effects:
@@ -118,7 +120,8 @@ def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
 
 
 def _of_the_numbers(problem: Problem, fitted: Fitted, known: FloatArray, gap: Gap) -> Where:
-    """The equation whose derivatives in the aircraft file are further off, beside what is known of them."""
+    """Return the equation whose derivatives in the aircraft file are further off, relative to their
+    uncertainty."""
     assert problem.prior_derivatives is not None
     off = fitted.point.derivatives - problem.prior_derivatives
     scores = {}

@@ -1,4 +1,5 @@
-"""What the numbers of an answer are measured on: manoeuvres kept out of the fit, and channels as read."""
+"""The manoeuvres on which the numbers of a diagnosis are measured: held out of the fit, with channels as
+read."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,9 +18,9 @@ from advisor.gap.verdict.evidence import Evidence
 
 
 def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
-    """The evidence measured on the last ``holdout`` manoeuvres, by fits without them; and which those are.
+    """Return the evidence on the last ``holdout`` manoeuvres, from fits without them, and their indices.
 
-    With None, or as many as there are, all: each was kept out in its turn.
+    With None, or with as many as there are, every manoeuvre is held out in turn.
     """
     kept, folds = kept_and_folds(e.problem, holdout)
     if len(kept) == len(e.problem.flights):
@@ -51,9 +52,9 @@ def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
 
 
 def kept_and_folds(problem: Problem, holdout: int | None) -> tuple[list[int], list[list[int]]]:
-    """The places of the manoeuvres that the numbers are measured on, and the folds that are kept out in turn.
+    """Return the indices of the manoeuvres for the numbers, and the folds that are held out in turn.
 
-    ``holdout``: so many manoeuvres, the last ones; None, or as many as there are: all.
+    ``holdout`` is the number of manoeuvres, the last ones; None, or as many as there are, means all.
     """
     n, folds = len(problem.flights), folds_for(problem.flights)
     if holdout is None or not 0 < holdout < n:
@@ -63,7 +64,7 @@ def kept_and_folds(problem: Problem, holdout: int | None) -> tuple[list[int], li
 
 
 def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> HeldOut:
-    """The mean squares over some manoeuvres only; as in a fit, every sample counts alike."""
+    """Return the hold-out with mean squares over some manoeuvres only; every sample counts alike."""
     flights = [problem.flights.flights[i] for i in kept]
     samples = np.array([[len(f.outputs[c].t) for c in problem.channels] for f in flights], float)
     shares = samples / np.sum(samples, axis=0)
@@ -73,7 +74,7 @@ def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> Held
 
 
 def as_read(problem: Problem, offset_rad: float) -> Problem:
-    """The flights with the offset of α in it that was taken out before the fit."""
+    """Return the flights with the offset of α that was removed before the fit."""
     flights = tuple(
         replace(
             f,
@@ -85,7 +86,7 @@ def as_read(problem: Problem, offset_rad: float) -> Problem:
 
 
 def with_offset(problem: Problem, held: HeldOut, offset_rad: float) -> HeldOut:
-    """What a simulator leaves that does not know of the offset of α."""
+    """Return the residuals of a simulator that does not know the offset of α."""
     c = problem.channels.index("alpha")
     residuals = []
     for flight, residual in zip(problem.flights.flights, held.residuals, strict=True):
@@ -95,9 +96,9 @@ def with_offset(problem: Problem, held: HeldOut, offset_rad: float) -> HeldOut:
 
 
 def without_air(held: HeldOut, air: Air) -> HeldOut:
-    """Held-out errors with the share of the moving air taken out, alike in every manoeuvre.
+    """Return the hold-out without the share of moving air, equally in every manoeuvre.
 
-    The courses of the errors are those that the air's likeliest course leaves.
+    The residuals are those without the likeliest course of the air.
     """
     share = np.minimum(air.mean_square_beyond_air / held.mean_square, 1.0)
     powers = held.by_maneuver * share

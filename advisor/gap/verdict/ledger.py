@@ -1,4 +1,4 @@
-"""The ledger: every number that was held against a limit on the way to a verdict, in the order of asking."""
+"""The ledger: every statistic that was compared with a limit on the way to a verdict, in order."""
 
 from advisor.gap.decision import Decision
 from advisor.gap.fitting.uncertainty import CLEAR_GAP
@@ -11,7 +11,8 @@ from advisor.gap.verdict.wrong_numbers import WrongNumbers
 
 
 def decisions_of(e: Evidence, numbers: WrongNumbers) -> tuple[Decision, ...]:
-    """What was asked of the names, the air, what has no name, and the aircraft file's numbers."""
+    """Return the decisions on effects, moving air, unexplained residual and the aircraft file's
+    derivatives."""
     return (
         *(decision for stage in e.stages for decision in _of_stage(stage)),
         *_of_the_air(e),
@@ -21,7 +22,7 @@ def decisions_of(e: Evidence, numbers: WrongNumbers) -> tuple[Decision, ...]:
 
 
 def in_words(decision: Decision) -> str:
-    """One decision as a line for people."""
+    """Return one decision as a line for people."""
     said = "yes" if decision.holds else "no"
     about = decision.about.replace("_", " ")
     return (
@@ -31,7 +32,7 @@ def in_words(decision: Decision) -> str:
 
 
 def _of_stage(stage: Stage) -> list[Decision]:
-    """Why an effect was added, and what refused the others that bring any likelihood."""
+    """Return why an effect was added, and why others with a positive gain were rejected."""
     refused = [judged for judged in stage.considered if judged.gain > 0.0 and not judged.is_accepted]
     told = [decision for judged in refused for decision in _against(judged)]
     return [*told, *(() if stage.added is None else stage.added.decisions)]

@@ -1,4 +1,4 @@
-"""What a reader should know beside the answer: what was assumed, missing, unusual, or could not be done."""
+"""Notes on a diagnosis: assumptions, missing channels, unusual values, and manoeuvres left out."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -17,19 +17,19 @@ from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.text import place
 
 _ANOTHER_SPEED = 0.005
-"""Relative: by less two ways of taking the mean differ."""
+"""Least relative difference between two means of the air speed that is reported."""
 _MATTERS = 0.3
-"""Gap that a simulator at constant speed must leave besides, to be worth a word."""
+"""Least gap of a simulator at constant speed that is reported."""
 _FEW = 6
-"""Manoeuvres below which little can be told of what changes between them."""
+"""Number of manoeuvres below which changes between them can hardly be seen."""
 
 
 def notes_of(
     e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: Verdict, nuisances: Collection[str]
 ) -> tuple[str, ...]:
-    """Every note that these flights and their aircraft file call for, a sentence each.
+    """Return all notes that these flights and their aircraft file require, a sentence each.
 
-    ``nuisances`` are effects that the improved simulator gets though they are no cause.
+    ``nuisances`` are effects that the improved simulator gets although they are no cause.
     """
     return (
         *_of_the_hold_out(holdout, len(e.problem.flights)),
@@ -53,7 +53,7 @@ def _of_the_hold_out(holdout: int | None, flown: int) -> Iterator[str]:
 
 
 def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
-    """Where the air speed is from, and what is off about it."""
+    """Yield the source of the air speed, and its errors."""
     flights = e.problem.flights
     flown, reference = mean_speed(flights), flights.reference_m_s
     is_stated = aircraft.reference_airspeed_m_s is not None
@@ -77,7 +77,7 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
 
 
 def _of_a_constant_speed(e: Evidence, verdict: Verdict) -> Iterator[str]:
-    """What "like the aircraft" takes for granted where the speed moved."""
+    """Yield the gap of a simulator at constant speed, where the verdict is none and the air speed varied."""
     if verdict != "none" or e.constant_speed is None or not e.problem.flights.speed_measured:
         return
     constant, given = (whole_gap(h.mean_square, e.floor) for h in (e.constant_speed, e.stages[-1].held_out))
@@ -131,7 +131,7 @@ def _of_the_air(e: Evidence) -> Iterator[str]:
 
 
 def _of_the_file(aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str]:
-    """What the improved simulator gets besides, and what was made of the effects that the file has."""
+    """Yield the additional terms of the improved simulator, and the treatment of the file's effects."""
     if nuisances:
         yield (
             f"The improved simulator has a propeller's terms, too ({_listed(sorted(nuisances))}): "
@@ -159,7 +159,7 @@ def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
 
 
 def _command(e: Evidence) -> str:
-    """How the command was taken to move between its stamps, and what looks the same."""
+    """Return how the command moved between its stamps, and what looks the same."""
     if not e.problem.held:
         return "The command was taken as linear between its stamps, its edges anywhere between two."
     half = 0.5 * float(np.median(np.diff(e.problem.flights.flights[0].t_u)))
@@ -170,7 +170,7 @@ def _command(e: Evidence) -> str:
 
 
 def left_out(maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
-    """Which manoeuvres were not used, and why."""
+    """Return the manoeuvres that were not used, each with the reason."""
     return tuple(f"Left out: manoeuvre {m.number}: {why_left_out(m)}." for m in maneuvers)
 
 
@@ -179,7 +179,7 @@ def _listed(effects: Sequence[str]) -> str:
 
 
 def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
-    """What of an aircraft file's model is right for few aircraft only."""
+    """Return a note on a sign of the aircraft file's model that is right for few aircraft only."""
     if model.get("M_delta_e", 0.0) <= 0.0:
         return ()
     return (

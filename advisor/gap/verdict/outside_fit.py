@@ -1,4 +1,4 @@
-"""Causes that no fit judges: an offset of α, and the air."""
+"""Causes that are judged outside the fits: an offset of α, and moving air."""
 
 from collections.abc import Sequence
 
@@ -14,32 +14,34 @@ from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.holdout_numbers import without_air
 
 _SCALED_BY = 0.2
-"""Share of what a scale error makes of the trimmed angle that an offset may depart from it."""
+"""Largest difference between an offset and the effect of a scale error on the trimmed angle, as a share of
+that effect, for which no offset is named."""
 _GUST_ERROR = 0.25
-"""Relative error of a gust's strength: its course is known to low order only."""
+"""Relative error of a gust's strength, whose course is a low-order estimate."""
 _TURBULENCE_ERROR = 0.5
-"""The same of turbulence: waves longer than a record pass for its trim. Dryden's air reads 0.5 to 0.7 of its
-strength where the scale length takes three seconds and more to fly through, 1.2 where it takes one."""
+"""Relative error of the strength of turbulence. Waves longer than a record pass for its trim. Of Dryden
+turbulence 0.5 to 0.7 is found where the scale length takes at least three seconds to fly through, and 1.2
+where it takes one."""
 _GUST_TIME_ERROR_S = 0.1
-"""Of a gust's time: the distance between two knots of its course."""
+"""Error of a gust's time, s: the distance between two knots of its course."""
 
 
 def alpha_bias_cause(
     check: KinematicCheck, named: Sequence[Judged], problem: Problem, gap_after: float, alone: bool
 ) -> Cause | None:
-    """A constant offset of α, from the climb rate: the dynamics cannot tell it from Z_0 and M_0.
+    """Return a constant offset of α as a cause, from the climb rate: the dynamics cannot separate it from Z_0
+    and M_0.
 
-    A scale error shifts the trim, too; only what the named one leaves over is an offset. ``gap_after`` is the gap
-    of the last model: what the motion alone shows takes nothing off it. ``alone``: nothing else was found
-    but air that moves; beside anything else what a mounting leaves is no cause. Its probability is
-    decided beside the other causes.
+    A scale error shifts the trim too, so only the rest is an offset. ``gap_after`` is the gap of the last
+    model, which an offset does not change. ``alone``: no cause other than moving air was found; otherwise an
+    offset within a mounting's tolerance is no cause. The probability is set later.
     """
     if not np.isfinite(check.offset.rad) or not check.offset.stays or "alpha" not in problem.channels:
         return None
     least = least_offset_rad(check.offset.std_rad, problem.flights.alpha_is_derived, alone)
     trim = float(np.mean([flight.alpha_trim for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
-    # The trim was read with the offset taken out already: what a scale makes of it is no offset.
+    # The trim was read without the offset: the effect of a scale error on it is no offset.
     scaled = scale * trim
     if abs(check.offset.rad) < least or abs(check.offset.rad - scaled) < max(least, _SCALED_BY * abs(scaled)):
         return None
@@ -51,7 +53,7 @@ def alpha_bias_cause(
 
 
 def air_cause(e: Evidence) -> Cause | None:
-    """Turbulence or a gust, with the strength that its course shows."""
+    """Return turbulence or a gust as a cause, with the strength of its course."""
     if e.air is None:
         return None
     reference = e.problem.flights.reference_m_s

@@ -1,4 +1,4 @@
-"""What the aircraft file's own derivatives do to the gap, and whether they are wrong."""
+"""The aircraft file's own derivatives: their part of the gap, and whether they are wrong."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,31 +14,34 @@ from advisor.gap.search.acceptance import Judged
 from advisor.gap.verdict.evidence import Evidence
 
 _BY_NAMES = 0.8
-"""Share of the gap that names must explain beside the file's own derivatives, if these are to be right."""
+"""Least share of the gap that named effects must explain with the file's own derivatives, for these to be
+right."""
 _FAR_MORE = 3.0
-"""Gap of wrong numbers beside the air's from which on it is not the air that they bend to."""
+"""Ratio of the gap of wrong derivatives to that of moving air above which moving air cannot explain the
+difference."""
 
 
 @dataclass(frozen=True)
 class WrongNumbers:
-    """What the file's derivatives do to the gap."""
+    """The part of the gap that comes from the file's derivatives."""
 
     gap: float
-    """What they leave beyond fitted ones, mean square over the floor's."""
+    """Mean square beyond that of fitted derivatives, relative to the floor's square."""
     distance: Distance
-    """How far the file's derivatives are from the fitted ones."""
+    """Distance of the file's derivatives from the fitted ones."""
     are_wrong: bool
     are_imitated: bool
-    """What was named leaves the file right: that other numbers explain the gap, too, is a likeness."""
+    """Whether the named effects explain the gap with the file's derivatives. Other derivatives then only
+    imitate them."""
     outweigh_the_air: bool
-    """Moving air comes with the day, wrong numbers stay; but the larger part of the gap is the answer."""
+    """Whether the part of wrong derivatives exceeds that of moving air, which comes and goes with the day."""
 
 
 def wrong_numbers(e: Evidence, named: Sequence[Judged], still: FloatArray) -> WrongNumbers:
-    """``still`` is the floor without what the air does, shape (channels,)."""
+    """Judge the file's derivatives; ``still`` is the noise floor without moving air, shape (channels,)."""
     gap, beside_air = _beyond_fitted_numbers(e, e.floor), _beyond_fitted_numbers(e, still)
     of_the_air = whole_gap(e.stages[0].held_out.mean_square, still) if e.air is not None else 0.0
-    # Fitted numbers bend to the air's motion, and take up a part of it.
+    # Fitted derivatives adapt to moving air, and explain a part of it.
     clear_gap = gap > CLEAR_GAP and beside_air > _FAR_MORE * of_the_air
     distance = distance_from_file(e.problem, e.stages[-1].fitted, clear_gap)
     are_wrong = gap > VISIBLE and distance.is_off
@@ -49,16 +52,16 @@ def wrong_numbers(e: Evidence, named: Sequence[Judged], still: FloatArray) -> Wr
 
 
 def _beyond_fitted_numbers(e: Evidence, floor: FloatArray) -> float:
-    """What the file's own derivatives leave beyond fitted ones, mean square over the floor's."""
+    """Return the mean square of the file's derivatives beyond fitted ones, relative to the floor's square."""
     if e.file_model is None:
         return 0.0
     return float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / floor**2))
 
 
 def _need_no_numbers(e: Evidence) -> bool:
-    """Whether what was named explains the gap with the file's own derivatives, too.
+    """Return whether the named effects explain the gap with the file's own derivatives.
 
-    One name that does so is likelier than six wrong numbers that happen to imitate it.
+    One effect is likelier than six wrong derivatives that happen to imitate it.
     """
     if e.file_model is None or e.file_model_with_effects is None:
         return False
