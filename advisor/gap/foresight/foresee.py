@@ -14,8 +14,8 @@ from advisor.gap.candidates.traits import OF_ONE_IMU
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.foresight.marks import Marks
 from advisor.gap.foresight.needs import NEEDS, ONE_IMU, OTHERWISE, hidden_from, need_of
+from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.records.flights import SPEED_CHANGE
 from advisor.gap.records.floor import floor_margins
 from advisor.gap.result import Unseen, spelled
@@ -61,7 +61,7 @@ class Foreseen:
 
 
 @dataclass(frozen=True)
-class Mark:
+class Signature:
     """The signature of one effect at unit size."""
 
     effect: str
@@ -81,7 +81,7 @@ def foresee(
     fitted: Fitted,
     variants: Sequence[Variant],
     noise: FloatArray,
-    others: Sequence[Mark] = (),
+    others: Sequence[Signature] = (),
     rounds: int = 4,
 ) -> list[Foreseen]:
     """Return the smallest detectable size and the similar effects of every effect, at the fitted model.
@@ -95,19 +95,19 @@ def foresee(
     rounds
         Number of refinements of a size where the response is not proportional to it.
     """
-    marks = Marks(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
+    signatures = Signatures(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
     present = {e.effect for e in fitted.point.effects}
-    excluded = present | {mark.effect for mark in others}
+    excluded = present | {signature.effect for signature in others}
     wanted = [v for v in _one_each(variants) if v.effect not in excluded]
     sizes = [_first_size(v) for v in wanted]
     seen = _responses(problem, fitted, list(zip(wanted, sizes, strict=True)))
     found = [
-        _mark_of(problem, fitted, marks, variant, size, marks.of(response), rounds)
+        _signature_of(problem, fitted, signatures, variant, size, signatures.of(response), rounds)
         for variant, size, response in zip(wanted, sizes, seen, strict=True)
     ]
     found += others
     shares = _shares(problem, fitted)
-    return [_foreseen(mark, found, marks, shares) for mark in found]
+    return [_foreseen(signature, found, signatures, shares) for signature in found]
 
 
 def unseen_effects(
@@ -158,15 +158,15 @@ def _first_size(variant: Variant) -> float:
     return float(np.copysign(abs(variant.starts[0][0]) or variant.steps[0], _reach(variant)))
 
 
-def _mark_of(
+def _signature_of(
     problem: Problem,
     fitted: Fitted,
-    marks: Marks,
+    signatures: Signatures,
     variant: Variant,
     size: float,
     vector: FloatArray,
     rounds: int,
-) -> Mark:
+) -> Signature:
     """Return the model's response to an effect, per unit of its first parameter.
 
     An effect whose search starts at zero is linear there, and its derivative is used. Others are nonlinear: a
@@ -175,16 +175,16 @@ def _mark_of(
     """
     reach = _reach(variant)
     numbers = len(variant.names)
-    needed = _needed(marks, numbers)
+    needed = _needed(signatures, numbers)
     for _ in range(rounds - 1 if variant.starts[0][0] else 0):
-        just = max(marks.smallest(vector, needed), variant.smallest)
+        just = max(signatures.smallest(vector, needed), variant.smallest)
         wanted = min(just if np.isfinite(just) else _GROWTH * abs(size), abs(reach))
         if abs(wanted - abs(size)) < _CLOSE * abs(size):
             break
         size = float(np.copysign(wanted, reach))
-        vector = marks.of(_responses(problem, fitted, [(variant, size)])[0])
+        vector = signatures.of(_responses(problem, fitted, [(variant, size)])[0])
     least, most = variant.smallest, abs(reach)
-    return Mark(variant.effect, variant.names[0], vector, least, most, numbers, variant.inverted)
+    return Signature(variant.effect, variant.names[0], vector, least, most, numbers, variant.inverted)
 
 
 def _responses(
@@ -207,35 +207,48 @@ def _responses(
     return changes
 
 
-def _needed(marks: Marks, numbers: int) -> float:
+def _needed(signatures: Signatures, numbers: int) -> float:
     """Return the least power of a signature: detection in nearly every flight, the parameters' price, enough
     change."""
-    price = numbers * float(np.log(marks.rows))
+    price = numbers * float(np.log(signatures.rows))
     # A filter of moving air leaves far less of a change than the outputs show.
-    doubted = least_change(marks.problem) * float(np.mean(floor_margins(marks.problem.flights) ** 2))
-    change = 0.0 if marks.filtered else doubted * marks.rows
+    doubted = least_change(signatures.problem) * float(
+        np.mean(floor_margins(signatures.problem.flights) ** 2)
+    )
+    change = 0.0 if signatures.filtered else doubted * signatures.rows
     return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
 
 
-def _foreseen(mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mapping[str, float]) -> Foreseen:
-    smallest = max(marks.smallest(mark.vector, _needed(marks, mark.numbers)), mark.least)
-    if smallest > mark.most:
+def _foreseen(
+    signature: Signature,
+    all_signatures: Sequence[Signature],
+    signatures: Signatures,
+    shares: Mapping[str, float],
+) -> Foreseen:
+    smallest = max(
+        signatures.smallest(signature.vector, _needed(signatures, signature.numbers)), signature.least
+    )
+    if smallest > signature.most:
         smallest = float("inf")
     confused = sorted(
-        ((other.effect, _cosine(mark.vector, other.vector)) for other in all_marks if other is not mark),
+        (
+            (other.effect, _cosine(signature.vector, other.vector))
+            for other in all_signatures
+            if other is not signature
+        ),
         key=lambda pair: -pair[1],
     )
     confused = [pair for pair in confused if pair[1] > _LISTED_AT][:_MOST_CONFUSIONS]
     twins = [other for other, cosine in confused if cosine > CONFUSED_AT]
-    ways = [way for way in (way_to_distinguish(mark.effect, other) for other in twins) if way]
+    ways = [way for way in (way_to_distinguish(signature.effect, other) for other in twins) if way]
     add = "; ".join(dict.fromkeys(ways)) or (OTHERWISE if twins else "")
     if not np.isfinite(smallest):
-        add = "; ".join(dict.fromkeys([hidden_from(mark.effect, marks.problem.flights)[1], *ways]))
+        add = "; ".join(dict.fromkeys([hidden_from(signature.effect, signatures.problem.flights)[1], *ways]))
     share = None
-    if mark.parameter in shares and np.isfinite(smallest):
-        share = smallest * shares[mark.parameter]
-    size = 1.0 / smallest if mark.inverted and np.isfinite(smallest) else smallest
-    return Foreseen(mark.effect, mark.parameter, size, tuple(confused), add, share)
+    if signature.parameter in shares and np.isfinite(smallest):
+        share = smallest * shares[signature.parameter]
+    size = 1.0 / smallest if signature.inverted and np.isfinite(smallest) else smallest
+    return Foreseen(signature.effect, signature.parameter, size, tuple(confused), add, share)
 
 
 def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:

@@ -18,9 +18,9 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.linear import pulse_response
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.foresight.foresee import Foreseen, Mark
-from advisor.gap.foresight.marks import Marks
+from advisor.gap.foresight.foresee import Foreseen, Signature
 from advisor.gap.foresight.needs import need_of
+from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.noise.probes import disturbance_columns
 from advisor.gap.records.flights import SPEED_CHANGE, Flight, Flights
 from advisor.gap.search.acceptance import least_offset_rad
@@ -56,12 +56,12 @@ class _Air:
         return float(np.max(0.5 * np.sum(taken, axis=1)))
 
 
-def foresee_air(problem: Problem, fitted: Fitted, marks: Marks, unit_s: float) -> list[Foreseen]:
+def foresee_air(problem: Problem, fitted: Fitted, signatures: Signatures, unit_s: float) -> list[Foreseen]:
     """Return the smallest turbulence and the smallest (1 − cos) gust, which lasts two time units of the
     input."""
     if "alpha" not in problem.channels:
         return [impossible(effect, problem.flights) for effect in ("turbulence", "gust")]
-    air = _air(problem, fitted, marks, 2.0 * unit_s)
+    air = _air(problem, fitted, signatures, 2.0 * unit_s)
     speed = problem.flights.reference_m_s
     spread = _first(lambda angle: air.expected(angle, 0.0))
     peak = _first(lambda angle: air.expected(0.0, angle))
@@ -72,7 +72,7 @@ def foresee_air(problem: Problem, fitted: Fitted, marks: Marks, unit_s: float) -
     ]
 
 
-def speed_mark(problem: Problem, fitted: Fitted, marks: Marks) -> Mark:
+def speed_signature(problem: Problem, fitted: Fitted, signatures: Signatures) -> Signature:
     """Return the signature of alternately fast and slow manoeuvres, relative to a simulator at constant
     speed."""
     p = problem.driving(fitted.point)
@@ -82,7 +82,7 @@ def speed_mark(problem: Problem, fitted: Fitted, marks: Marks) -> Mark:
         constant = moved.at_constant_speed()
         real, simulated = (problem.read(f, problem.fly(f, p[i]), p[i]) for f in (moved, constant))
         columns.append((real - simulated) / _SPEED_STEP)
-    return Mark("airspeed_variation", "change", marks.of(columns), SPEED_CHANGE)
+    return Signature("airspeed_variation", "change", signatures.of(columns), SPEED_CHANGE)
 
 
 def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
@@ -104,15 +104,15 @@ def impossible(effect: str, flights: Flights) -> Foreseen:
     return Foreseen(effect, need.parameter, float("inf"), (), need.add)
 
 
-def _air(problem: Problem, fitted: Fitted, marks: Marks, length_s: float) -> _Air:
+def _air(problem: Problem, fitted: Fitted, signatures: Signatures, length_s: float) -> _Air:
     """Return the responses to moving air; a gust falls into the first manoeuvre, after its last step."""
     p = problem.driving(fitted.point)
     gains, gusts = [], []
     for i, flight in enumerate(problem.flights.flights[:AIR_MANEUVERS]):
-        B = marks.within(i, disturbance_columns(problem, flight, p[i], "air"))
+        B = signatures.within(i, disturbance_columns(problem, flight, p[i], "air"))
         value, vector = np.linalg.eigh(B.T @ B)
         gains.append(np.maximum(value, 0.0))
-        x = marks.within(i, _gust(problem, flight, p[i], length_s)[:, None])[:, 0] if i == 0 else None
+        x = signatures.within(i, _gust(problem, flight, p[i], length_s)[:, None])[:, 0] if i == 0 else None
         gusts.append(np.zeros(len(value)) if x is None else vector.T @ (B.T @ x))
         if x is not None:
             seen = value > 1e-9 * value[-1]

@@ -16,8 +16,8 @@ from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.foresight.foresee import Foreseen, foresee
-from advisor.gap.foresight.foresee_outside_fit import foresee_air, foresee_offset, impossible, speed_mark
-from advisor.gap.foresight.marks import Marks
+from advisor.gap.foresight.foresee_outside_fit import foresee_air, foresee_offset, impossible, speed_signature
+from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import LEAST_SAMPLES
@@ -113,12 +113,12 @@ def foresee_flights(
     owns = step.owns(step.shared)
     residuals = tuple(b.after(step.shared, own) for b, own in zip(linear, owns, strict=True))
     fitted = Fitted(point, noise, 0.0, residuals, residuals, step.information, linear, 0)
-    marks = Marks(problem, fitted, noise)
-    speed_marks = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []
+    signatures = Signatures(problem, fitted, noise)
+    speed_signatures = [speed_signature(problem, fitted, signatures)] if flights.speed_measured else []
     wanted = beyond_known(aircraft.effects, variants)
     found = [
-        *foresee(problem, fitted, wanted, noise, speed_marks),
-        *foresee_air(problem, fitted, marks, unit_s),
+        *foresee(problem, fitted, wanted, noise, speed_signatures),
+        *foresee_air(problem, fitted, signatures, unit_s),
         foresee_offset(problem, noise),
     ]
     sought = {v.effect for v in wanted}

@@ -96,8 +96,7 @@ def speeds_about(maneuvers: Sequence[Maneuver], level_m_s: float) -> Speeds:
 def speed_without_instrument(
     grid: FloatArray, maneuver: Maneuver, start_s: float, level_m_s: float
 ) -> FloatArray:
-    """Return the speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), as the accelerometers show
-    its change.
+    """Return the air speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), from the accelerometers.
 
     Before the first step the aircraft is trimmed at the steady speed ``level_m_s``: an acceleration there is
     an offset of accelerometers or attitude. The speed is constant where a channel is missing.

@@ -18,7 +18,7 @@ from advisor.gap.uncatalogued.unexplained import (
 )
 
 _OF_PEAK_SWINGING = 0.005
-"""Least amplitude of an oscillation of the aircraft, as a share of a channel's peak: no model error is like it."""
+"""Least amplitude of an aircraft's oscillation, as a share of a channel's peak. No model error oscillates."""
 _VISIBLE = 0.05
 """Least power of an oscillation relative to the instruments' noise, for an unexplained residual."""
 _SHAKEN = 4.0

@@ -61,11 +61,11 @@ def answer(
     gap = gap_numbers(problem, e.floor, before, last)
     shrink = None
     if verdict in ("effect", "parameters"):
-        shrink = shrink_of(e, kept, gap, before, last, judged.wrong_numbers)
+        shrink = shrink_of(e, kept, gap, before, last, judged.wrong_derivatives)
     fitted = stages[-1].fitted
     known = covariance(problem, fitted, effective_samples(problem, fitted.innovations))
     where = (
-        _of_the_numbers(problem, fitted, known, gap)
+        _of_the_derivatives(problem, fitted, known, gap)
         if verdict == "parameters"
         else _where(e, verdict, causes)
     )
@@ -119,7 +119,7 @@ def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
     return Where(block, float(np.clip(1.0 - remaining / total, 0.0, 1.0)) if causes else 0.0, ranking)
 
 
-def _of_the_numbers(problem: Problem, fitted: Fitted, known: FloatArray, gap: Gap) -> Where:
+def _of_the_derivatives(problem: Problem, fitted: Fitted, known: FloatArray, gap: Gap) -> Where:
     """Return the equation whose derivatives in the aircraft file are further off, relative to their
     uncertainty."""
     assert problem.prior_derivatives is not None

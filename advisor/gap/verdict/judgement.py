@@ -18,7 +18,7 @@ from advisor.gap.verdict.causes import causes_of, with_model_errors
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.ledger import decisions_of
 from advisor.gap.verdict.outside_fit import air_cause, alpha_bias_cause
-from advisor.gap.verdict.wrong_numbers import WrongNumbers, wrong_numbers
+from advisor.gap.verdict.wrong_derivatives import WrongDerivatives, wrong_derivatives
 
 _ALONE = 0.95
 """Probability of a cause outside the fits (the air, an offset, the air speed) where it is the only one."""
@@ -56,7 +56,7 @@ class Judgement:
     bias: Cause | None
     before: HeldOut
     """Residuals of the simulator as given."""
-    wrong_numbers: bool
+    wrong_derivatives: bool
     """Whether the file's derivatives are wrong, alone or in addition to other causes."""
     decisions: tuple[Decision, ...]
     """Statistics that were compared with limits; see ``ledger``."""
@@ -71,7 +71,7 @@ class _Found:
     """Gap of the last model."""
     removed: float
     """Mean square that the named effects remove, relative to the floor's square."""
-    numbers: WrongNumbers
+    derivatives: WrongDerivatives
     bias: Cause | None
     speed: Cause | None
     """Variation of the air speed where ignoring it costs; a cause only if it is in ``outside_fit``."""
@@ -96,8 +96,8 @@ def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
         before = _at_constant_speed(e.problem, before, e.constant_speed, e.stages[-1].held_out)
     causes = _as_left_by(verdict, causes, bool(found.named))
     return Judgement(
-        verdict, causes, found.outside_fit, found.speed, found.bias, before, found.numbers.are_wrong,
-        decisions_of(e, found.numbers),
+        verdict, causes, found.outside_fit, found.speed, found.bias, before, found.derivatives.are_wrong,
+        decisions_of(e, found.derivatives),
     )  # fmt: skip
 
 
@@ -109,21 +109,21 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     removed = float(np.mean((first.mean_square - last.mean_square) / floor**2))
     # Moving air hides nothing from a simulator that knows its motion.
     still = floor if e.air is None else np.minimum(floor, np.sqrt(e.air.mean_square_beyond_air))
-    numbers = wrong_numbers(e, named, still)
-    alone = not (named or numbers.are_wrong or e.unexplained)
+    derivatives = wrong_derivatives(e, named, still)
+    alone = not (named or derivatives.are_wrong or e.unexplained)
     is_single = len(problem.flights) == 1
     bias = None if is_single else alpha_bias_cause(kinematics, named, problem, final_gap, alone)
     outside_fit = tuple(c for c in (air_cause(e), bias) if c is not None)
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
-    outweighs = _speed_outweighs(e, max(numbers.gap, removed))
-    told = (named or bias or numbers.are_wrong) and not outweighs
+    outweighs = _speed_outweighs(e, max(derivatives.gap, removed))
+    told = (named or bias or derivatives.are_wrong) and not outweighs
     judge_speed = thrust_is_uncommanded if told else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         outside_fit = (speed, *outside_fit)
     return _Found(
-        named, final_gap, removed, numbers, bias, speed, outweighs, outside_fit, e.unexplained is not None
+        named, final_gap, removed, derivatives, bias, speed, outweighs, outside_fit, e.unexplained is not None
     )
 
 
@@ -147,9 +147,9 @@ def _ordered(e: Evidence, found: _Found) -> tuple[Cause, ...]:
 def _verdict(found: _Found, causes: Sequence[Cause]) -> Verdict:
     """Return the verdict: the larger part of the gap decides, because every aircraft is slightly
     nonlinear."""
-    numbers = found.numbers
-    mostly = not numbers.are_imitated and numbers.gap > _MOSTLY * (numbers.gap + found.names)
-    wrong = numbers.are_wrong and numbers.outweigh_the_air and (mostly or not found.named)
+    derivatives = found.derivatives
+    mostly = not derivatives.are_imitated and derivatives.gap > _MOSTLY * (derivatives.gap + found.names)
+    wrong = derivatives.are_wrong and derivatives.outweigh_the_air and (mostly or not found.named)
     if found.unknown:
         return "unknown"
     if wrong and not (found.bias or found.speed in found.outside_fit):

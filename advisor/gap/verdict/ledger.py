@@ -7,17 +7,17 @@ from advisor.gap.search.acceptance import Judged
 from advisor.gap.search.air import AIR_GAIN
 from advisor.gap.search.stage import Stage
 from advisor.gap.verdict.evidence import Evidence
-from advisor.gap.verdict.wrong_numbers import WrongNumbers
+from advisor.gap.verdict.wrong_derivatives import WrongDerivatives
 
 
-def decisions_of(e: Evidence, numbers: WrongNumbers) -> tuple[Decision, ...]:
+def decisions_of(e: Evidence, derivatives: WrongDerivatives) -> tuple[Decision, ...]:
     """Return the decisions on effects, moving air, unexplained residual and the aircraft file's
     derivatives."""
     return (
         *(decision for stage in e.stages for decision in _of_stage(stage)),
         *_of_the_air(e),
         *(() if e.unexplained is None else e.unexplained.decisions),
-        *_of_the_numbers(e, numbers),
+        *_of_the_derivatives(e, derivatives),
     )
 
 
@@ -49,13 +49,17 @@ def _of_the_air(e: Evidence) -> list[Decision]:
     return [Decision(about, "likelihood", e.air.gain, AIR_GAIN, "log likelihood gained")]
 
 
-def _of_the_numbers(e: Evidence, numbers: WrongNumbers) -> list[Decision]:
+def _of_the_derivatives(e: Evidence, derivatives: WrongDerivatives) -> list[Decision]:
     if e.file_model is None:
         return []
     unit = "mean square over the noise, beyond fitted numbers"
-    gap = Decision("parameters", "gap", numbers.gap, VISIBLE, unit)
+    gap = Decision("parameters", "gap", derivatives.gap, VISIBLE, unit)
     distance = Decision(
-        "parameters", "distance", numbers.distance.statistic, numbers.distance.limit, "chi square of six"
+        "parameters",
+        "distance",
+        derivatives.distance.statistic,
+        derivatives.distance.limit,
+        "chi square of six",
     )
-    clear = Decision("parameters", "clear gap", numbers.gap, CLEAR_GAP, unit)
+    clear = Decision("parameters", "clear gap", derivatives.gap, CLEAR_GAP, unit)
     return [gap, clear, distance]

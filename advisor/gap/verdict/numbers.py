@@ -55,16 +55,16 @@ def irreducible(mean_square: FloatArray, floor: FloatArray, gap: Gap) -> float:
 
 
 def shrink_of(
-    e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_numbers: bool
+    e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_derivatives: bool
 ) -> Shrink:
     """Return the shrink of the gap on held-out manoeuvres, with an interval from resampling.
 
     ``wrong_derivatives``: the file's derivatives were found wrong.
     """
     beyond_air = by_numbers = None
-    if wrong_numbers and e.air is None and len(e.stages) > 1:
+    if wrong_derivatives and e.air is None and len(e.stages) > 1:
         by_numbers = _by_numbers(e)
-    elif e.air is not None and (len(e.stages) > 1 or wrong_numbers):
+    elif e.air is not None and (len(e.stages) > 1 or wrong_derivatives):
         beyond_air = _by_effects(e) if len(e.stages) > 1 else _by_numbers(e)
     which = list(kept)
     percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0

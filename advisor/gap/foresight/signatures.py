@@ -19,7 +19,7 @@ _RANK = 1e-7
 """Relative singular value of a direction of the shared parameters below which the direction is ignored."""
 
 
-class Marks:
+class Signatures:
     """Signatures about a point of the model: responses with the effect of all parameters removed."""
 
     def __init__(self, problem: Problem, fitted: Fitted, noise: FloatArray) -> None:
@@ -55,13 +55,13 @@ class Marks:
         weighted = self.problem.innovations(i, columns) * self._weights[i][:, None]
         return self._freed_of_own(i, weighted)
 
-    def smallest(self, mark: FloatArray, power: float) -> float:
+    def smallest(self, signature: FloatArray, power: float) -> float:
         """Return the size at which a signature has this power, whatever latency absorbs; infinite where none
         has.
 
         That is the smallest s with min |s·x − λ·l|² = power over the latencies λ within their bounds.
         """
-        x, latency = mark, self._latency
+        x, latency = signature, self._latency
         own, ll = float(x @ x), float(latency @ latency)
         share = float(latency @ x) / ll if ll > 0.0 else 0.0
         remaining = own - share**2 * ll

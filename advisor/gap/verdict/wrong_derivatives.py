@@ -22,7 +22,7 @@ difference."""
 
 
 @dataclass(frozen=True)
-class WrongNumbers:
+class WrongDerivatives:
     """The part of the gap that comes from the file's derivatives."""
 
     gap: float
@@ -37,28 +37,28 @@ class WrongNumbers:
     """Whether the part of wrong derivatives exceeds that of moving air, which comes and goes with the day."""
 
 
-def wrong_numbers(e: Evidence, named: Sequence[Judged], still: FloatArray) -> WrongNumbers:
+def wrong_derivatives(e: Evidence, named: Sequence[Judged], still: FloatArray) -> WrongDerivatives:
     """Judge the file's derivatives; ``still`` is the noise floor without moving air, shape (channels,)."""
-    gap, beside_air = _beyond_fitted_numbers(e, e.floor), _beyond_fitted_numbers(e, still)
+    gap, beside_air = _beyond_fitted(e, e.floor), _beyond_fitted(e, still)
     of_the_air = whole_gap(e.stages[0].held_out.mean_square, still) if e.air is not None else 0.0
     # Fitted derivatives adapt to moving air, and explain a part of it.
     clear_gap = gap > CLEAR_GAP and beside_air > _FAR_MORE * of_the_air
     distance = distance_from_file(e.problem, e.stages[-1].fitted, clear_gap)
     are_wrong = gap > VISIBLE and distance.is_off
     told_by_file = any(judged.variant.twin is not None and judged.prior_gain > 0.0 for judged in named)
-    return WrongNumbers(
-        gap, distance, are_wrong, told_by_file or _need_no_numbers(e), beside_air > of_the_air
+    return WrongDerivatives(
+        gap, distance, are_wrong, told_by_file or _explain_with_the_file(e), beside_air > of_the_air
     )
 
 
-def _beyond_fitted_numbers(e: Evidence, floor: FloatArray) -> float:
+def _beyond_fitted(e: Evidence, floor: FloatArray) -> float:
     """Return the mean square of the file's derivatives beyond fitted ones, relative to the floor's square."""
     if e.file_model is None:
         return 0.0
     return float(np.mean((e.file_model.mean_square - e.stages[0].held_out.mean_square) / floor**2))
 
 
-def _need_no_numbers(e: Evidence) -> bool:
+def _explain_with_the_file(e: Evidence) -> bool:
     """Return whether the named effects explain the gap with the file's own derivatives.
 
     One effect is likelier than six wrong derivatives that happen to imitate it.
