@@ -33,7 +33,7 @@ class CampaignFile:
     """Content of the aircraft file; None: no file."""
 
     def parsed_aircraft(self, origin: str) -> Aircraft:
-        """The aircraft of the flight test, by the rule of the command line where there is one.
+        """Return the aircraft of the flight test, by the rule of the command line where there is one.
 
         Parameters
         ----------
@@ -52,7 +52,7 @@ class CampaignFile:
 
 
 def path_beside(recording: Path) -> Path:
-    """Where the options of a flight test are kept."""
+    """Return where the options of a flight test are kept."""
     return recording.with_suffix(SUFFIX)
 
 

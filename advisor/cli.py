@@ -38,7 +38,7 @@ class LazyCommands(click.Group):
     """A group whose commands live in ``advisor.commands`` and are imported on demand."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names in the order of a flight test: fly, look back, compare, prepare."""
+        """Return names in the order of a flight test: fly, look back, compare, prepare."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
@@ -88,7 +88,7 @@ def _run() -> int:
 
 
 def _ended_by(run: Callable[[], int]) -> int:
-    """Exit code of the run, or of the error that has ended the run, which is told."""
+    """Return the exit code of the run, or of the error that has ended the run, which is told."""
     try:
         return run()
     except click.exceptions.Exit as end:

@@ -43,7 +43,7 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
 
 @cache
 def key_of(module: str) -> str:
-    """Hash of the text of an imported module and of all modules of its package that it is made of.
+    """Return the hash of the text of an imported module and of all modules of its package that it is made of.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def key_of(module: str) -> str:
 
 @cache
 def _imports_of(module: str) -> tuple[str, ...]:
-    """Modules of the same package that the top level of a module's text imports."""
+    """Return modules of the same package that the top level of a module's text imports."""
     named = []
     for node in ast.parse(_text_of(module)).body:
         if isinstance(node, ast.Import):

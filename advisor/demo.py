@@ -64,7 +64,7 @@ class Demonstration:
             self._process.communicate()
 
     def over(self) -> bool:
-        """Whether the aircraft has landed and its last packets have arrived.
+        """Return whether the aircraft has landed and its last packets have arrived.
 
         Raises
         ------

@@ -97,7 +97,7 @@ def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
 
 
 def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
-    """The same with times that go on where those of the vehicle go back.
+    """Return the same with times that go on where those of the vehicle go back.
 
     What drifts or steps from one manoeuvre to the next does so in the order of flying.
     """
@@ -176,6 +176,6 @@ def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Sim
 
 
 def _height_of(maneuvers: Sequence[Maneuver]) -> float | None:
-    """Mean height of all manoeuvres that have one, m."""
+    """Return the mean height of all manoeuvres that have one, m."""
     heights = [m.channels["height"].y.mean() for m in maneuvers if "height" in m.channels]
     return float(sum(heights) / len(heights)) if heights else None

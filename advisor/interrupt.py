@@ -31,7 +31,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 def hung_up(error: BaseException | None) -> bool:
-    """Whether the terminal went away: its window was closed, or its network connection lost."""
+    """Return whether the terminal went away: its window was closed, or its network connection lost."""
     hang_up = getattr(signal, "SIGHUP", None)
     return isinstance(error, Interrupted) and hang_up is not None and error.code == 128 + hang_up
 

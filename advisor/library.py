@@ -86,7 +86,7 @@ def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | No
 
 
 def find(flight: Flight) -> tuple[Maneuver, ...]:
-    """Manoeuvres of a flight, in the order of flying.
+    """Return manoeuvres of a flight, in the order of flying.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def find(flight: Flight) -> tuple[Maneuver, ...]:
 def estimate(
     maneuvers: Maneuver | Sequence[Maneuver], aircraft: Aircraft | None = None
 ) -> Estimate | NoEstimate:
-    """The eight parameters of the short period, from one manoeuvre or from several together.
+    """Return the eight parameters of the short period, from one manoeuvre or from several together.
 
     Parameters
     ----------
@@ -130,7 +130,8 @@ def estimate(
 
 
 def judge(flights: Flight | Sequence[Flight]) -> CampaignState:
-    """Verdicts on all manoeuvres, the joint estimate and the stop criterion, as ``advisor analyze`` has them.
+    """Return verdicts on all manoeuvres, the joint estimate and the stop criterion, as ``advisor analyze``
+    has them.
 
     Parameters
     ----------
@@ -156,7 +157,7 @@ def judge(flights: Flight | Sequence[Flight]) -> CampaignState:
 
 
 def diagnose(flights: Flight | Sequence[Flight], holdout: int | None = None) -> Diagnosis:
-    """Why the aircraft does not fly like its simulator, as ``advisor gap`` says.
+    """Return why the aircraft does not fly like its simulator, as ``advisor gap`` says.
 
     Parameters
     ----------

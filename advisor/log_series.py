@@ -48,7 +48,7 @@ class LogSeries:
         return f"The logs are taken in the order of their times: {listed}." if self.reordered else ""
 
     def batches(self) -> Iterator[list[Columns]]:
-        """The messages of all logs; a log that cannot be read is left out, see ``unreadable``."""
+        """Yield the messages of all logs; a log that cannot be read is left out, see ``unreadable``."""
         # The log reader takes longer to load than the first screen to paint.
         from advisor.mavlink.logs import open_log
 
@@ -60,7 +60,7 @@ class LogSeries:
                 self.unreadable[flight] = error.problem
 
     def load(self) -> list[Columns]:
-        """The messages of all logs that can be read, at once.
+        """Return the messages of all logs that can be read, at once.
 
         Raises
         ------
@@ -73,7 +73,7 @@ class LogSeries:
         return columns
 
     def said(self) -> list[str]:
-        """Sentences on the order of the logs, and on those that could not be read."""
+        """Return sentences on the order of the logs, and on those that could not be read."""
         wrong = [problem.about(self.names[flight]) for flight, problem in self.unreadable.items()]
         return [*([self.order_said] if self.reordered else []), *wrong]
 
@@ -89,7 +89,7 @@ class LogSeries:
 
 
 def of_flight(columns: Sequence[Columns], flight: int) -> list[Columns]:
-    """The columns as those of one flight of a campaign."""
+    """Return the columns as those of one flight of a campaign."""
     return [replace(c, flight=flight) for c in columns] if flight else list(columns)
 
 

@@ -27,7 +27,7 @@ _HEADING = "# Decided by hand; times in vehicle seconds since boot. `advisor` re
 
 
 def path_beside(log: Path) -> Path:
-    """Where the decisions on a log are kept."""
+    """Return where the decisions on a log are kept."""
     return log.parent / f"{log.stem}{SUFFIX}"
 
 

@@ -26,7 +26,7 @@ class Problem:
         return f"{self.text} {self.fix}".strip()
 
     def about(self, name: str) -> str:
-        """The sentence with what it is about before it, where it does not say so itself."""
+        """Return the sentence with what it is about before it, where it does not say so itself."""
         name = printable(name)
         return str(self) if name in self.text else f"{name}: {self}"
 
@@ -42,7 +42,7 @@ class UnusableInputError(Exception):
 
     @classmethod
     def of(cls, problems: Sequence[Problem]) -> "UnusableInputError":
-        """The error that lists all of these, at least one."""
+        """Return the error that lists all of these, at least one."""
         first, *further = problems
         return cls(first.code, first.text, first.fix, further)
 

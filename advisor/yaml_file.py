@@ -21,7 +21,7 @@ _Parser: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
-    """Content of a YAML file; None for an empty one.
+    """Return the content of a YAML file; None for an empty one.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ def index_page(flights: Sequence[Analyzed]) -> str:
 
 
 def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights | None) -> str:
-    """The sentence of the change test for one aircraft, and a picture a derivative."""
+    """Return the sentence of the change test for one aircraft, and a picture a derivative."""
     estimates = [estimate for _, estimate in flights]
     beliefs = beliefs_at_one_speed(estimates)
     speed = common_airspeed(estimates)
@@ -109,5 +109,5 @@ def _row(number: int, flight: Analyzed) -> str:
 
 
 def _shown(text: str) -> str:
-    """Text from outside, as a page shows it and never obeys it."""
+    """Return the text from outside, as a page shows it and never obeys it."""
     return escape(printable(text))

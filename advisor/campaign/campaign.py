@@ -120,7 +120,7 @@ class Campaign:
         return told
 
     def finish(self) -> list[CampaignEvent]:
-        """The stream has ended: a manoeuvre that is complete but for its quiet end still counts."""
+        """Return the stream has ended: a manoeuvre that is complete but for its quiet end still counts."""
         if self._stream.marks.by_hand_since_s is not None:
             self.end_maneuver()
         told = self._take(self._flights.finish())
@@ -175,7 +175,8 @@ class Campaign:
         return self._flights.flight, self._stream.boot
 
     def recent(self, name: str, seconds: float) -> Channel | None:
-        """The newest stretch of a channel of the power-on being heard; None when nothing has arrived."""
+        """Return the newest stretch of a channel of the power-on being heard; None when nothing has
+        arrived."""
         return self._stream.recent(name, seconds)
 
     @property
@@ -267,7 +268,8 @@ class Campaign:
         return told
 
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
-        """A manoeuvre came a second time: the better record counts, and stays out if one of them does."""
+        """Return a manoeuvre came a second time: the better record counts, and stays out if one of them
+        does."""
         maneuver = event.maneuver
         i = self._index(maneuver.number)
         known = self._history[i].excluded_because

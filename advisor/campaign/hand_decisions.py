@@ -25,7 +25,7 @@ class Remark:
     """Which log or link of the campaign, 0 for the first."""
 
     def concerns(self, maneuver: Maneuver) -> bool:
-        """Whether the moment lies in a manoeuvre, its lead-in included."""
+        """Return whether the moment lies in a manoeuvre, its lead-in included."""
         span = maneuver.span
         here = (self.flight, self.boot) == maneuver.power_on
         return here and span.start_s - LEAD_IN_S <= self.at_s < span.end_s
@@ -45,7 +45,7 @@ class ByHand:
     """Moments marked in the event log."""
 
     def excluded_because(self, maneuver: Maneuver) -> str | None:
-        """The reason for which a manoeuvre is taken out; None for one that counts."""
+        """Return the reason for which a manoeuvre is taken out; None for one that counts."""
         return next((r.text for r in self.excluded if r.concerns(maneuver)), None)
 
     def notes_on(self, maneuver: Maneuver) -> tuple[str, ...]:
@@ -53,33 +53,33 @@ class ByHand:
         return tuple(r.text for r in self.notes if r.concerns(maneuver))
 
     def excluding(self, maneuver: Maneuver, because: str | None) -> "ByHand":
-        """The decisions with a manoeuvre taken out for a reason, or with None taken in again."""
+        """Return the decisions with a manoeuvre taken out for a reason, or with None taken in again."""
         others = tuple(r for r in self.excluded if not r.concerns(maneuver))
         added = () if because is None else (_on(maneuver, because),)
         return replace(self, excluded=(*others, *added))
 
     def noting(self, maneuver: Maneuver, text: str) -> "ByHand":
-        """The decisions with a further note on a manoeuvre."""
+        """Return the decisions with a further note on a manoeuvre."""
         return replace(self, notes=(*self.notes, _on(maneuver, text)))
 
     def remarking(self, remark: Remark) -> "ByHand":
-        """The decisions with a further moment marked in the event log."""
+        """Return the decisions with a further moment marked in the event log."""
         return replace(self, remarks=(*self.remarks, remark))
 
     def marking(self, mark: Mark) -> "ByHand":
-        """The decisions with a further mark."""
+        """Return the decisions with a further mark."""
         return replace(self, marks=(*self.marks, mark))
 
     def on_flight(self, flight: int) -> "ByHand":
-        """The decisions on one log or link, as if it were the only one."""
+        """Return the decisions on one log or link, as if it were the only one."""
         return self._each(lambda one: [replace(one, flight=0)] if one.flight == flight else [])
 
     def as_flight(self, flight: int) -> "ByHand":
-        """The decisions on a log or link that is read alone, as those on a flight of a campaign."""
+        """Return the decisions on a log or link that is read alone, as those on a flight of a campaign."""
         return self._each(lambda one: [replace(one, flight=flight)])
 
     def _each(self, changed: Callable[[Any], list[Any]]) -> "ByHand":
-        """The decisions, each of them as ``changed`` gives it."""
+        """Return the decisions, each of them as ``changed`` gives it."""
         sections = (self.marks, self.excluded, self.notes, self.remarks)
         return ByHand(*(tuple(new for one in section for new in changed(one)) for section in sections))
 

@@ -34,7 +34,7 @@ class Together:
         self._found: Estimate | None = None
 
     def estimate(self, maneuvers: Sequence[Maneuver]) -> Estimate | None:
-        """The joint estimate over manoeuvres; None where there is none."""
+        """Return the joint estimate over manoeuvres; None where there is none."""
         if len(maneuvers) != len(self._maneuvers) or not all(map(is_, maneuvers, self._maneuvers)):
             found = estimate_jointly(maneuvers, self._aircraft)
             self._maneuvers = tuple(maneuvers)

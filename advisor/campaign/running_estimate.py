@@ -37,7 +37,7 @@ class Settling:
         self._settled: Settled | None = None
 
     def follow(self, flying: Maneuver | None) -> Settled | None:
-        """Where the estimate stands with the data so far; None while there is none."""
+        """Return where the estimate stands with the data so far; None while there is none."""
         if flying is None:
             self._number, self._settled = None, None
             return None

@@ -19,7 +19,7 @@ CONTRADICTS = 3.0
 
 
 def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
-    """Whether a joint estimate may tell more of the servo than is known.
+    """Return whether a joint estimate may tell more of the servo than is known.
 
     Parameters
     ----------
@@ -34,7 +34,8 @@ def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
 
 
 def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False) -> Aircraft:
-    """The aircraft with the servo's lag as the joint estimate tells it; the same one when nothing is new.
+    """Return the aircraft with the servo's lag as the joint estimate tells it; the same one when nothing is
+    new.
 
     Parameters
     ----------
@@ -57,7 +58,7 @@ def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False)
 def reserved(
     verdict: ManeuverVerdict, estimate: Estimate | NoEstimate, model: Estimate | None
 ) -> ManeuverVerdict:
-    """The verdict, without praise where the joint estimate contradicts the control derivative.
+    """Return the verdict, without praise where the joint estimate contradicts the control derivative.
 
     A record that does not tell the servo's lag by itself has M_δe wrong by up to a factor of two, at a fit
     as good as any, and with a small stated error.

@@ -29,7 +29,7 @@ def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newto
 
 
 def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
-    """The servo as the estimate has it: given, or told by the record."""
+    """Return the servo as the estimate has it: given, or told by the record."""
     lag_s = aircraft.elevator.lag_s or 0.0
     if isinstance(estimated, Estimate):
         lag_s = estimated.servo_lag_s
@@ -58,7 +58,7 @@ def cautions_of(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: 
 
 
 def _shows(estimated: Estimate, gust_rad: float) -> bool:
-    """Whether gusts are more than nothing in the digits that people read."""
+    """Return whether gusts are more than nothing in the digits that people read."""
     size = math.degrees(gust_rad) if estimated.airspeed_m_s is None else gust_rad * estimated.airspeed_m_s
     return round(size, 1) > 0.0
 

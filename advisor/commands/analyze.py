@@ -111,7 +111,8 @@ def command(
 def _analyze(
     series: "LogSeries", campaign: "Campaign"
 ) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
-    """The campaign at the end of its logs, None when none is readable; why logs do not count, by flight."""
+    """Return the campaign at the end of its logs, None when none is readable; why logs do not count, by
+    flight."""
     for columns in series.batches():
         campaign.feed(columns)
     unreadable: dict[int, tuple[Problem, ...]] = {

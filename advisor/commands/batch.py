@@ -140,7 +140,7 @@ def _on_cluster(scheduler: str) -> "Run":
 
 
 def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
-    """The result of every task: kept before, or made now and kept."""
+    """Return the result of every task: kept before, or made now and kept."""
     from advisor.batch.flight import failed, keep, kept
 
     places = {task.log: out / KEPT / f"{task.key}.json" for task in tasks}
@@ -160,7 +160,7 @@ def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Ana
 
 
 def _fault(task: "Task", error: Exception) -> Problem:
-    """A log whose analysis ended with an error, in a sentence."""
+    """Return a log whose analysis ended with an error, in a sentence."""
     from concurrent.futures import BrokenExecutor
 
     if isinstance(error, ConfigurationError):

@@ -78,7 +78,7 @@ def command(
 
 
 def _is_log(target: str) -> bool:
-    """A file, or what can only be meant as one: neither a network address nor a device."""
+    """Return a file, or what can only be meant as one: neither a network address nor a device."""
     if Path(target).is_file() or target.lower().endswith(_LOG_ENDINGS):
         return True
     return ":" not in target and "," not in target and not target.startswith("/dev/")

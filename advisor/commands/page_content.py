@@ -36,7 +36,7 @@ def gather(
     no_marks: bool,
     with_gap: bool,
 ) -> tuple[Content, list[str]]:
-    """Everything the page shows, and sentences on logs that do not count.
+    """Return everything the page shows, and sentences on logs that do not count.
 
     Raises
     ------
@@ -73,7 +73,8 @@ def gather(
 def _heard(
     series: LogSeries, aircraft: Aircraft, target_system: int | None, by_hand: ByHand
 ) -> tuple[CampaignState | None, tuple[Course, ...], Mapping[int, tuple[Problem, ...]]]:
-    """The campaign at the end of its logs, the course of its flights, why logs do not count, by flight."""
+    """Return the campaign at the end of its logs, the course of its flights, why logs do not count, by
+    flight."""
     campaign = Campaign(aircraft, target_system, by_hand=by_hand, names=series.names)
     watch = CourseWatch(campaign)
     for batch in series.batches():
@@ -118,7 +119,7 @@ def _gap(
 
 
 def _hashes(series: LogSeries, aircraft_file: Path | None) -> Mapping[str, str]:
-    """SHA-256 of every input that is a file, by its name."""
+    """Return SHA-256 of every input that is a file, by its name."""
     named = [*zip(series.names, series.logs, strict=True)]
     named += [(aircraft_file.name, aircraft_file)] if aircraft_file else []
     return {printable(name): _sha256(path) for name, path in named if path.is_file()}

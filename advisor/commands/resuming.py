@@ -120,7 +120,8 @@ def started(start: Start, speaking: Speaking) -> Iterator[LinkProcess]:
 
 
 def _left_alone(start: Start) -> RunningLink | None:
-    """The link that still records for this flight test; one on the same connection for another is ended."""
+    """Return the link that still records for this flight test; one on the same connection for another is
+    ended."""
     mine = None
     for running in running_alone():
         if start.goes_on and running.recording and _same(running.recording, start.recording):
@@ -146,7 +147,7 @@ def _same(a: Path, b: Path | None) -> bool:
 
 
 def _over(asked: CampaignFile, before: CampaignFile | None) -> CampaignFile:
-    """The options asked for, and those of before where none are."""
+    """Return the options asked for, and those of before where none are."""
     if before is None:
         return asked
     return CampaignFile(
@@ -158,7 +159,7 @@ def _over(asked: CampaignFile, before: CampaignFile | None) -> CampaignFile:
 
 
 def _in_folder(place: str | None) -> Path | None:
-    """The file of the recording; a folder gets one named by the time."""
+    """Return the file of the recording; a folder gets one named by the time."""
     if place is None:
         return None
     is_folder = Path(place).is_dir() or place.endswith(("/", "\\"))

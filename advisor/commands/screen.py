@@ -23,7 +23,7 @@ Listener = Callable[[object], object]
 
 
 def headless() -> bool:
-    """Whether to print instead of painting: no terminal on stdout, or ``HEADLESS=1``."""
+    """Return whether to print instead of painting: no terminal on stdout, or ``HEADLESS=1``."""
     return os.environ.get("HEADLESS", "") not in ("", "0") or not sys.stdout.isatty()
 
 

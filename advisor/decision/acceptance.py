@@ -61,7 +61,7 @@ def separate_computation(costs: Costs) -> tuple[RuleResult, ...]:
 
 
 def every_usable(costs: Costs) -> tuple[RuleResult, ...]:
-    """Every usable manoeuvre, whatever its cost: the rule `information` weighs instead of choosing."""
+    """Return every usable manoeuvre, whatever its cost: the rule `information` weighs instead of choosing."""
     return tuple(RuleResult(cost is not None, None) for cost in costs)
 
 

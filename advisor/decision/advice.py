@@ -47,7 +47,7 @@ def next_input(
 
 
 def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | None:
-    """The input that helps most now; None before the first usable manoeuvre."""
+    """Return the input that helps most now; None before the first usable manoeuvre."""
     course = Course(aircraft.campaign)
     conditions = find_conditions(history, aircraft, course)
     if conditions is None:
@@ -91,7 +91,8 @@ def _held_by(history: Sequence[Flown], plan: CampaignPlan, known: Knowledge) -> 
 
 
 def _first_input(aircraft: Aircraft) -> str:
-    """Before anything is known: the textbook's 3-2-1-1, small, timed by the prior model if there is one."""
+    """Return before anything is known: the textbook's 3-2-1-1, small, timed by the prior model if there is
+    one."""
     unit = 0.5
     if set(PARAMETERS) <= set(aircraft.model):
         frequency = ShortPeriod.from_mapping(aircraft.model).natural_frequency
@@ -120,6 +121,6 @@ def _remedy(flown: Flown) -> str:
 
 
 def _without_a_model(history: Sequence[Flown], plan: CampaignPlan) -> Remaining:
-    """At least as many as the rule needs at best."""
+    """Return at least as many as the rule needs at best."""
     least = 2 if plan.rule == "information" else plan.window
     return Remaining(least, int(np.ceil(least / usable_share(history))) + 1)

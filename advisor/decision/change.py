@@ -66,7 +66,7 @@ class Change:
 
 
 def find_change(history: Sequence[Flown]) -> Change | None:
-    """The most telling change between manoeuvres of a campaign, None when noise explains everything.
+    """Return the most telling change between manoeuvres of a campaign, None when noise explains everything.
 
     At least two manoeuvres must stand before the change: with one alone nobody knows which of the two
     is the odd one.
@@ -94,7 +94,7 @@ def find_change(history: Sequence[Flown]) -> Change | None:
 
 
 def _compare(before: Pooled, after: Pooled) -> float:
-    """Distance between both sides over its limit; above 1 noise does not explain it."""
+    """Return the distance between both sides over its limit; above 1 noise does not explain it."""
     distance, dof = disagreement(before.shared, after.shared)
     if dof == 0:
         return 0.0
@@ -102,13 +102,13 @@ def _compare(before: Pooled, after: Pooled) -> float:
 
 
 def _widening(before: Pooled, after: Pooled) -> float:
-    """Variance ratio of the scatter within both sides to what their intervals say, at least 1."""
+    """Return the variance ratio of the scatter within both sides to what their intervals say, at least 1."""
     dof = before.dof + after.dof
     return max(1.0, (before.inconsistency + after.inconsistency) / dof) if dof > 0 else 1.0
 
 
 def _back_to_normal(before: Pooled, after: Sequence[Belief]) -> bool:
-    """Whether the newest manoeuvre is again like those before: then the odd ones were merely poor."""
+    """Return whether the newest manoeuvre is again like those before: then the odd ones were merely poor."""
     if len(after) < 2:
         return False
     with_old, dof = disagreement(before.shared, after[-1].shared)
@@ -146,14 +146,14 @@ _CAUSES = {
 
 
 def _simplest_cause(before: Shared, after: Shared, widening: float) -> str:
-    """The cause that alone explains the differences of all six derivatives, if one does."""
+    """Return the cause that alone explains the differences of all six derivatives, if one does."""
     misfits = {name: _misfit(before, after, np.array(powers, float)) for name, powers in _CAUSES.items()}
     best = min(misfits, key=lambda name: misfits[name])
     return best if misfits[best] < widening * float(chdtri(len(DERIVATIVES) - 1, CONSISTENCY)) else ""
 
 
 def _misfit(before: Shared, after: Shared, powers: FloatArray) -> float:
-    """χ² left when ``before`` is multiplied by the best factor to these powers."""
+    """Return χ² left when ``before`` is multiplied by the best factor to these powers."""
     one = np.array([1.0 if PARAMETERS[k] == "Z_q" else 0.0 for k in DERIVATIVES])
     start, target = before.theta + one, after.theta + one
     uneven = np.diag((UNEVEN * target) ** 2)

@@ -17,7 +17,8 @@ Choice = tuple[StepInput, FloatArray]
 def best_input(
     conditions: Conditions, measured_std: FloatArray, unrest: Callable[[FloatArray], float]
 ) -> Choice | None:
-    """The input with the least ``unrest`` of its expected errors; None when the model allows no prediction.
+    """Return the input with the least ``unrest`` of its expected errors; None when the model allows no
+    prediction.
 
     Parameters
     ----------
@@ -37,7 +38,7 @@ def best_input(
 
 
 def _options(conditions: Conditions) -> Iterator[Choice]:
-    """Inputs in the direction not flown last."""
+    """Yield inputs in the direction not flown last."""
     frequency = ShortPeriod(conditions.theta).natural_frequency
     if not np.isfinite(frequency) or frequency <= 0.0:
         return
@@ -50,7 +51,7 @@ def _options(conditions: Conditions) -> Iterator[Choice]:
 
 
 def _as_large_as_allowed(option: StepInput, conditions: Conditions) -> Choice | None:
-    """The input scaled so that α stays within its limit; the model is linear, so scaling is exact."""
+    """Return the input scaled so that α stays within its limit; the model is linear, so scaling is exact."""
     length = conditions.lead_s + option.duration_s + conditions.free_s
     elevator = option.elevator(conditions.trim_rad, conditions.lead_s, length)
     full = expect(conditions.theta, elevator, conditions.instruments)

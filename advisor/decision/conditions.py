@@ -90,7 +90,7 @@ def _about_trim(maneuver: Maneuver) -> FloatArray:
 
 
 def _nose_up_first(maneuver: Maneuver) -> bool:
-    """Whether the first large movement is trailing edge up."""
+    """Return whether the first large movement is trailing edge up."""
     moved = _about_trim(maneuver)
     return bool(moved[np.argmax(np.abs(moved) >= 0.5 * np.max(np.abs(moved)))] < 0.0)
 
@@ -107,7 +107,8 @@ def _instruments(estimate: Estimate, servo: Servo) -> Instruments:
 
 
 def _excursion(flown: Flown, estimate: Estimate) -> float:
-    """Largest deviation of α from where it began, rad: as fitted, or as predicted where none is measured."""
+    """Return the largest deviation of α from where it began, rad: as fitted, or as predicted where none is
+    measured."""
     if "alpha" not in estimate.fits[0]:
         response = response_to(flown, estimate.theta[list(DERIVATIVES)], None)
         return LINEAR_RAD if response is None else float(response.peak[0])

@@ -36,7 +36,7 @@ class Odd:
 
 
 def odd_ones(beliefs: Sequence[Belief]) -> Mapping[int, Odd]:
-    """Manoeuvres that contradict all the others, which agree among themselves, by their index.
+    """Return manoeuvres that contradict all the others, which agree among themselves, by their index.
 
     A search may end in a wrong minimum, or a gust may look like a response: such an estimate has a
     small stated error and would spoil every mean. At most a third of the manoeuvres is odd; more is
@@ -68,7 +68,8 @@ def _distance(odd: Belief, others: Shared) -> Odd:
 
 
 def excess(beliefs: Sequence[Belief]) -> float:
-    """Variance ratio of the scatter between manoeuvres to their stated errors, 1 unless significant.
+    """Return the variance ratio of the scatter between manoeuvres to their stated errors, 1 unless
+    significant.
 
     The Birge ratio of metrology: χ² of the derivatives about their pooled value over its degrees of
     freedom.
@@ -80,12 +81,12 @@ def excess(beliefs: Sequence[Belief]) -> float:
 
 
 def widened(belief: Belief, factor: float) -> Belief:
-    """The same value with ``factor`` times its variance."""
+    """Return the same value with ``factor`` times its variance."""
     return Belief(belief.theta, factor * belief.covariance)
 
 
 def consensus(beliefs: Sequence[Belief]) -> tuple[Belief, float, tuple[int, ...]]:
-    """Pooled belief without the odd manoeuvres, the widening in it, and who was left out."""
+    """Return the pooled belief without the odd manoeuvres, the widening in it, and who was left out."""
     odd = tuple(odd_ones(beliefs))
     agreeing = [belief for i, belief in enumerate(beliefs) if i not in odd]
     factor = excess(agreeing)

@@ -42,7 +42,7 @@ class Course:
         self._known: tuple[list[Flown], Knowledge] | None = None
 
     def standing(self, usable: Sequence[Flown]) -> Standing:
-        """How the rule stands after usable manoeuvres (at least one), in the order flown."""
+        """Return how the rule stands after usable manoeuvres (at least one), in the order flown."""
         n = len(usable)
         if n > len(self._standings) or not _same(self._flown[:n], usable):
             self._follow(usable)

@@ -39,7 +39,7 @@ _ASSUMED_STROKE_DEG = 25.0
 
 
 def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
-    """Missing channels and such as cannot be right, slow ones, gaps, a free response cut short.
+    """Return missing channels and such as cannot be right, slow ones, gaps, a free response cut short.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
 
 
 def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:
-    """Steps so short that neither servo nor aircraft follows them."""
+    """Return steps so short that neither servo nor aircraft follows them."""
     onsets = [onset for onset, _ in maneuver.span.steps]
     if len(onsets) < 2 or maneuver.span.kind == "multisine":
         return []
@@ -91,7 +91,7 @@ def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:
 
 
 def flown(maneuver: Maneuver, name: str) -> FloatArray:
-    """Values of a channel from the first step to the end; empty when it is not there."""
+    """Return values of a channel from the first step to the end; empty when it is not there."""
     channel = maneuver.channels.get(name)
     if channel is None:
         return np.empty(0)
@@ -147,7 +147,7 @@ def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
 
 
 def _is_broken_off(span: Span) -> bool:
-    """Whether something ended the record while the elevator was still away from trim."""
+    """Return whether something ended the record while the elevator was still away from trim."""
     return span.closed_by in _CUT_SHORT_BY and bool(span.steps) and span.steps[-1][1] != 0.0
 
 
@@ -160,7 +160,8 @@ def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:
 
 
 def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    """Air speed away from where it was before the first step; often it follows from something else."""
+    """Return the air speed away from where it was before the first step; often it follows from something
+    else."""
     limit = aircraft.limits.airspeed_change_percent
     channel, speed = maneuver.channels.get("airspeed"), flown(maneuver, "airspeed")
     if channel is None or len(speed) < 2 or not np.median(channel.y) > 0.0:

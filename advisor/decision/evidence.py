@@ -52,7 +52,8 @@ def _held_back(known: Knowledge) -> str:
 
 
 def evidence(known: Knowledge) -> tuple[str, ...]:
-    """The numbers behind the decision, a line each: bands, named parameters, and what holds nobody up."""
+    """Return the numbers behind the decision, a line each: bands, named parameters, and what holds nobody
+    up."""
     share = known.share
     bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
     named = ", ".join(f"{name} {100.0 * share[name]:.0f} %" for name in known.named)

@@ -45,7 +45,7 @@ class Expectation:
 
 
 def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Expectation | None:
-    """Expected errors of the eight parameters from one manoeuvre with this elevator.
+    """Return the expected errors of the eight parameters from one manoeuvre with this elevator.
 
     Parameters
     ----------

@@ -40,10 +40,10 @@ class Flown:
 
 
 def usable_ones(history: Sequence[Flown]) -> list[Flown]:
-    """All usable manoeuvres, in the order flown."""
+    """Return all usable manoeuvres, in the order flown."""
     return [flown for flown in history if flown.usable]
 
 
 def estimates_of(usable: Sequence[Flown]) -> list[Estimate]:
-    """The estimates of manoeuvres, in the order flown; those that are not usable have none."""
+    """Return the estimates of manoeuvres, in the order flown; those that are not usable have none."""
     return [estimate for flown in usable if (estimate := flown.usable)]

@@ -132,7 +132,8 @@ def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
 def _compared(
     newest: Flown, beliefs: Sequence[Belief], airspeed_m_s: float | None
 ) -> tuple[float, float, float]:
-    """The newest manoeuvre against those before: ``surprise``, ``missed_percent``, ``foretold_percent``."""
+    """Return the newest manoeuvre against those before: ``surprise``, ``missed_percent``,
+    ``foretold_percent``."""
     if len(beliefs) < 2:
         return float("nan"), float("nan"), float("nan")
     before, excess, _ = consensus(beliefs[:-1])

@@ -47,7 +47,7 @@ class StepInput:
         return self.unit_s * sum(ORDERS[self.order])
 
     def elevator(self, trim_rad: float, lead_s: float, length_s: float) -> Signal:
-        """Elevator in rad, trailing edge down positive; the input begins after ``lead_s``."""
+        """Return the elevator in rad, trailing edge down positive; the input begins after ``lead_s``."""
         side = -1.0 if self.nose_up_first else 1.0
         corners, levels = [0.0], [0.0]
         onset, level = lead_s, 0.0
@@ -64,16 +64,16 @@ class StepInput:
         return f"{reverse}{self.order}, {self.unit_s:.1f} s steps, {self._stick(travel_rad)} % stick"
 
     def rounded(self, travel_rad: float) -> "StepInput":
-        """The same with an amplitude that can be said, never a larger one unless it were nothing."""
+        """Return the same with an amplitude that can be said, never a larger one unless it were nothing."""
         return replace(self, amplitude_rad=0.01 * self._stick(travel_rad) * travel_rad)
 
     def _stick(self, travel_rad: float) -> int:
-        """Amplitude in percent of the travel: in fives above 20 %."""
+        """Return the amplitude in percent of the travel: in fives above 20 %."""
         percent = 100.0 * self.amplitude_rad / travel_rad + 1e-9
         return 5 * int(percent / 5.0) if percent > 20.0 else max(1, int(percent))
 
 
 def units_to_try(natural_frequency: float) -> FloatArray:
-    """Units of time around the short period's, in tenths of a second as a pilot can count them."""
+    """Return units of time around the short period's, in tenths of a second as a pilot can count them."""
     wanted = np.array([0.5, 0.8, 1.2, 1.6, 2.0, 2.6, 3.2]) / natural_frequency
     return np.unique(np.maximum(np.round(wanted, 1), SHORTEST_UNIT_S))

@@ -21,7 +21,7 @@ COLOURED = 0.5
 def judge_campaign(
     history: Sequence[Flown], plan: CampaignPlan, course: Course | None = None
 ) -> tuple[ManeuverVerdict, ...]:
-    """Verdicts on all manoeuvres flown so far, in the same order, each with what every rule says.
+    """Return verdicts on all manoeuvres flown so far, in the same order, each with what every rule says.
 
     A verdict depends only on the manoeuvres before it, unless one of them is excluded by hand; under the
     rule ``information`` later ones may show that it contradicts all the others. A ``course`` keeps what
@@ -41,7 +41,7 @@ def judge_campaign(
 
 
 def judge(flown: Flown, history: Sequence[Flown], plan: CampaignPlan) -> ManeuverVerdict:
-    """Verdict on the newest manoeuvre, given those before it."""
+    """Return the verdict on the newest manoeuvre, given those before it."""
     return judge_campaign([*history, flown], plan)[-1]
 
 
@@ -59,14 +59,15 @@ def _results(history: Sequence[Flown], rule: Rule, odd: Container[int]) -> tuple
 
 
 def contradicting(history: Sequence[Flown]) -> Mapping[int, Odd]:
-    """Usable manoeuvres that contradict all the others, by their index: ``information`` leaves them out."""
+    """Return usable manoeuvres that contradict all the others, by their index: ``information`` leaves them
+    out."""
     usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
     odd = odd_ones(beliefs_at_one_speed([estimate for _, estimate in usable]))
     return {usable[k][0]: found for k, found in odd.items()}
 
 
 def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
-    """Estimates of the manoeuvres that ``rule`` accepts, in the order flown."""
+    """Return estimates of the manoeuvres that ``rule`` accepts, in the order flown."""
     return [
         estimate
         for flown, result in zip(history, results_of(history, rule), strict=True)
@@ -121,14 +122,14 @@ def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
 
 
 def _explained(estimate: Estimate) -> str:
-    """How much of the motion the model explains; nothing of a record without any."""
+    """Return how much of the motion the model explains; nothing of a record without any."""
     share = min(fit.r2 for name, fit in estimate.fits[0].items() if name in ("alpha", "q"))
     # Cut, not rounded: 100 % is said of an exact fit only.
     return f"the model explains {floor(1000.0 * share) / 10.0:.1f} % of it; " if share > 0.0 else ""
 
 
 def _of_limit(cost: float, limit: float) -> str:
-    """A cost beside its limit: its unit tells nobody anything, the ratio does."""
+    """Return a cost beside its limit: its unit tells nobody anything, the ratio does."""
     if limit <= 0.0:
         return "cost above its limit, 0"
     ratio = distinct_texts(cost / limit, 1.0, 2)[0]

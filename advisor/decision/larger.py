@@ -27,7 +27,7 @@ class Larger:
 
 
 def larger_and_agreeing(history: Sequence[Flown], accepted: Sequence[bool], course: Course) -> Larger | None:
-    """Whether the newest manoeuvre of ``history`` was larger than what set its limit, and predicted.
+    """Return whether the newest manoeuvre of ``history`` was larger than what set its limit, and predicted.
 
     Parameters
     ----------
@@ -55,6 +55,6 @@ def larger_and_agreeing(history: Sequence[Flown], accepted: Sequence[bool], cour
 
 
 def _range(flown: Flown) -> float:
-    """Range of the fitted pitch rate, rad/s."""
+    """Return the range of the fitted pitch rate, rad/s."""
     assert isinstance(flown.estimate, Estimate)
     return float(np.ptp(flown.estimate.fits[0]["q"].fitted))

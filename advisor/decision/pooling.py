@@ -63,7 +63,7 @@ class Belief:
 
 
 def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
-    """The estimates brought to their mean air speed, where every one of them knows its own.
+    """Return the estimates brought to their mean air speed, where every one of them knows its own.
 
     Each parameter goes with its power of V (``SPEED_EXPONENTS``), gravity's part g/V of Z_0 apart.
     Estimates that already stand at one speed, or do not know theirs, are left as they are. The colour
@@ -81,12 +81,13 @@ def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
 
 
 def values_at_one_speed(estimates: Sequence[Estimate]) -> FloatArray:
-    """Shape (n, 8): the values of ``beliefs_at_one_speed``."""
+    """Return the values of ``beliefs_at_one_speed``, shape (n, 8)."""
     return _at_one_speed(estimates)[1]
 
 
 def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray]:
-    """(n, 8) factors on the parameters of each estimate, gravity's part apart, and (n, 8) the parameters."""
+    """Return (n, 8) factors on the parameters of each estimate, gravity's part apart, and (n, 8) the
+    parameters."""
     theta = np.array([e.theta for e in estimates])
     reference = common_airspeed(estimates)
     if reference is None:
@@ -99,13 +100,14 @@ def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray
 
 
 def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
-    """The mean of the speeds at which estimates are given; None where one of them does not know its own."""
+    """Return the mean of the speeds at which estimates are given; None where one of them does not know its
+    own."""
     known = [e.airspeed_m_s for e in estimates if e.airspeed_m_s is not None and e.airspeed_m_s > 0.0]
     return float(np.mean(known)) if known and len(known) == len(estimates) else None
 
 
 def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
-    """(8, 8) factor on the Cramér-Rao bounds: median ratio of corrected to plain errors, squared."""
+    """Return (8, 8) factor on the Cramér-Rao bounds: median ratio of corrected to plain errors, squared."""
     plain = np.array([e.std_cr for e in estimates])
     corrected = np.array([e.std for e in estimates])
     usable = np.isfinite(plain) & np.isfinite(corrected) & (plain > 0.0)
@@ -115,12 +117,12 @@ def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
 
 
 def pool_shared(beliefs: Sequence[Belief]) -> Shared:
-    """The information-weighted mean of the derivatives of at least one estimate."""
+    """Return the information-weighted mean of the derivatives of at least one estimate."""
     return _Summed.of(beliefs).pooled().shared
 
 
 def pool(beliefs: Sequence[Belief]) -> Belief:
-    """The information-weighted mean of several estimates, each with its own Z_0 and M_0.
+    """Return the information-weighted mean of several estimates, each with its own Z_0 and M_0.
 
     The six derivatives are shared; Z_0 and M_0 of the result are means over the manoeuvres, after
     each manoeuvre's own have been corrected for what the others say of its derivatives.
@@ -148,7 +150,7 @@ def pool(beliefs: Sequence[Belief]) -> Belief:
 
 
 def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
-    """How far two independent estimates of the derivatives lie apart.
+    """Return how far two independent estimates of the derivatives lie apart.
 
     Returns
     -------
@@ -170,17 +172,17 @@ class Pooled(NamedTuple):
 
 
 def pooled(beliefs: Sequence[Belief]) -> Pooled:
-    """At least one estimate, pooled."""
+    """Return at least one estimate, pooled."""
     return _Summed.of(beliefs).pooled()
 
 
 def pooled_without_each(beliefs: Sequence[Belief]) -> list[Pooled]:
-    """All the others, pooled, for each of at least two estimates left out in turn."""
+    """Return all the others, pooled, for each of at least two estimates left out in turn."""
     return _Summed.of(beliefs).without_each()
 
 
 def pooled_on_both_sides(beliefs: Sequence[Belief]) -> list[tuple[Pooled, Pooled]]:
-    """The estimates before and from each but the first on, pooled."""
+    """Return the estimates before and from each but the first on, pooled."""
     return _Summed.of(beliefs).both_sides()
 
 
@@ -255,7 +257,7 @@ def _after(values: FloatArray) -> FloatArray:
 
 
 def _finite(values: FloatArray) -> FloatArray:
-    """Zero for what is unknown."""
+    """Return zero for what is unknown."""
     return np.where(np.isfinite(values), values, 0.0)
 
 

@@ -59,7 +59,7 @@ class Prediction:
     NaN where the model runs away."""
 
     def percent(self, covariance: FloatArray) -> Mapping[str, float]:
-        """Half-width of the 95 % band at its widest, in percent of the peak, for each output.
+        """Return the half-width of the 95 % band at its widest, in percent of the peak, for each output.
 
         Parameters
         ----------
@@ -90,7 +90,7 @@ def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> flo
 
 
 def predict(flown: Sequence[Flown], derivatives: FloatArray, airspeed_m_s: float | None) -> Prediction:
-    """The response to what was flown; of no output where it is not known what was flown.
+    """Return the response to what was flown; of no output where it is not known what was flown.
 
     Parameters
     ----------
@@ -116,7 +116,8 @@ def _relative(response: Response | None, k: int) -> FloatArray:
 def missed_percent(
     flown: Flown, predicted: FloatArray, found: FloatArray, airspeed_m_s: float | None
 ) -> float:
-    """Largest distance of the predicted response to a manoeuvre from the one found, in percent of its peak.
+    """Return the largest distance of the predicted response to a manoeuvre from the one found, in percent of
+    its peak.
 
     Parameters
     ----------
@@ -139,13 +140,13 @@ def missed_percent(
 
 
 def measured(flown: Flown) -> tuple[str, ...]:
-    """Outputs of ``PREDICTED`` that a manoeuvre's estimate is made from."""
+    """Return outputs of ``PREDICTED`` that a manoeuvre's estimate is made from."""
     fits = flown.estimate.fits[0] if isinstance(flown.estimate, Estimate) else {}
     return tuple(name for name in PREDICTED if name in fits)
 
 
 def response_to(flown: Flown, derivatives: FloatArray, airspeed_m_s: float | None) -> Response | None:
-    """The response from trim to a manoeuvre's input at the manoeuvre's speed.
+    """Return the response from trim to a manoeuvre's input at the manoeuvre's speed.
 
     The slopes are with respect to the derivatives as given, at ``airspeed_m_s``. None where it is not known
     what was flown, a derivative is unknown, or the model runs away.
@@ -169,7 +170,7 @@ def response_to(flown: Flown, derivatives: FloatArray, airspeed_m_s: float | Non
 
 
 def trim_of(maneuver: Maneuver) -> float:
-    """Elevator before the first step, rad."""
+    """Return the elevator before the first step, rad."""
     elevator, span = maneuver.channels["elevator"], maneuver.span
     lead = elevator.cut(span.record_from_s, span.start_s)
     return float(np.nanmedian(lead.y if len(lead) else elevator.y[:1]))
@@ -182,7 +183,7 @@ def _airspeed(maneuver: Maneuver) -> float | None:
 
 
 def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
-    """Until when a response is looked at: of a diverging model until a deviation has doubled.
+    """Return until when a response is looked at: of a diverging model until a deviation has doubled.
 
     Whoever flies an unstable aircraft corrects within that time; an open loop further ahead means nothing.
     """
@@ -198,7 +199,8 @@ def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
 
 @lru_cache(maxsize=_REMEMBERED)
 def _respond(t: bytes, elevator: bytes, servo: Servo, derivatives: tuple[float, ...]) -> Response | None:
-    """The response to an elevator, given as bytes of its stamps and deflections so that it can be kept."""
+    """Return the response to an elevator, given as bytes of its stamps and deflections so that it can be
+    kept."""
     command = Signal(np.frombuffer(t), np.frombuffer(elevator))
     moments = np.linspace(command.t[0], _horizon(command, derivatives), MOMENTS)
     still = Signal(moments, np.zeros(MOMENTS))

@@ -67,7 +67,7 @@ def judge_quality(
 
 
 def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
-    """Natural period of the short period in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
+    """Return the natural period of the short period in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
 
     Where no estimate of a stable aircraft predicts its own response, two and a half of the shortest step,
     or two of a multisine's median lobes: the inputs of a test are matched to the aircraft.
@@ -85,14 +85,14 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
 
 
 def _knows_the_motion(estimate: Estimate) -> bool:
-    """Whether an estimate predicts its own response and knows the stiffness better than not at all."""
+    """Return whether an estimate predicts its own response and knows the stiffness better than not at all."""
     stiffness = PARAMETERS.index("M_alpha")
     known = abs(float(estimate.theta[stiffness])) > float(estimate.std[stiffness])
     return known and estimate.prediction.get("q", 0.0) < 1.0
 
 
 def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reason]:
-    """The response hardly stands out of the noise."""
+    """Return the response hardly stands out of the noise."""
     wanting = []
     for name, least in LEAST_SIGNAL.items():
         if name not in (fits or ("q",)):
@@ -114,7 +114,7 @@ def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reas
 
 
 def _badly_explained(estimate: Estimate) -> list[Reason]:
-    """Residuals that are no noise: the model does not hold for what was flown.
+    """Return residuals that are no noise: the model does not hold for what was flown.
 
     In moving air the angle of attack of a vane shows the air, which no model of the aircraft explains.
     """
@@ -137,7 +137,7 @@ def _badly_explained(estimate: Estimate) -> list[Reason]:
 
 
 def _poor(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
-    """An estimate that predicts too little of the response it was made from."""
+    """Return an estimate that predicts too little of the response it was made from."""
     value = 100.0 * estimate.prediction.get("q", math.inf)
     if value <= WIDEST_PREDICTION_PERCENT:
         return []
@@ -153,7 +153,7 @@ def _poor(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
 
 
 def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
-    """The reasons with the mend of a channel that cannot be right in place of a larger input."""
+    """Return the reasons with the mend of a channel that cannot be right in place of a larger input."""
     if not maneuver.distrusts:
         return reasons
     wrong = maneuver.distrusts[0]
@@ -161,18 +161,18 @@ def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
 
 
 def _peak(maneuver: Maneuver, name: str) -> float:
-    """Half the range of a channel while the manoeuvre was flown."""
+    """Return the half the range of a channel while the manoeuvre was flown."""
     y = flown(maneuver, name)
     return float(np.ptp(y)) / 2.0 if len(y) else 0.0
 
 
 def _white(values: FloatArray) -> float:
-    """Standard deviation of the part that is new in every sample: from second differences."""
+    """Return the standard deviation of the part that is new in every sample: from second differences."""
     if len(values) < 3:
         return 0.0
     return float(np.std(np.diff(values, 2))) / math.sqrt(6.0)
 
 
 def _times(factor: float) -> str:
-    """Advice on amplitude: a tenth more than needed, in a size a hand can tell."""
+    """Return advice on amplitude: a tenth more than needed, in a size a hand can tell."""
     return f"{min(5.0, max(1.2, 1.1 * factor)):.1f} times"

@@ -21,7 +21,8 @@ _DRAWS = 400
 
 
 def by_information(known: Knowledge, next_covariance: FloatArray, usable_share: float) -> Remaining:
-    """More manoeuvres until all that must be known is within its tolerance and the newest is predicted.
+    """Return more manoeuvres until all that must be known is within its tolerance and the newest is
+    predicted.
 
     Parameters
     ----------
@@ -41,7 +42,8 @@ def by_information(known: Knowledge, next_covariance: FloatArray, usable_share: 
 
 
 def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> float:
-    """Largest uncertainty over its tolerance after ``more`` manoeuvres with errors as in ``next_covariance``.
+    """Return the largest uncertainty over its tolerance after ``more`` manoeuvres with errors as in
+    ``next_covariance``.
 
     Trims and the constants that hold them are each manoeuvre's own: only their variances add up.
     """
@@ -58,7 +60,7 @@ def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> flo
 def by_scatter(
     window: FloatArray, belief: Belief, next_std: FloatArray, plan: CampaignPlan, accepted_share: float
 ) -> Remaining:
-    """More manoeuvres until the scatter of the last n accepted ones is below the limit, by simulation.
+    """Return more manoeuvres until the scatter of the last n accepted ones is below the limit, by simulation.
 
     Parameters
     ----------
@@ -90,13 +92,15 @@ def by_scatter(
 
 
 def usable_share(history: Sequence[Flown]) -> float:
-    """Share of manoeuvres that were usable, with the experience of nine good out of ten before the first."""
+    """Return the share of manoeuvres that were usable, with the experience of nine good out of ten before the
+    first."""
     good = sum(flown.usable is not None for flown in history)
     return (good + 9.0) / (len(history) + 10.0)
 
 
 def _flights_for(good: int, share: float, confidence: float) -> int:
-    """Flights within which ``good`` usable ones come about with this confidence (negative binomial)."""
+    """Return flights within which ``good`` usable ones come about with this confidence (negative
+    binomial)."""
     spoilt = 0
     # To rounding: half of all chances may be reached exactly.
     while good and nbdtr(spoilt, good, share) < confidence - 1e-12:

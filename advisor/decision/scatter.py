@@ -14,7 +14,7 @@ SCATTER_FACTOR = 5.0
 
 
 def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> FloatArray:
-    """Scatter of each parameter over a window of estimates, relative to its mean.
+    """Return the scatter of each parameter over a window of estimates, relative to its mean.
 
     Parameters
     ----------
@@ -38,7 +38,8 @@ def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> Fl
 
 
 def scatter_percent(theta: FloatArray, criterion: Criterion = "eq12") -> float:
-    """The stop criterion: Euclidean norm over the eight parameters of `scatter_by_parameter`, in percent.
+    """Return the stop criterion: Euclidean norm over the eight parameters of `scatter_by_parameter`, in
+    percent.
 
     The norm takes absolute values, so the sign of a parameter's mean does not matter.
     """
@@ -46,12 +47,13 @@ def scatter_percent(theta: FloatArray, criterion: Criterion = "eq12") -> float:
 
 
 def scattered_most(theta: FloatArray, criterion: Criterion = "eq12") -> str:
-    """The parameter that contributes most to `scatter_percent`; one without a value before all others."""
+    """Return the parameter that contributes most to `scatter_percent`; one without a value before all
+    others."""
     return PARAMETERS[int(np.argmax(np.nan_to_num(scatter_by_parameter(theta, criterion), nan=np.inf)))]
 
 
 def window(accepted: Sequence[Estimate], plan: CampaignPlan) -> FloatArray | None:
-    """Shape (n, 8): the last n accepted estimates at one air speed; None while there are fewer."""
+    """Return the last n accepted estimates at one air speed, shape (n, 8); None while there are fewer."""
     if len(accepted) < plan.window:
         return None
     return values_at_one_speed(accepted[-plan.window :])

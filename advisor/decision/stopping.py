@@ -63,7 +63,7 @@ def flight_test(
 def progress(
     history: Sequence[Flown], rule: Rule, plan: CampaignPlan, course: Course | None = None
 ) -> RuleProgress:
-    """The stop criterion of one rule after each manoeuvre flown; ``course`` as in ``flight_test``."""
+    """Return the stop criterion of one rule after each manoeuvre flown; ``course`` as in ``flight_test``."""
     course = course or Course(plan)
     limit = limit_percent(rule, plan)
     values: list[float | None] = []
@@ -96,7 +96,7 @@ def progress(
 
 
 def _weighed(history: Sequence[Flown], rule: Rule) -> list[bool]:
-    """Which manoeuvres a rule's criterion weighs.
+    """Return which manoeuvres a rule's criterion weighs.
 
     The rule ``information`` weighs all usable ones: at every moment the rule finds those that contradict the
     others by itself.

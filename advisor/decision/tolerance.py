@@ -24,7 +24,7 @@ LEAST = 1e-12
 
 
 def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) -> FloatArray:
-    """The half-width each parameter's 95 % interval must stay below.
+    """Return the half-width each parameter's 95 % interval must stay below.
 
     ``SHARE`` times ``plan.tolerance_percent`` of the parameter, or what moves the frequency or the damping
     of the short period by ``plan.tolerance_percent``, whichever is larger. For a derivative near zero, a
@@ -54,7 +54,8 @@ def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) ->
 
 
 def _moving_the_short_period(theta: FloatArray) -> Mapping[str, float]:
-    """Change of a derivative, per relative change of the frequency or of the damping that the change makes.
+    """Return the change of a derivative, per relative change of the frequency or of the damping that the
+    change makes.
 
     ω² = Z_α·M_q - (1 + Z_q)·M_α and 2·ζ·ω = -(Z_α + M_q): where M_q is a small part of the damping, much of
     M_q makes little difference.

@@ -16,7 +16,7 @@ from advisor.oem.estimate import Estimate
 
 
 def warnings(history: Sequence[Flown], chosen: RuleProgress, stop: bool, course: Course) -> tuple[str, ...]:
-    """Sentences on what the criterion alone does not show."""
+    """Return sentences on what the criterion alone does not show."""
     plan, found = course.plan, []
     if chosen.stopped_at is not None and not stop:
         found.append(
@@ -43,7 +43,7 @@ def _left_out(history: Sequence[Flown], course: Course) -> list[str]:
 
 
 def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
-    """A parameter so small beside the error of one manoeuvre that single estimates always scatter."""
+    """Return a parameter so small beside the error of one manoeuvre that single estimates always scatter."""
     theta = window(accepted, plan)
     if theta is None or plan.criterion != "eq12":
         return []
@@ -63,7 +63,7 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
 
 
 def _locked_out(history: Sequence[Flown], course: Course) -> list[str]:
-    """Manoeuvres that are good in themselves, refused one after another for their cost alone."""
+    """Return manoeuvres that are good in themselves, refused one after another for their cost alone."""
     plan = course.plan
     accepted = [result.accepted for result in results_of(history, plan.rule)]
     refused = 0

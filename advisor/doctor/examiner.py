@@ -152,7 +152,8 @@ class Examiner:
         self._notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
 
     def _belief(self) -> Belief:
-        """The aircraft and its noise as far as they are known: the file's model, else what was flown."""
+        """Return the aircraft and its noise as far as they are known: the file's model, else what was
+        flown."""
         flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
         if not isinstance(flown, Estimate) or not _believable(flown):
             flown = None
@@ -170,7 +171,7 @@ class Examiner:
         return Belief(TYPICAL, noise, "a typical aircraft of 10 kg (yours: model in the aircraft file)")
 
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
-        """The channels that identification lives on, with the messages that pace them."""
+        """Return the channels that identification lives on, with the messages that pace them."""
         paced = {}
         dead = {distrust.channel for distrust in self._stream.frozen} - {"alpha"}  # another may be derived
         for name in ("elevator", "q", "alpha", "a_z"):
@@ -188,14 +189,15 @@ class Examiner:
         return paced
 
     def _surveyed(self, message: str) -> str:
-        """Name of a message in the survey; of servos, the last bank, which makes a sample of the elevator."""
+        """Return the name of a message in the survey; of servos, the last bank, which makes a sample of the
+        elevator."""
         elevator = self._stream.elevator
         if message != "SERVO_OUTPUT_RAW" or not isinstance(elevator, Surface):
             return message
         return bank_name(elevator.ports[-1])
 
     def _airspeed(self, paced: dict[str, Paced]) -> float | None:
-        """A speed for the specific force; None when none is measured or given."""
+        """Return a speed for the specific force; None when none is measured or given."""
         if self._aircraft.airspeed_m_s is not None:
             return self._aircraft.airspeed_m_s
         recent = self._stream.recent("airspeed", 60.0)
@@ -240,7 +242,8 @@ class Examiner:
 
 
 def _believable(flown: Estimate) -> bool:
-    """Whether an estimate may stand for the aircraft: it explains the motion, and knows pace and effect."""
+    """Return whether an estimate may stand for the aircraft: it explains the motion, and knows pace and
+    effect."""
     low, high = _PLAUSIBLE_RAD_S
     pace = frequency(ShortPeriod(flown.theta))
     moved = low < pace < high and abs(flown.value("M_delta_e")) > _LEAST_EFFECT * pace**2
@@ -251,7 +254,7 @@ def _believable(flown: Estimate) -> bool:
 
 
 def _fast(message: str, vehicle: Vehicle) -> str:
-    """How to have a message that never came, at a good rate."""
+    """Return how to have a message that never came, at a good rate."""
     if vehicle.carrier == "telemetry":
         return vehicle.mends.faster(message)
     return vehicle.mends.present([message])
@@ -265,7 +268,7 @@ def _stopping(problem: Problem, vehicle: Vehicle | None) -> Limit:
 
 
 def _message(status: ChannelStatus) -> str:
-    """The message that sets the pace of a channel."""
+    """Return the message that sets the pace of a channel."""
     return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
 
 

@@ -62,13 +62,14 @@ class Expectation:
 
 
 def frequency(model: ShortPeriod) -> float:
-    """How fast the aircraft answers, rad/s: natural frequency, or its fastest mode when it has none."""
+    """Return how fast the aircraft answers, rad/s: natural frequency, or its fastest mode when it has
+    none."""
     natural = model.natural_frequency
     return natural if np.isfinite(natural) and natural > 0.0 else float(np.max(np.abs(model.eigenvalues)))
 
 
 def expect(belief: Belief, rates_hz: Mapping[str, float], airspeed_m_s: float | None) -> Expectation:
-    """Expected errors of a 3-2-1-1 matched to the aircraft.
+    """Return the expected errors of a 3-2-1-1 matched to the aircraft.
 
     Parameters
     ----------
@@ -128,7 +129,8 @@ def _errors(
 
 
 def edge_error_s(rate_hz: float) -> float:
-    """Root mean square error in time of an edge of the command, sampled and joined by straight lines.
+    """Return the root mean square error in time of an edge of the command, sampled and joined by straight
+    lines.
 
     Over edges of several lengths and all ways the samples may fall on them: the area between
     the edge and the lines, over the edge's height.
@@ -166,7 +168,7 @@ def _assembly(
     outputs: list[str],
     airspeed_m_s: float | None,
 ) -> Assembly:
-    """The manoeuvre as the estimator would see it, every output at its own stamps."""
+    """Return the manoeuvre as the estimator would see it, every output at its own stamps."""
     levels = amplitude * np.array([0.0, -1.0, 1.0, -1.0, 1.0, 0.0])
     half = float(np.median(_EDGES_S)) / 2.0
     corners = np.repeat(edges, 2) + np.tile([-half, half], len(edges))

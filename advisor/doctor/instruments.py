@@ -46,7 +46,7 @@ def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
 
 
 def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
-    """Calibration, resolution and servo."""
+    """Return calibration, resolution and servo."""
     limits = []
     if not found.calibrated:
         listed = joined_numbers(found.outputs)
@@ -83,13 +83,14 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
 
 
 def distrust_limits(found: Iterable[Distrust]) -> list[Limit]:
-    """Channels that cannot be right, each once; a pitch rate that stands still is a problem already."""
+    """Return channels that cannot be right, each once; a pitch rate that stands still is a problem
+    already."""
     told = {d.channel: d for d in found if not (d.stops and d.code == "frozen")}
     return [Limit(d.code, d.sentence, d.fix, stops=d.stops) for d in told.values()]
 
 
 def clock_limits(clocks: Clocks) -> list[Limit]:
-    """Reboots, stamps of another clock, drift."""
+    """Return reboots, stamps of another clock, drift."""
     limits = []
     if clocks.boots > 1:
         limits.append(
@@ -121,14 +122,14 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
 
 
 def sender_limits(two_senders: Problem | None) -> list[Limit]:
-    """Two senders under one system id, as the flight's own stream judges them."""
+    """Return two senders under one system id, as the flight's own stream judges them."""
     if two_senders is None:
         return []
     return [Limit(two_senders.code, two_senders.text.rstrip("."), two_senders.fix.rstrip("."))]
 
 
 def company_limits(other_systems: Collection[int]) -> list[Limit]:
-    """Further vehicles on the same link, when nobody chose one."""
+    """Return further vehicles on the same link, when nobody chose one."""
     if not other_systems:
         return []
     others = ", ".join(map(str, sorted(other_systems)))
@@ -142,7 +143,7 @@ def company_limits(other_systems: Collection[int]) -> list[Limit]:
 
 
 def loss_limits(lost_percent: float | None) -> list[Limit]:
-    """Packets a live link lost; None: not counted."""
+    """Return packets a live link lost; None: not counted."""
     if lost_percent is None or lost_percent <= LOSSY_PERCENT:
         return []
     shown, most = distinct_texts(lost_percent, LOSSY_PERCENT, 1)
@@ -156,7 +157,7 @@ def loss_limits(lost_percent: float | None) -> list[Limit]:
 
 
 def path_limits(repeated_percent: float, after_s: float) -> list[Limit]:
-    """A second path that brings the packets again; a packet counts once all the same."""
+    """Return a second path that brings the packets again; a packet counts once all the same."""
     if repeated_percent <= REPEATED_PERCENT:
         return []
     return [

@@ -44,7 +44,7 @@ class Paced:
 def rate_limits(
     paced: Mapping[str, Paced], belief: Belief, vehicle: Vehicle, airspeed_m_s: float | None
 ) -> list[Limit]:
-    """Limits for every channel that is slow for this aircraft.
+    """Return limits for every channel that is slow for this aircraft.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def rate_limits(
 
 
 def _samples(hz: float, fewest_hz: float, enough_hz: float, plain: str, period_s: float) -> str:
-    """Samples in a natural period beside the limit that they fall short of."""
+    """Return samples in a natural period beside the limit that they fall short of."""
     samples, fewest, enough = hz * period_s, fewest_hz * period_s, enough_hz * period_s
     if hz < fewest_hz:
         shown, least = distinct_texts(samples, fewest, 1)
@@ -96,7 +96,7 @@ def _samples(hz: float, fewest_hz: float, enough_hz: float, plain: str, period_s
 def steadiness_limits(
     arrivals: Mapping[str, Arrival], needed: set[str], period_s: float, carrier: Carrier
 ) -> list[Limit]:
-    """Messages that came, but not all the time."""
+    """Return messages that came, but not all the time."""
     limits = []
     for name in sorted(needed & arrivals.keys()):
         arrival = arrivals[name]

@@ -81,7 +81,7 @@ class _Sender:
     last: FloatArray | None = None
 
     def news_in(self, values: FloatArray) -> NDArray[np.bool_]:
-        """Which rows differ from the one before; shape (n,)."""
+        """Return which rows differ from the one before; shape (n,)."""
         if len(values) == 0:
             return np.zeros(0, dtype=bool)
         before = values[:1] if self.last is None else self.last
@@ -134,7 +134,7 @@ class Survey:
         self._master_s = float(clock[-1])
 
     def _advance(self, attitude: Columns | None) -> tuple[NDArray[np.int64], FloatArray, NDArray[np.int64]]:
-        """The master clock after each ATTITUDE of this batch, and before the first."""
+        """Return the master clock after each ATTITUDE of this batch, and before the first."""
         order, clock, boots = [-1], [self._master_s], [self._clock.boot]
         if attitude is not None:
             ticks = self._clock.advance(np.asarray(attitude.fields["time_boot_ms"], dtype=np.int64))
@@ -193,7 +193,7 @@ class Survey:
         ]
 
     def _pauses(self) -> list[_Pause]:
-        """Stretches in which no message of any kind came; none for a link, whose faults they are."""
+        """Return stretches in which no message of any kind came; none for a link, whose faults they are."""
         if self._carrier == "telemetry" or not self._clock_pairs:
             return []
         _, t, boot = np.concatenate(self._clock_pairs).T
@@ -216,7 +216,8 @@ def bank_name(port: int) -> str:
 
 
 def _banks(part: Columns) -> Iterator[tuple[str, NDArray[np.bool_]]]:
-    """Messages that are counted together: a vehicle with two banks of outputs sends two for each sample."""
+    """Yield messages that are counted together: a vehicle with two banks of outputs sends two for each
+    sample."""
     if part.name != "SERVO_OUTPUT_RAW":
         yield part.name, np.ones(len(part), dtype=bool)
         return
@@ -226,7 +227,7 @@ def _banks(part: Columns) -> Iterator[tuple[str, NDArray[np.bool_]]]:
 
 
 def _telling(part: Columns) -> FloatArray:
-    """The fields that tell news from repetition, shape (n, fields)."""
+    """Return the fields that tell news from repetition, shape (n, fields)."""
     names = [name for name in _TELLING.get(part.name, ()) if name in part.fields]
     columns = [np.asarray(part.fields[name], dtype=np.float64).reshape(len(part), -1) for name in names]
     return np.column_stack(columns) if columns else np.empty((len(part), 0))
@@ -257,14 +258,14 @@ def _arrival(name: str, sender: _Sender, pauses: Sequence[_Pause]) -> Arrival:
 
 
 def _intervals(t: FloatArray, boot: NDArray[np.int64]) -> FloatArray:
-    """Times between neighbouring stamps of one boot."""
+    """Return times between neighbouring stamps of one boot."""
     same = np.diff(boot) == 0
     intervals: FloatArray = np.diff(t)[same]
     return intervals
 
 
 def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
-    """Fewest messages in any stretch of ``_WINDOW_S`` that begins with one, per second."""
+    """Return the fewest messages in any stretch of ``_WINDOW_S`` that begins with one, per second."""
     rates = []
     for n in np.unique(boot):
         mine = t[boot == n]
@@ -275,7 +276,7 @@ def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
 
 
 def _against_the_host(pairs: FloatArray) -> tuple[float, float]:
-    """Drift in percent and jitter in ms of arrival against vehicle time, over the longest boot."""
+    """Return the drift in percent and jitter in ms of arrival against vehicle time, over the longest boot."""
     if len(pairs) == 0:
         return np.nan, np.nan
     boots, counts = np.unique(pairs[:, 2], return_counts=True)

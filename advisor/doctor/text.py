@@ -94,7 +94,7 @@ class ExaminationText:
 
 
 def _told(limit: Limit) -> list[Text]:
-    """A limit, what to do, and what it costs."""
+    """Return a limit, what to do, and what it costs."""
     lines = [Text(f"  {'✗' if limit.stops else '!'} {limit.text}."), Text(f"    -> {limit.fix}.")]
     worst = sorted(limit.std_ratio.items(), key=lambda item: -item[1])[:3]
     notable = [f"{name} {ratio:.1f}" for name, ratio in worst if ratio >= _NOTABLE_COST]

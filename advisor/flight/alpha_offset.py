@@ -35,7 +35,7 @@ UNKNOWN = AlphaOffset()
 
 
 def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
-    """Mean of α − (θ − γ), its error, and its change, from the climb rate; NaN without one.
+    """Return the mean of α − (θ − γ), its error, and its change, from the climb rate; NaN without one.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
 
 
 def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
-    """One offset for the aircraft from those of its manoeuvres; unknown ones do not count."""
+    """Return one offset for the aircraft from those of its manoeuvres; unknown ones do not count."""
     told = [o for o in offsets if np.isfinite(o.rad)]
     if not told:
         return UNKNOWN
@@ -76,7 +76,7 @@ def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
 
 
 def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> FloatArray | None:
-    """Shape (n,): the logged air speed, else the one given; None without either."""
+    """Return the logged air speed, else the one given, shape (n,); None without either."""
     logged = maneuver.channels.get("airspeed")
     if logged is not None and len(logged) > 1:
         return np.interp(t, logged.t, logged.y)
@@ -84,7 +84,8 @@ def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> Floa
 
 
 def weighted(values: Sequence[float], stds: Sequence[float]) -> tuple[float, float]:
-    """Mean of values by their errors, and its own: wider where they scatter more than each claims."""
+    """Return the mean of values by their errors, and its own: wider where they scatter more than each
+    claims."""
     y, s = np.array(values), np.maximum(np.array(stds), 1e-12)
     w = 1.0 / s**2
     mean = float(np.sum(w * y) / np.sum(w))

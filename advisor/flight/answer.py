@@ -31,7 +31,7 @@ def answers(
     alpha: Channel | None,
     singly: bool = False,
 ) -> list[bool | None]:
-    """Whether a positive deflection of each output lifts the nose; None where it rests or is not sure.
+    """Return whether a positive deflection of each output lifts the nose; None where it rests or is not sure.
 
     Least squares of the pitch rate on the integrals of the elevator, the pitch rate and the angle of attack.
     The elevator is the sum of all outputs, each with either sign; signs that let the roll part of elevons
@@ -77,7 +77,7 @@ def answers(
 
 
 def _fitted(signs: FloatArray, free: FloatArray, left: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Sum of squares that each combination of signs leaves, and the residual of the best.
+    """Return the sum of squares that each combination of signs leaves, and the residual of the best.
 
     Parameters
     ----------
@@ -95,7 +95,8 @@ def _fitted(signs: FloatArray, free: FloatArray, left: FloatArray) -> tuple[Floa
 
 
 def _independent(residual: FloatArray) -> float:
-    """How many independent samples say as much about a mean as these, by their correlation at lag one."""
+    """Return how many independent samples say as much about a mean as these, by their correlation at lag
+    one."""
     power = float(residual @ residual)
     correlation = float(residual[1:] @ residual[:-1]) / power if power > 0.0 else 0.0
     correlation = min(max(correlation, 0.0), 1.0)
@@ -103,6 +104,6 @@ def _independent(residual: FloatArray) -> float:
 
 
 def _integral(at: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
-    """Integral over ``at`` of what has samples ``y`` at ``t``, from its first value."""
+    """Return the integral over ``at`` of what has samples ``y`` at ``t``, from its first value."""
     on = np.interp(at, t, y)
     return integrated(at, on - on[0])

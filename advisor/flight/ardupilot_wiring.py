@@ -33,7 +33,8 @@ WORDS = Words(
 
 
 def ardupilot_wiring(parameters: Parameters) -> Wiring:
-    """The outputs by SERVOn_FUNCTION, MIN, TRIM, MAX and REVERSED; ArduPilot's defaults where unknown."""
+    """Return the outputs by SERVOn_FUNCTION, MIN, TRIM, MAX and REVERSED; ArduPilot's defaults where
+    unknown."""
     functions = {n: parameters[f"SERVO{n}_FUNCTION"] for n in _OUTPUTS if f"SERVO{n}_FUNCTION" in parameters}
     default = Scale()
     return Wiring(

@@ -42,7 +42,7 @@ class AirFlown:
     """What the log's air speed is; one from the aircraft file counts as true."""
 
     def true_speed(self, airspeed_m_s: float) -> float:
-        """True air speed in m/s for an air speed as the log gives it."""
+        """Return the true air speed in m/s for an air speed as the log gives it."""
         if self.speed_kind == "true":
             return airspeed_m_s
         return airspeed_m_s * sqrt(SEA_LEVEL_DENSITY_KG_M3 / self.density_kg_m3)
@@ -65,17 +65,17 @@ class AirFlown:
 
 
 def standard_pressure(height_m: float) -> float:
-    """Pressure of the standard atmosphere in Pa at a height above mean sea level, below 11 km."""
+    """Return the pressure of the standard atmosphere in Pa at a height above mean sea level, below 11 km."""
     return float(_SEA_LEVEL_PA * (1.0 - _LAPSE_K_M * height_m / _SEA_LEVEL_K) ** (_EXPONENT + 1.0))
 
 
 def standard_density(pressure_pa: float) -> float:
-    """Density of the standard atmosphere in kg/m³ where the pressure is this, below 11 km."""
+    """Return the density of the standard atmosphere in kg/m³ where the pressure is this, below 11 km."""
     return float(SEA_LEVEL_DENSITY_KG_M3 * (pressure_pa / _SEA_LEVEL_PA) ** (_EXPONENT / (_EXPONENT + 1.0)))
 
 
 def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None) -> AirFlown:
-    """Mean air of manoeuvres: from static pressure, else from height, else that at sea level.
+    """Return the mean air of manoeuvres: from static pressure, else from height, else that at sea level.
 
     Parameters
     ----------
@@ -103,7 +103,8 @@ def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None)
 
 
 def _mean(maneuvers: Sequence[Maneuver], name: str) -> float | None:
-    """Mean of a channel over the manoeuvres that have the channel with values of real air; None without."""
+    """Return the mean of a channel over the manoeuvres that have the channel with values of real air; None
+    without."""
     low, high = _REAL[name]
     means = [float(np.mean(m.channels[name].y)) for m in maneuvers if name in m.channels]
     real = [mean for mean in means if low <= mean <= high]

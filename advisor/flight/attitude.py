@@ -22,7 +22,7 @@ class Attitudes:
         """Systems and components that have sent an ATTITUDE."""
 
     def of(self, columns: Sequence[Columns]) -> Sequence[Columns]:
-        """The columns, with ATTITUDE from every quaternion that arrived before any ATTITUDE."""
+        """Return the columns, with ATTITUDE from every quaternion that arrived before any ATTITUDE."""
         sent = {_sender(c): c for c in columns if c.name == "ATTITUDE" and len(c)}
         stand_ins: dict[tuple[int, int], Columns] = {}
         for c in columns:
@@ -41,7 +41,7 @@ class Attitudes:
 
 
 def euler_angles(q: FloatArray) -> dict[str, FloatArray]:
-    """Roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
+    """Return the roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
 
     Parameters
     ----------
@@ -61,7 +61,8 @@ def _sender(c: Columns) -> tuple[int, int]:
 
 
 def _as_attitude(c: Columns, rows: int) -> Columns:
-    """The first rows as ATTITUDE; w, x, y, z of ``q1`` to ``q4`` turn north-east-down into body axes."""
+    """Return the first rows as ATTITUDE; w, x, y, z of ``q1`` to ``q4`` turn north-east-down into body
+    axes."""
     fields = {name: values[:rows] for name, values in c.fields.items()}
     angles = euler_angles(np.array([fields[name] for name in _QUATERNION], dtype=np.float64))
     kept = {name: values for name, values in fields.items() if name not in (*_QUATERNION, "repr_offset_q")}
@@ -71,7 +72,7 @@ def _as_attitude(c: Columns, rows: int) -> Columns:
 
 
 def _joined(first: Columns, then: Columns) -> Columns:
-    """Two batches of one type, one after the other."""
+    """Return two batches of one type, one after the other."""
     return replace(
         then,
         order=np.concatenate([first.order, then.order]),

@@ -27,7 +27,7 @@ class Pulses:
     """Shape (m + n, outputs of a bank), us."""
 
     def of(self, outputs: Sequence[int]) -> FloatArray:
-        """Pulses of these outputs, shape (n, number of outputs), us.
+        """Return pulses of these outputs, shape (n, number of outputs), us.
 
         A message of the last bank makes a sample, with the newest pulses of the other banks. NaN: the message
         is of another bank, or an other bank has been silent since the last bank's message before.
@@ -59,7 +59,8 @@ class Pulses:
 
 
 def merged(part: Sequence[Columns]) -> list[Columns]:
-    """The columns with the SERVO_OUTPUT_RAW of one sender in one place, as some logs give them by bank."""
+    """Return the columns with the SERVO_OUTPUT_RAW of one sender in one place, as some logs give them by
+    bank."""
     senders: dict[int, list[Columns]] = {}
     for c in part:
         if c.name == "SERVO_OUTPUT_RAW":
@@ -88,7 +89,8 @@ class Banks:
         self._raw: FloatArray = np.empty((0, _OUTPUTS))
 
     def together(self, columns: Columns) -> Pulses:
-        """The pulses of SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS messages, completed by earlier ones."""
+        """Return the pulses of SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS messages, completed by earlier
+        ones."""
         if columns.name == "ACTUATOR_OUTPUT_STATUS":
             every = np.asarray(columns.fields["actuator"], dtype=np.float64)
             return Pulses(columns, np.zeros(len(every), dtype=np.int64), every)

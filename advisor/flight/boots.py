@@ -26,7 +26,7 @@ class Master:
 def by_boot(
     columns: Sequence[Columns], component: int, clock: BootClock, boot: int
 ) -> Iterator[tuple[list[Columns], Master]]:
-    """The columns of a vehicle, divided where it started anew (nearly always: not at all).
+    """Yield the columns of a vehicle, divided where it started anew (nearly always: not at all).
 
     Parameters
     ----------

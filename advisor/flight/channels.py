@@ -108,7 +108,7 @@ class Decoded:
 
 
 def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
-    """Vehicle time of each message, shape (n,), s since boot; NaN where it has none to believe.
+    """Return the vehicle time of each message, shape (n,), s since boot; NaN where it has none to believe.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
 
 
 def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
-    """Every quantity of ``READINGS`` that these messages carry."""
+    """Yield every quantity of ``READINGS`` that these messages carry."""
     for reading in READINGS:
         if reading.message == columns.name and reading.field in columns.fields:
             y = reading.value(columns.fields[reading.field])
@@ -132,7 +132,7 @@ def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
 
 
 def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
-    """Angle of attack from NAMED_VALUE_FLOAT messages of this name, in the sender's unit."""
+    """Return the angle of attack from NAMED_VALUE_FLOAT messages of this name, in the sender's unit."""
     mine = np.array(
         [raw.rstrip(b"\0") == name.encode() for raw in columns.fields["name"].tolist()], dtype=bool
     )
@@ -141,7 +141,8 @@ def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
 
 
 def given_airspeed(attitude: Columns, t: FloatArray, airspeed_m_s: float) -> Decoded:
-    """The air speed that the aircraft file gives, at the stamps of ATTITUDE, for a log that has none."""
+    """Return the air speed that the aircraft file gives, at the stamps of ATTITUDE, for a log that has
+    none."""
     return _decoded("airspeed", GIVEN_AIRSPEED, "given", t, np.full(len(t), airspeed_m_s), attitude)
 
 

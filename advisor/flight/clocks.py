@@ -85,7 +85,7 @@ class BootClock:
         return MasterStamps(t, boot)
 
     def _believe(self, raw: int) -> int | None:
-        """Unwrapped milliseconds of this stamp, None while it is in doubt."""
+        """Return unwrapped milliseconds of this stamp, None while it is in doubt."""
         if self._newest_ms is None:
             self._newest_ms = raw
             return raw
@@ -141,5 +141,5 @@ def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
 
 
 def _signed(difference_ms: int) -> int:
-    """Difference of two 32-bit stamps, the shorter way round."""
+    """Return the difference of two 32-bit stamps, the shorter way round."""
     return (difference_ms + _WRAP_MS // 2) % _WRAP_MS - _WRAP_MS // 2

@@ -6,7 +6,7 @@ from advisor.flight.messages import FloatArray
 
 
 def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-    """Covariance of a least-squares fit whose residuals are coloured.
+    """Return the covariance of a least-squares fit whose residuals are coloured.
 
     (JᵀJ)⁻¹ (Σ_ij R(i−j) J_iᵀ J_j) (JᵀJ)⁻¹ with the residuals' own autocovariance R, tapered to zero
     at a fifth of the record (Klein & Morelli, Eq. 6.38 f.).

@@ -30,12 +30,12 @@ class Commanded:
     """Shape (n,), place in the order of arrival."""
 
     def combined(self, turned: Iterable[int] = ()) -> Decoded:
-        """The surface's own angle; outputs in ``turned`` count with the other sign."""
+        """Return the surface's own angle; outputs in ``turned`` count with the other sign."""
         y = self.surface.combined(self.angles, turned)
         return Decoded(self.channel, self.source, "commanded", self.t, y, self.order)
 
     def rows(self, which: slice | NDArray[Any]) -> "Commanded":
-        """Some of the samples."""
+        """Return some of the samples."""
         return Commanded(
             self.channel,
             self.message,
@@ -76,7 +76,7 @@ def commanded(
 
 
 def joined(pieces: Sequence[Commanded]) -> Commanded:
-    """Pieces of one surface, one after the other."""
+    """Return pieces of one surface, one after the other."""
     first = pieces[0]
     return Commanded(
         first.channel,

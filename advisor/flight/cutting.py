@@ -56,7 +56,7 @@ class Cutting:
         self._modes.append((since_s, mode))
 
     def so_far(self, span: Span, boot: int) -> Maneuver:
-        """The manoeuvre that would be flown if it ended here."""
+        """Return the manoeuvre that would be flown if it ended here."""
         maneuver = self._cut(span, boot, None)
         return turned(maneuver) if self.is_backwards else maneuver
 
@@ -71,7 +71,7 @@ class Cutting:
         return self._counted(maneuver)
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """A marked stretch is a manoeuvre, whatever the finder would make of it."""
+        """Return a marked stretch is a manoeuvre, whatever the finder would make of it."""
         elevator = self._tracks.cut("elevator", mark.start_s - LEAD_IN_S, mark.end_s, up_to_order)
         return self._counted(self._cut(marked_span(mark, elevator), boot, up_to_order))
 
@@ -88,11 +88,11 @@ class Cutting:
         return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
 
     def pilot_flies(self, at_s: float) -> bool:
-        """Whether the pilot moves the elevator at this time, as far as the flight mode tells."""
+        """Return whether the pilot moves the elevator at this time, as far as the flight mode tells."""
         return not closes_pitch_loop(self._stay(at_s)[1])
 
     def _stay(self, at_s: float) -> tuple[float, str]:
-        """Since when the vehicle was in the flight mode that it had at this time, and the mode."""
+        """Return since when the vehicle was in the flight mode that it had at this time, and the mode."""
         return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
 
     def _cut(self, span: Span, boot: int, up_to_order: int | None) -> Maneuver:
@@ -120,5 +120,6 @@ class Cutting:
 
 
 def _middle_s(span: Span) -> float:
-    """Middle of the movement: a heartbeat tells of a new flight mode only up to two seconds later."""
+    """Return the middle of the movement: a heartbeat tells of a new flight mode only up to two seconds
+    later."""
     return 0.5 * (span.start_s + span.end_s)

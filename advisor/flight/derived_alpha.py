@@ -61,7 +61,7 @@ class DerivedAlpha:
         )
 
     def cut(self, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel:
-        """The angle with ``start_s <= t <= end_s`` from what had arrived by ``up_to_order``."""
+        """Return the angle with ``start_s <= t <= end_s`` from what had arrived by ``up_to_order``."""
         climb = self._track("climb_rate")
         assert climb is not None
         at = climb.cut(start_s, end_s, up_to_order)
@@ -77,7 +77,8 @@ class DerivedAlpha:
 def derived_alpha(
     climb_m_s: FloatArray, airspeed_m_s: FloatArray, theta: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """θ − γ with sin γ = climb rate / air speed, in rad; in a bank, what makes that γ. NaN below flight.
+    """Return θ − γ with sin γ = climb rate / air speed, in rad; in a bank, what makes that γ. NaN below
+    flight.
 
     Parameters
     ----------
@@ -92,7 +93,7 @@ def derived_alpha(
 
 
 def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
-    """Orders of those VFR_HUD that bring an angle, or will once the aircraft flies.
+    """Return orders of those VFR_HUD that bring an angle, or will once the aircraft flies.
 
     No angle of attack can be derived while the aircraft stands, which is no fault of the stream.
 
@@ -115,7 +116,7 @@ def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
 def _angles(
     climb: Channel, around: dict[str, Channel], airspeed_m_s: float | None
 ) -> tuple[FloatArray, FloatArray]:
-    """Stamps and angles where the attitude is known before and after."""
+    """Return stamps and angles where the attitude is known before and after."""
     theta, bank, speed = around.get("theta"), around.get("bank"), around.get("airspeed")
     if theta is None or len(theta) == 0:
         return np.empty(0), np.empty(0)

@@ -67,7 +67,8 @@ class ElevatorGuess:
             self._t, self._pulses = self._t[kept], self._pulses[kept]
 
     def made(self, q: Channel | None) -> Guess | None:
-        """The guess from this stretch of the pitch rate, and the outputs in it; None: none is good enough."""
+        """Return the guess from this stretch of the pitch rate, and the outputs in it; None: none is good
+        enough."""
         if q is None or len(q) < 2:
             return None
         inside = (self._t >= q.t[0]) & (self._t <= q.t[-1])
@@ -128,7 +129,8 @@ class ElevatorGuesses:
 
 
 def _share(rate: FloatArray, moved: FloatArray) -> float:
-    """Share of the error of predicting each sample from the past ones that the past output takes away."""
+    """Return the share of the error of predicting each sample from the past ones that the past output takes
+    away."""
     alone = _left(rate[_MEMORY:], _past(rate))
     both = _left(rate[_MEMORY:], [*_past(rate), *_past(moved)])
     return 1.0 - both / alone if alone > 0.0 else 0.0
@@ -140,7 +142,7 @@ def _past(y: FloatArray) -> list[FloatArray]:
 
 
 def _left(y: FloatArray, regressors: Sequence[FloatArray]) -> float:
-    """Sum of squares that a linear combination of the regressors and a constant leaves."""
+    """Return the sum of squares that a linear combination of the regressors and a constant leaves."""
     columns = np.column_stack([*regressors, np.ones(len(y))])
     solution, *_ = np.linalg.lstsq(columns, y, rcond=None)
     left: float = float(np.sum((y - columns @ solution) ** 2))

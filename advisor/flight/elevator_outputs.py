@@ -23,7 +23,7 @@ _CANCELS = {
 def find_elevator(
     elevator: Elevator, wiring: Wiring, why: str = "as the aircraft file says"
 ) -> Surface | Problem:
-    """Which outputs are the elevator, and their scales.
+    """Return which outputs are the elevator, and their scales.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
 def _carried_over(
     calibration: Pairs, parts: Sequence[Part], kinds: Sequence[str], wiring: Wiring
 ) -> Surface | Problem:
-    """One calibration for all that was found: that of the first output, carried over to the others."""
+    """Return one calibration for all that was found: that of the first output, carried over to the others."""
     first, *others = _numbers(parts)
     if not others:
         return Surface((Part(first, Calibration(calibration)),), True, "")
@@ -158,17 +158,17 @@ def _assumed(wiring: Wiring) -> str:
 
 
 def _is_half(n: int, wiring: Wiring) -> bool:
-    """Whether output ``n`` is known to be one half of a mixed pair."""
+    """Return whether output ``n`` is known to be one half of a mixed pair."""
     return n in wiring.roles and bool(wiring.roles[n].side)
 
 
 def _is_told(n: int, wiring: Wiring) -> bool:
-    """Whether the parameters say which way a pitch demand moves output ``n``."""
+    """Return whether the parameters say which way a pitch demand moves output ``n``."""
     return (wiring.roles.get(n) == ELEVATOR or _is_half(n, wiring)) and n in wiring.told
 
 
 def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
-    """How the outputs make the elevator, in a sentence."""
+    """Return how the outputs make the elevator, in a sentence."""
     shares = [part.share for part in parts]
     if max(shares) - min(shares) < 1e-9:
         made = f"the mean of outputs {joined_numbers(_numbers(parts))}"

@@ -49,7 +49,7 @@ class ElevatorPath:
         self._watch.mode_changed(earliest_s, order)
 
     def so_far(self) -> Maneuver | None:
-        """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
         now = self._watch.newest_s
         marked_s = self._marks.since_s(now)
         onset = self._watch.onset_s if marked_s is None else marked_s

@@ -73,7 +73,7 @@ class ElevatorWatch:
 
 
 def _cut(span: Span, t: float) -> Span:
-    """A movement that had ended before it became known that the mode changed at ``t``."""
+    """Return a movement that had ended before it became known that the mode changed at ``t``."""
     if span.end_s <= t or span.start_s >= t:
         return span
     return replace(span, end_s=max(t, span.last_step_s), closed_by="mode change")

@@ -77,7 +77,8 @@ def excitation(maneuver: Maneuver) -> Excitation | None:
 
 
 def _external(maneuver: Maneuver) -> FloatArray:
-    """The part of the elevator that no linear feedback of the motion explains, at the elevator's stamps."""
+    """Return the part of the elevator that no linear feedback of the motion explains, at the elevator's
+    stamps."""
     elevator, q = maneuver.channels["elevator"], maneuver.channels["q"]
     rate = np.interp(elevator.t, q.t, q.y)
     theta = maneuver.channels.get("theta")
@@ -92,13 +93,13 @@ def _external(maneuver: Maneuver) -> FloatArray:
 
 
 def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
-    """Means of a signal over the intervals between the edges."""
+    """Return means of a signal over the intervals between the edges."""
     means: FloatArray = np.diff(np.interp(edges, t, integrated(t, y))) / np.diff(edges)
     return means
 
 
 def _relative_error(q: FloatArray, elevator: FloatArray) -> float:
-    """Relative standard error of the elevator's effect, from F of the elevator's three terms."""
+    """Return the relative standard error of the elevator's effect, from F of the elevator's three terms."""
     n = len(q) - 2
     own = np.column_stack([q[1:-1], q[:-2], np.ones(n), np.linspace(-1.0, 1.0, n)])
     full = np.column_stack([own, elevator[2:], elevator[1:-1], elevator[:-2]])

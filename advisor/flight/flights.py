@@ -105,16 +105,16 @@ class Flights:
         return tuple(dict.fromkeys((*self._notes, *self.stream.elevator_notes)))
 
     def heard(self, channels: Mapping[str, ChannelStatus], over: bool = False) -> tuple[FlightHeard, ...]:
-        """Every flight so far; ``channels`` are those of the one being heard."""
+        """Return every flight so far; ``channels`` are those of the one being heard."""
         return (*self._past, self._so_far(channels, over))
 
     def so_far(self) -> Maneuver | None:
-        """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
         flying = self.stream.so_far() if self._foreign is None else None
         return flying and replace(flying, number=len(self._found) + 1, flight=self.flight)
 
     def problems(self) -> list[Problem]:
-        """Why none of the flights can be used, as far as they have been heard; empty when one can."""
+        """Return why none of the flights can be used, as far as they have been heard; empty when one can."""
         now = self._problems()
         if not now or any(not past.problems for past in self._past):
             return []
@@ -178,7 +178,7 @@ class Flights:
         return self._name(self.flight)
 
     def _through(self, events: Sequence[FlightEvent]) -> list[FlightEvent]:
-        """The events of one flight as those of the campaign."""
+        """Return the events of one flight as those of the campaign."""
         through: list[FlightEvent] = []
         for event in events:
             match event:
@@ -195,7 +195,7 @@ class Flights:
         return through
 
     def _once(self, maneuver: Maneuver) -> FlightEvent:
-        """A manoeuvre with its number in the campaign, be it new or known."""
+        """Return a manoeuvre with its number in the campaign, be it new or known."""
         for i, known in enumerate(self._found):
             if known.power_on != maneuver.power_on and are_one(maneuver, known):
                 self._again += 1

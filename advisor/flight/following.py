@@ -31,7 +31,8 @@ _ATTITUDES = frozenset({"ATTITUDE", "ATTITUDE_QUATERNION"})
 
 
 def chosen(text: bytes, what: bytes) -> int | None:
-    """Number that a text of the advisor, ``FOLLOW`` or ``TAKE``, gives; None for any other text."""
+    """Return the number that a text of the advisor, ``FOLLOW`` or ``TAKE``, gives; None for any other
+    text."""
     number = text.removeprefix(what)
     return int(number) if text.startswith(what) and number.isdigit() else None
 
@@ -55,7 +56,7 @@ class Following:
     def better(
         self, piece: Sequence[Columns], vehicle: Vehicle, all_heard: Sequence[Vehicle]
     ) -> Vehicle | None:
-        """The vehicle to be followed from this piece on in place of ``vehicle``; None: the same.
+        """Return the vehicle to be followed from this piece on in place of ``vehicle``; None: the same.
 
         Parameters
         ----------

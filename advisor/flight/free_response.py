@@ -72,7 +72,7 @@ class FreeResponse:
         return Ended("next input" if self._parts(left_s) else "same input", left_s)
 
     def _parts(self, left_s: float) -> bool:
-        """Whether the rest until ``left_s`` makes another movement of what follows."""
+        """Return whether the rest until ``left_s`` makes another movement of what follows."""
         movement = self.movement
         rested_s = left_s - movement.over_s
         if rested_s < _parting_s(movement):
@@ -87,7 +87,7 @@ class FreeResponse:
 
 
 def _parting_s(movement: Movement) -> float:
-    """How long the elevator must rest for what follows to be another movement."""
+    """Return how long the elevator must rest for what follows to be another movement."""
     onsets = [onset for onset, _ in movement.steps]
     longest_s = max((b - a for a, b in pairwise(onsets)), default=0.0)
     return min(max(_PARTING_S[0], 0.75 * longest_s), _PARTING_S[1])

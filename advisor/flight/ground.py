@@ -60,7 +60,7 @@ def why_on_ground(span: Span, cut: Cut) -> str | None:
 
 
 def _stands(span: Span, cut: Cut) -> bool:
-    """Whether neither speed shows motion; exactly zero over ground is also what no receiver shows."""
+    """Return whether neither speed shows motion; exactly zero over ground is also what no receiver shows."""
     over_ground = _median("groundspeed", span, cut)
     through_air = _median("airspeed", span, cut)
     if over_ground is None or over_ground >= STANDING_M_S or (through_air or 0.0) > WINDY_M_S:
@@ -81,7 +81,7 @@ def _lately(name: str, span: Span, cut: Cut) -> list[float]:
 
 
 def _median(name: str, span: Span, cut: Cut, at_s: float | None = None) -> float | None:
-    """Median over the movement, or over the second around a time."""
+    """Return the median over the movement, or over the second around a time."""
     start_s, end_s = (span.start_s, span.end_s) if at_s is None else (at_s - 0.5, at_s + 0.5)
     channel = cut(name, start_s, end_s)
     return float(np.median(channel.y)) if channel is not None and len(channel) else None

@@ -83,7 +83,7 @@ class Identity:
         return frozenset(self._finder.others)
 
     def provenance(self, source: str, stated: str) -> str:
-        """Provenance of a channel, as far as the vehicle's identity tells.
+        """Return the provenance of a channel, as far as the vehicle's identity tells.
 
         AOA_SSA is derived from inertial speed and estimated wind on ArduPilot; elsewhere nobody knows.
         """
@@ -201,7 +201,7 @@ class Identity:
         return self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
 
     def _scales_elevator(self) -> bool:
-        """Whether the parameters have changed what the elevator's pulses mean."""
+        """Return whether the parameters have changed what the elevator's pulses mean."""
         return (
             isinstance(self.elevator, Surface)
             and find_elevator(self._elevator, self._wiring()) != self.elevator
@@ -279,5 +279,6 @@ class Identity:
 
 
 def _speakers(vehicle: Vehicle) -> tuple[tuple[int, int], ...]:
-    """Senders (system, component) that state the vehicle's parameters; the vehicle comes last and wins."""
+    """Return senders (system, component) that state the vehicle's parameters; the vehicle comes last and
+    wins."""
     return (vehicle.system, _GROUND_STATION), (vehicle.system, vehicle.component)

@@ -26,7 +26,7 @@ _DRIFT = 2
 def alpha_rate(
     t: FloatArray, alpha: FloatArray, speed: FloatArray, channels: Mapping[str, Channel], arm_m: float = 0.0
 ) -> FloatArray:
-    """Rate of the angle of attack that the motion shows, rad/s, at times ``t`` of the pitch rate.
+    """Return the rate of the angle of attack that the motion shows, rad/s, at times ``t`` of the pitch rate.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def alpha_rate(
 
 
 def inferred_alpha(channels: Mapping[str, Channel], speed: FloatArray) -> Channel | None:
-    """Angle of attack as the motion shows it; None where pitch rate, attitude or a_z is missing.
+    """Return the angle of attack as the motion shows it; None where pitch rate, attitude or a_z is missing.
 
     Parameters
     ----------

@@ -169,7 +169,7 @@ def _compare(
 
 
 def _orthogonal(columns: FloatArray) -> FloatArray:
-    """Orthonormal columns of the same span, without directions that are next to none."""
+    """Return orthonormal columns of the same span, without directions that are next to none."""
     left, size, _ = np.linalg.svd(
         columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False
     )
@@ -177,14 +177,14 @@ def _orthogonal(columns: FloatArray) -> FloatArray:
 
 
 def _told_by(instruments: FloatArray | None, columns: FloatArray) -> FloatArray:
-    """The part of the columns that lies in the instruments' span; all of it without any."""
+    """Return the part of the columns that lies in the instruments' span; all of it without any."""
     return columns if instruments is None else np.asarray(instruments @ (instruments.T @ columns))
 
 
 def _judge(
     lag: float, lag_std: float, scale: float, scale_std: float, explained: float
 ) -> tuple[Finding, str]:
-    """The finding in a word and in a sentence."""
+    """Return the finding in a word and in a sentence."""
     if explained < 0.7:
         share = 100 * max(explained, 0.0)
         return "inconsistent", (
@@ -206,7 +206,7 @@ def _judge(
 
 
 def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:
-    """One check for the aircraft from those of its manoeuvres: means weighted by their errors.
+    """Return one check for the aircraft from those of its manoeuvres: means weighted by their errors.
 
     The scatter between manoeuvres widens the error where it exceeds what each claims.
     """

@@ -52,7 +52,7 @@ class Maneuver:
         return self.flight, self.boot
 
     def later(self, by_s: float) -> "Maneuver":
-        """The same on a clock that shows ``by_s`` more."""
+        """Return the same on a clock that shows ``by_s`` more."""
         span = replace(
             self.span,
             record_from_s=self.span.record_from_s + by_s,

@@ -16,7 +16,7 @@ _BEFORE_S = 0.3
 
 
 def marked_span(mark: Mark, elevator: Channel | None) -> Span:
-    """The span of a marked stretch.
+    """Return the span of a marked stretch.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ class MarkerWatch:
         self._is_on = False
 
     def heard(self, columns: Columns, t: FloatArray) -> Iterator[Switched]:
-        """The beginnings and ends of marks in messages of one type.
+        """Yield the beginnings and ends of marks in messages of one type.
 
         Parameters
         ----------

@@ -44,7 +44,7 @@ class Mark:
     """Which log or link of the campaign, 0 for the first."""
 
     def overlaps(self, start_s: float, end_s: float) -> bool:
-        """Whether the mark shares time with a stretch of the same power-on."""
+        """Return whether the mark shares time with a stretch of the same power-on."""
         return self.start_s < end_s and start_s < self.end_s
 
 
@@ -152,7 +152,7 @@ class Marks:
                 self._close(switched.by, switched.at_s)
 
     def hides(self, span: Span, order: int | None) -> bool:
-        """Whether a span of the finder gives way to a mark, or waits for the end of an open one.
+        """Return whether a span of the finder gives way to a mark, or waits for the end of an open one.
 
         A mark takes the place of the inputs that it touches, not of an input whose free response it ends.
         """
@@ -164,7 +164,7 @@ class Marks:
         return waits
 
     def before(self, span: Span) -> Span:
-        """The span of an input outside of all marks, its free response ended where a mark begins."""
+        """Return the span of an input outside of all marks, its free response ended where a mark begins."""
         begin_s = [m.start_s for m in (*self._waiting, *self._closed)]
         within = [at_s for at_s in begin_s if span.last_step_s <= at_s < span.end_s]
         return replace(span, end_s=min(within), closed_by="next input") if within else span
@@ -175,7 +175,7 @@ class Marks:
         return self._due(ready) if ready or self._held or self._notices else Due()
 
     def finish(self, last_s: float) -> Due:
-        """The power-on ends at ``last_s``, s since boot: a switch that is on ends its mark there.
+        """Return the power-on ends at ``last_s``, s since boot: a switch that is on ends its mark there.
 
         What a hand has begun and not ended is dropped.
         """
@@ -211,7 +211,7 @@ class Marks:
             self._notices.append(refused)
 
     def _refused(self, mark: Mark) -> Notice | None:
-        """Why a mark that has just ended cannot be used; None when it can."""
+        """Return why a mark that has just ended cannot be used; None when it can."""
         length_s = mark.end_s - mark.start_s
         where = f"The mark from {mark.start_s:.1f} to {mark.end_s:.1f} s"
         if not 0.0 < length_s <= LONGEST_S:
@@ -227,7 +227,7 @@ class Marks:
         return None
 
     def problems(self) -> list[Problem]:
-        """Marks that no power-on of the whole stream holds."""
+        """Return marks that no power-on of the whole stream holds."""
         heard = " and ".join(f"{a:.1f} to {b:.1f} s" for a, b in self._heard if np.isfinite(a))
         return [
             Problem(

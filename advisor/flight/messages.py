@@ -44,13 +44,13 @@ class Columns:
 
 
 def arrivals(columns: Columns, order: IntArray) -> FloatArray:
-    """Host time at which the messages with these arrival indices came, shape of ``order``."""
+    """Return the host time at which the messages with these arrival indices came, shape of ``order``."""
     times: FloatArray = columns.arrival_s[np.searchsorted(columns.order, order)]
     return times
 
 
 def cut(columns: Columns, rows: NDArray[np.bool_] | slice) -> Columns:
-    """Some of the messages of one type, in their order of arrival."""
+    """Return some of the messages of one type, in their order of arrival."""
     return replace(
         columns,
         order=columns.order[rows],

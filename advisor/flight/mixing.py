@@ -61,7 +61,7 @@ class Mixing:
         return f"Nothing says which way {moves} the nose; the aircraft's answer in MANUAL decides."
 
     def take(self, new: Commanded, loop_is_closed: bool) -> Iterator[Decoded | Notice]:
-        """The elevator's samples that are known by now, and what was found out on the way.
+        """Yield the elevator's samples that are known by now, and what was found out on the way.
 
         Parameters
         ----------
@@ -87,23 +87,23 @@ class Mixing:
                 yield from self._given_up(float(piece.t[-1]) - _WAIT_S)
 
     def finish(self) -> list[Decoded]:
-        """All that wait, each output with the sign that is known by now."""
+        """Return all that wait, each output with the sign that is known by now."""
         if not self._waiting:
             return []
         waiting, self._waiting = joined(self._waiting), []
         return [waiting.combined(self._turned(waiting.surface))]
 
     def _is_settled(self, surface: Surface) -> bool:
-        """Whether an answer could neither decide nor contradict any more."""
+        """Return whether an answer could neither decide nor contradict any more."""
         is_asked = len(surface.parts) > 1 and (surface.calibrated or surface.unsure)
         return not is_asked or all(n in self._lifts for n in surface.outputs)
 
     def _turned(self, surface: Surface) -> list[int]:
-        """Outputs that count with the other sign: only where nothing else tells the sense of all."""
+        """Return outputs that count with the other sign: only where nothing else tells the sense of all."""
         return [n for n in surface.outputs if self._lifts.get(n, False)] if surface.unsure else []
 
     def _pieces(self, new: Commanded) -> Iterator[tuple[Commanded, bool]]:
-        """The samples up to each time at which the answer is looked for, and whether it is due."""
+        """Yield the samples up to each time at which the answer is looked for, and whether it is due."""
         start = 0
         while start < len(new.t):
             late = np.flatnonzero(new.t[start:] >= self._next_s)

@@ -39,7 +39,7 @@ _COPTERS = frozenset({2, 3, 4, 13, 14, 15, 29, 35})
 
 
 def mode_name(autopilot: str, kind: int, custom: int) -> str:
-    """Flight mode as the autopilot's users know it; an unknown number is shown as it is.
+    """Return the flight mode as the autopilot's users know it; an unknown number is shown as it is.
 
     Parameters
     ----------
@@ -61,22 +61,22 @@ def mode_name(autopilot: str, kind: int, custom: int) -> str:
 
 
 def in_hover(mode: str) -> str:
-    """The mode of a VTOL aircraft whose rotors carry it."""
+    """Return the mode of a VTOL aircraft whose rotors carry it."""
     return mode + _HOVER
 
 
 def hovers(mode: str) -> bool:
-    """Whether rotors carry the aircraft in this mode, as far as the mode is known."""
+    """Return whether rotors carry the aircraft in this mode, as far as the mode is known."""
     return mode in _HOVERING or mode.endswith(_HOVER)
 
 
 def is_manual(mode: str) -> bool:
-    """Whether the pilot moves the elevator directly in this mode."""
+    """Return whether the pilot moves the elevator directly in this mode."""
     return mode in _MANUAL
 
 
 def closes_pitch_loop(mode: str) -> bool:
-    """Whether the autopilot moves the elevator by itself in this mode, as far as the mode is known.
+    """Return whether the autopilot moves the elevator by itself in this mode, as far as the mode is known.
 
     Elevator, angle of attack and pitch rate are then correlated by the loop.
     """
@@ -84,5 +84,5 @@ def closes_pitch_loop(mode: str) -> bool:
 
 
 def has_an_errand(mode: str) -> bool:
-    """Whether the autopilot takes off, lands, returns, circles or hovers by itself in this mode."""
+    """Return whether the autopilot takes off, lands, returns, circles or hovers by itself in this mode."""
     return mode in _ERRANDS or hovers(mode)

@@ -97,7 +97,8 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
 def _steps(
     t: FloatArray, d: FloatArray, extent: tuple[int, int], amplitude: float, level: float, arrival_s: float
 ) -> tuple[tuple[float, float], ...]:
-    """The lobes on either side of trim as steps: onset where half of the way is done, level by the median.
+    """Return the lobes on either side of trim as steps: onset where half of the way is done, level by the
+    median.
 
     Parameters
     ----------
@@ -156,7 +157,7 @@ def _name(t: FloatArray, steps: tuple[tuple[float, float], ...], is_stepped: boo
 
 
 def _is_stepped(t: FloatArray, d: FloatArray, steps: tuple[tuple[float, float], ...]) -> bool:
-    """Whether the elevator keeps to the levels between the steps, or passes through them."""
+    """Return whether the elevator keeps to the levels between the steps, or passes through them."""
     edges = np.searchsorted(t, [onset for onset, _ in steps])
     on = sum(
         int(np.count_nonzero(np.abs(d[i:j] - level) <= 0.12 * abs(level)))

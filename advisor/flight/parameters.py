@@ -20,17 +20,17 @@ Stated = tuple[float, float]
 
 
 def tells_of_outputs(name: str) -> bool:
-    """Whether a parameter is one of those that say what the servo outputs are."""
+    """Return whether a parameter is one of those that say what the servo outputs are."""
     return name.startswith(_PREFIXES)
 
 
 def names_in(columns: Columns) -> list[str]:
-    """Names of the parameters in PARAM_VALUE messages."""
+    """Return names of the parameters in PARAM_VALUE messages."""
     return [raw.rstrip(b"\0").decode("ascii", "replace") for raw in columns.fields["param_id"].tolist()]
 
 
 def read_by(autopilot: str, stated: Stated) -> float:
-    """The value as this autopilot means it."""
+    """Return the value as this autopilot means it."""
     return stated[autopilot == "px4"]
 
 

@@ -17,7 +17,7 @@ _STATES = {"HEARTBEAT": "custom_mode", "EXTENDED_SYS_STATE": "vtol_state"}
 
 
 def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list[Columns]]:
-    """The batch in order of arrival, cut before every change of vehicle, mode or parameter.
+    """Yield the batch in order of arrival, cut before every change of vehicle, mode or parameter.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list
 
 
 def _seconds(columns: Sequence[Columns]) -> list[int]:
-    """Orders of the messages with which a second of arrival begins."""
+    """Return orders of the messages with which a second of arrival begins."""
     order = np.concatenate([c.order for c in columns])
     rows = np.argsort(order)
     second = np.floor(np.concatenate([c.arrival_s for c in columns])[rows])
@@ -51,7 +51,7 @@ def _seconds(columns: Sequence[Columns]) -> list[int]:
 
 
 def between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
-    """Rows with ``first <= order < past``; types without any are left out."""
+    """Return rows with ``first <= order < past``; types without any are left out."""
     found = []
     for c in columns:
         i, j = np.searchsorted(c.order, [first, past])

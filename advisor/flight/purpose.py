@@ -82,7 +82,7 @@ def not_an_input(maneuver: Maneuver, on_ground: str | None = None) -> Because | 
 
 
 def _tells_nothing(maneuver: Maneuver) -> Because | None:
-    """Why the pitch rate cannot show what the elevator does; None where it can, or is not there."""
+    """Return why the pitch rate cannot show what the elevator does; None where it can, or is not there."""
     if maneuver.span.closed_by == "no rest":
         return Because("unsettled", "the elevator never came to rest; not a test input")
     found = excitation(maneuver)
@@ -119,7 +119,7 @@ def _is_on_ground(maneuver: Maneuver) -> bool:
 
 
 def _is_external(maneuver: Maneuver) -> bool:
-    """Whether the elevator moves in sharp steps, which no feedback of the aircraft's motion makes.
+    """Return whether the elevator moves in sharp steps, which no feedback of the aircraft's motion makes.
 
     A step of less than two of the smallest movements is sharp by the resolution of the output.
     """

@@ -75,12 +75,14 @@ class ServoOutput:
 
 
 def banks(parameters: Parameters) -> list[str]:
-    """Groups with an output that has a function: outputs 1 to 16 are of the first, 17 to 32 of the next."""
+    """Return groups with an output that has a function: outputs 1 to 16 are of the first, 17 to 32 of the
+    next."""
     return [group for group in GROUPS if any(parameters.get(f"{group}_FUNC{k}", 0.0) for k in OUTPUTS)]
 
 
 def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
-    """The first output of each servo; servo n on output n + 1 where no function of any output is known."""
+    """Return the first output of each servo; servo n on output n + 1 where no function of any output is
+    known."""
     found: dict[int, ServoOutput] = {}
     for bank, group in enumerate(banks(parameters)):
         for k in OUTPUTS:
@@ -94,7 +96,7 @@ def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
 
 
 def px4_wiring(parameters: Parameters) -> Wiring:
-    """The outputs by the surfaces that they carry, else by what a reader of logs has found."""
+    """Return the outputs by the surfaces that they carry, else by what a reader of logs has found."""
     surfaces = dict(_surfaces(parameters))
     if not surfaces:
         return _followers(parameters)
@@ -108,7 +110,7 @@ def px4_wiring(parameters: Parameters) -> Wiring:
 
 
 def _surfaces(parameters: Parameters) -> Iterator[tuple[int, Role]]:
-    """Servo and role of each surface that is in use."""
+    """Yield servo and role of each surface that is in use."""
     count = int(parameters.get("CA_SV_CS_COUNT", len(_SURFACES)))
     for n in _SURFACES:
         kind = int(parameters.get(f"CA_SV_CS{n}_TYPE", 0.0))
@@ -120,12 +122,12 @@ def _surfaces(parameters: Parameters) -> Iterator[tuple[int, Role]]:
 
 
 def _effect(n: int, axis: str, parameters: Parameters) -> float:
-    """Torque of surface ``n`` in roll, pitch or yaw (R, P, Y); 0 where it is unknown."""
+    """Return the torque of surface ``n`` in roll, pitch or yaw (R, P, Y); 0 where it is unknown."""
     return parameters.get(f"CA_SV_CS{n}_TRQ_{axis}", 0.0)
 
 
 def _turned(output: ServoOutput, role: Role, parameters: Parameters) -> Scale:
-    """Scale of an output by what its surface does about the axis that it is for."""
+    """Return the scale of an output by what its surface does about the axis that it is for."""
     lowers = _effect(output.servo, _AXES.get(role, "P"), parameters) < 0.0
     return replace(output.scale, reversed=output.scale.reversed != lowers)
 

@@ -49,7 +49,7 @@ class Channel:
         return len(self.t)
 
     def cut(self, start_s: float, end_s: float) -> "Channel":
-        """The stretch with ``start_s <= t <= end_s``."""
+        """Return the stretch with ``start_s <= t <= end_s``."""
         i, j = np.searchsorted(self.t, [start_s, np.nextafter(end_s, np.inf)])
         return Channel(self.name, self.t[i:j], self.y[i:j], self.source, self.provenance)
 

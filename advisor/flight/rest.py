@@ -24,7 +24,7 @@ def median(x: FloatArray) -> float:
 
 
 def is_still(u: FloatArray, amplitude: float) -> bool:
-    """Whether the elevator rests over a window, against a movement of this amplitude.
+    """Return whether the elevator rests over a window, against a movement of this amplitude.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def is_still(u: FloatArray, amplitude: float) -> bool:
 
 
 def without_spikes(u: FloatArray) -> FloatArray:
-    """Median of three: one sample alone is no movement."""
+    """Return the median of three: one sample alone is no movement."""
     if len(u) < 3:
         return u
     low, high = np.minimum(u[:-2], u[1:-1]), np.maximum(u[:-2], u[1:-1])

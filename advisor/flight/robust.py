@@ -9,7 +9,8 @@ _MEDIAN = 0.6745
 
 
 def robust_std(departures: FloatArray) -> float:
-    """Standard deviation of normal noise from the median size of its departures, which few outliers move.
+    """Return the standard deviation of normal noise from the median size of its departures, which few
+    outliers move.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ _FEWEST = 10
 
 
 def are_one(a: Maneuver, b: Maneuver) -> bool:
-    """Whether two records, each from a power-on of its own, are of one manoeuvre."""
+    """Return whether two records, each from a power-on of its own, are of one manoeuvre."""
     from_s = max(a.span.start_s, b.span.start_s)
     to_s = min(a.span.end_s, b.span.end_s)
     shorter_s = min(m.span.end_s - m.span.start_s for m in (a, b))
@@ -40,7 +40,8 @@ def are_one(a: Maneuver, b: Maneuver) -> bool:
 
 
 def is_fuller(a: Maneuver, b: Maneuver) -> bool:
-    """Whether ``a`` is the better record of one manoeuvre: marked, or with more samples of elevator and q."""
+    """Return whether ``a`` is the better record of one manoeuvre: marked, or with more samples of elevator
+    and q."""
     return _fullness(a) > _fullness(b)
 
 

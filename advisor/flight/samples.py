@@ -43,15 +43,15 @@ class Samples:
         self.size += 1
 
     def index(self, t: float) -> int:
-        """Index of the first sample at or after ``t``."""
+        """Return the index of the first sample at or after ``t``."""
         return int(np.searchsorted(self.t, t))
 
     def since(self, t: float, until: int | None = None) -> FloatArray:
-        """Values at or after ``t``, up to but without the index ``until``."""
+        """Return values at or after ``t``, up to but without the index ``until``."""
         return self.y[self.index(t) : until]
 
     def interval_s(self) -> float:
-        """Median interval of the newest twenty samples; infinite with fewer than three."""
+        """Return the median interval of the newest twenty samples; infinite with fewer than three."""
         recent = self.t[-20:]
         return float(np.median(np.diff(recent))) if len(recent) > 2 else np.inf
 

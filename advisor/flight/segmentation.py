@@ -100,7 +100,7 @@ class Segmenter:
         return self._drain()
 
     def mode_changed(self, t: float) -> list[Span]:
-        """The flight mode changed, at ``t`` at the earliest: what moved before ends there."""
+        """Return the flight mode changed, at ``t`` at the earliest: what moved before ends there."""
         if self._pending is not None:
             pending = self._pending.movement
             if pending.start_s >= t:
@@ -211,7 +211,7 @@ class Segmenter:
             self._held_since_s = None
 
     def _longest_hold(self, from_s: float, base: float) -> float:
-        """How long the elevator may rest away from trim within a movement, s."""
+        """Return how long the elevator may rest away from trim within a movement, s."""
         u = without_spikes(self._samples.since(from_s))
         low, high = min(base, self._held_rad), max(base, self._held_rad)
         beyond = max(low - float(u.min()), float(u.max()) - high)
@@ -246,7 +246,7 @@ class Segmenter:
             self._end(movement, why, max(at_s, movement.last_step_s))
 
     def _described(self, until: int, rest: FloatArray | None) -> Movement | None:
-        """The movement up to the sample ``until``; None where it is smaller than any input."""
+        """Return the movement up to the sample ``until``; None where it is smaller than any input."""
         begin, base = self._rest_before(until)
         if until - begin < 3:
             return None
@@ -255,7 +255,7 @@ class Segmenter:
         return movement if movement is not None and movement.amplitude >= SMALLEST_RAD else None
 
     def _rest_before(self, until: int) -> tuple[int, float]:
-        """Where the elevator last rested before it went far, and its level there."""
+        """Return where the elevator last rested before it went far, and its level there."""
         samples, base = self._samples, self._base or 0.0
         begin = samples.index(self._moved_from_s or 0.0)
         far = np.flatnonzero(np.abs(samples.y[begin:until] - base) > _FAR * self._amplitude)

@@ -37,7 +37,7 @@ class SenderWatch:
                 self._stamp_s = np.concatenate((self._stamp_s, stamps))
 
     def problem(self, system: int, now_s: float) -> Problem | None:
-        """Two senders at this time of arrival; None where the clock is that of one."""
+        """Return two senders at this time of arrival; None where the clock is that of one."""
         lately = (self._arrival_s > now_s - WINDOW_S) & (self._arrival_s <= now_s)
         steps = np.diff(self._stamp_s[lately])
         kept = self._arrival_s > now_s - WINDOW_S

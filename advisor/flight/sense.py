@@ -33,7 +33,7 @@ class Sense:
         """What was found; None before a manoeuvre has told."""
 
     def right(self, maneuver: Maneuver) -> tuple[Maneuver, list[Notice]]:
-        """The manoeuvre with the elevator the right way round; a notice where that is found out."""
+        """Return the manoeuvre with the elevator the right way round; a notice where that is found out."""
         found = []
         if self.backwards is None:
             self.backwards = answers_backwards(maneuver)
@@ -43,7 +43,7 @@ class Sense:
 
 
 def turned(maneuver: Maneuver) -> Maneuver:
-    """The manoeuvre with the elevator's deflections the other way round."""
+    """Return the manoeuvre with the elevator's deflections the other way round."""
     elevator = maneuver.channels["elevator"]
     span = replace(
         maneuver.span,
@@ -56,7 +56,7 @@ def turned(maneuver: Maneuver) -> Maneuver:
 
 
 def answers_backwards(maneuver: Maneuver) -> bool | None:
-    """Whether a trailing edge that goes down lifts the nose, M_δe > 0; None where that is not sure.
+    """Return whether a trailing edge that goes down lifts the nose, M_δe > 0; None where that is not sure.
 
     Least squares of the pitch rate on the integrals of elevator, pitch rate and angle of attack.
     """

@@ -105,7 +105,7 @@ class Service:
         return [] if standing < told else [NoData(found)]
 
     def _lately(self, now_s: float) -> dict[str, ChannelStatus]:
-        """How every channel arrived within the window, from its fastest source."""
+        """Return how every channel arrived within the window, from its fastest source."""
         found: dict[str, ChannelStatus] = {}
         for (channel, source), times in self._arrivals.items():
             newest = [t for t in times if now_s - WINDOW_S < t <= now_s]

@@ -168,7 +168,7 @@ class FlightStream:
         }
 
     def problems(self) -> list[Problem]:
-        """Why this stream cannot be used, as far as it has been heard; empty when it can."""
+        """Return why this stream cannot be used, as far as it has been heard; empty when it can."""
         flown = self._cutting
         found = problems(
             self.vehicle,
@@ -221,11 +221,11 @@ class FlightStream:
         return self._who.distrusts(frozen(ranges))
 
     def recent(self, name: str, seconds: float) -> Channel | None:
-        """The newest stretch of a channel; None when nothing of it has arrived."""
+        """Return the newest stretch of a channel; None when nothing of it has arrived."""
         return self._tracks.recent(name, seconds)
 
     def so_far(self) -> Maneuver | None:
-        """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
         return self._path.so_far()
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
@@ -251,7 +251,7 @@ class FlightStream:
         return events
 
     def _power_on(self) -> PowerOn:
-        """Everything that was heard since the vehicle's clock began."""
+        """Return everything that was heard since the vehicle's clock began."""
         found = {name: self._tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
         channels = {
             name: replace(c, provenance=self._who.provenance(c.source, c.provenance))
@@ -265,12 +265,12 @@ class FlightStream:
         return PowerOn(self.boot, channels, order, t)
 
     def _at_best(self) -> dict[str, ChannelStatus]:
-        """How each channel arrived when it arrived fastest, over all power-ons."""
+        """Return how each channel arrived when it arrived fastest, over all power-ons."""
         now = {name: status.at_best(self._past.get(name)) for name, status in self._tracks.statuses().items()}
         return {**self._past, **now}
 
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Columns within which neither vehicle nor parameters nor mode change."""
+        """Return columns within which neither vehicle nor parameters nor mode change."""
         mode = self._who.mode
         flown = self._cutting.maneuvers > self._flown_before
         events = self._who.learn(piece, self._master_s, flown)
@@ -315,7 +315,7 @@ class FlightStream:
         return events
 
     def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
-        """Columns of one boot: channels first, then the elevator sample by sample."""
+        """Return columns of one boot: channels first, then the elevator sample by sample."""
         self._tracks.forget(max(self._path.newest_s, self._master_s) - self._keep_s)
         orders = np.concatenate(([-1], master.order))
         # A late ATTITUDE says when it was, not what the time is.

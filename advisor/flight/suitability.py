@@ -37,7 +37,7 @@ def problems(
     still: Collection[Distrust] = (),
     seen: Collection[str] = (),
 ) -> list[Problem]:
-    """Everything that keeps a stream from being used, the most fundamental first.
+    """Return everything that keeps a stream from being used, the most fundamental first.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def problems(
 
 
 def with_guess(problem: Problem, guess: Guess) -> Problem:
-    """The problem that nothing says which output is the elevator, with a guess; any other as it is."""
+    """Return the problem that nothing says which output is the elevator, with a guess; any other as it is."""
     if problem.code != "no_elevator":
         return problem
     return Problem(problem.code, problem.text, f"{problem.fix.rstrip('.')}; {guess}.")
@@ -172,7 +172,7 @@ def _missing(
 
 
 def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
-    """Channels whose messages came, though nothing could be placed in time."""
+    """Return channels whose messages came, though nothing could be placed in time."""
     sources = {reading.channel: reading.message for reading in READINGS if reading.message in seen}
     if not {"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"}.isdisjoint(seen):
         sources["elevator"] = "SERVO_OUTPUT_RAW"
@@ -184,7 +184,7 @@ def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
 def _not_logged(
     elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
 ) -> list[Problem]:
-    """All that a log of the autopilot's own lacks, in one problem."""
+    """Return all that a log of the autopilot's own lacks, in one problem."""
     lacks: dict[str, tuple[str, str]] = {}
     if "q" not in channels:
         lacks["no_pitch_rate"] = ("pitch rate", "ATTITUDE")
@@ -208,7 +208,7 @@ def _not_logged(
 
 
 def motion_stands_in(channels: Collection[str]) -> bool:
-    """Whether an estimate needs no angle of attack: specific force, air speed and attitude arrive."""
+    """Return whether an estimate needs no angle of attack: specific force, air speed and attitude arrive."""
     return all(name in channels for name in _MOTION)
 
 
@@ -235,5 +235,5 @@ def _at(rate_hz: float) -> str:
 
 
 def _message(status: ChannelStatus) -> str:
-    """Name of the message that sets the rate of a channel."""
+    """Return the name of the message that sets the rate of a channel."""
     return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]

@@ -29,7 +29,7 @@ class Scale:
     reversed: bool = False
 
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
-        """Surface angle in rad, trailing edge down positive, clipped at the ends."""
+        """Return the surface angle in rad, trailing edge down positive, clipped at the ends."""
         up = np.interp(pwm_us, [self.low_us, self.trim_us, self.high_us], [-1.0, 0.0, 1.0])
         return np.asarray((_FULL_STROKE_RAD if self.reversed else -_FULL_STROKE_RAD) * up)
 
@@ -41,12 +41,13 @@ class Calibration:
     pairs: tuple[tuple[float, float], ...]
 
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
-        """Surface angle in rad, trailing edge down positive, held at the last pair beyond the ends."""
+        """Return the surface angle in rad, trailing edge down positive, held at the last pair beyond the
+        ends."""
         pwm, deg = zip(*sorted(self.pairs), strict=True)
         return np.asarray(np.radians(np.interp(pwm_us, pwm, deg)))
 
     def carried_over(self, measured: Scale, other: Scale) -> "Calibration":
-        """This calibration for an output of the same linkage: counted from TRIM, turned by REVERSED.
+        """Return this calibration for an output of the same linkage: counted from TRIM, turned by REVERSED.
 
         Parameters
         ----------
@@ -104,7 +105,7 @@ class Surface:
         return np.stack(columns, axis=1)
 
     def combined(self, angles: FloatArray, turned: Iterable[int] = ()) -> FloatArray:
-        """Surface angle in rad, shape (n,), from what each output commands.
+        """Return the surface angle in rad, shape (n,), from what each output commands.
 
         Parameters
         ----------
@@ -120,12 +121,12 @@ class Surface:
         return total
 
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
-        """Surface angle in rad from pulses of shape (n, number of outputs)."""
+        """Return the surface angle in rad from pulses of shape (n, number of outputs)."""
         return self.combined(self.angles(pwm_us))
 
 
 def driven(pwm_us: FloatArray, autopilot: str) -> NDArray[np.bool_]:
-    """Rows in which every output carries a pulse: 0, 65535 and NaN mean none, on PX4 900 too."""
+    """Return rows in which every output carries a pulse: 0, 65535 and NaN mean none, on PX4 900 too."""
     alive = (pwm_us > 0) & (pwm_us < 65535)
     if autopilot == "px4":
         alive &= pwm_us != _UNUSED_PX4
@@ -133,17 +134,17 @@ def driven(pwm_us: FloatArray, autopilot: str) -> NDArray[np.bool_]:
 
 
 def in_shares(parts: Iterable[Part]) -> tuple[Part, ...]:
-    """The parts of one surface, in the order of their outputs, with shares that sum to 1."""
+    """Return the parts of one surface, in the order of their outputs, with shares that sum to 1."""
     ordered = sorted(parts, key=lambda part: part.output)
     total = sum(part.share for part in ordered)
     return tuple(replace(part, share=part.share / total) for part in ordered)
 
 
 def joined_numbers(outputs: Sequence[int]) -> str:
-    """Outputs as a sentence lists them: ``1``, ``1 and 2``, ``1, 2 and 3``."""
+    """Return outputs as a sentence lists them: ``1``, ``1 and 2``, ``1, 2 and 3``."""
     return listed([str(n) for n in outputs])
 
 
 def listed(words: Sequence[str]) -> str:
-    """Words as a sentence lists them."""
+    """Return words as a sentence lists them."""
     return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))

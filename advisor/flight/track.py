@@ -29,7 +29,8 @@ class ChannelStatus:
     """Largest value since boot, SI."""
 
     def at_best(self, earlier: "ChannelStatus | None" = None) -> "ChannelStatus":
-        """The status with the rate of the best ten seconds, and the range, of this source in all boots.
+        """Return the status with the rate of the best ten seconds, and the range, of this source in all
+        boots.
 
         Parameters
         ----------
@@ -89,7 +90,7 @@ class Track:
         self._keep_from_s = before_s
 
     def cut(self, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel:
-        """The samples with ``start_s <= t <= end_s`` that had arrived by ``up_to_order``."""
+        """Return the samples with ``start_s <= t <= end_s`` that had arrived by ``up_to_order``."""
         t, y = self._t[: self._size], self._y[: self._size]
         wanted = (t >= start_s) & (t <= end_s)
         if up_to_order is not None:

@@ -65,7 +65,7 @@ class Distrust:
 
 
 def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
-    """Channels that stand still while the pitch angle or the pitch rate shows that the aircraft moves.
+    """Return channels that stand still while the pitch angle or the pitch rate shows that the aircraft moves.
 
     Parameters
     ----------
@@ -84,7 +84,8 @@ def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
 
 
 def distrusted(channels: Mapping[str, Channel]) -> list[Distrust]:
-    """Channels of one stretch of flight that cannot be right; empty where nothing speaks against any."""
+    """Return channels of one stretch of flight that cannot be right; empty where nothing speaks against
+    any."""
     told = {name: c for name, c in channels.items() if len(c) >= _LEAST_SAMPLES}
     found = frozen({name: (float(np.min(c.y)), float(np.max(c.y))) for name, c in told.items()})
     if found or not {"q", "theta"} <= told.keys() or told["q"].largest_gap_s > _LONGEST_GAP_S:
@@ -103,7 +104,8 @@ def _stands_still(name: str, value: float) -> Distrust:
 
 
 def _angle_over_rate(channels: Mapping[str, Channel]) -> float | None:
-    """Regression of the pitch angle on the integral of the rates that make it; None where it hardly moves.
+    """Return the regression of the pitch angle on the integral of the rates that make it; None where it
+    hardly moves.
 
     The pitch angle's rate is q cos φ − r sin φ. Offsets and drifts of both are left out of account.
     """
@@ -119,6 +121,6 @@ def _angle_over_rate(channels: Mapping[str, Channel]) -> float | None:
 
 
 def _level(t: FloatArray, y: FloatArray) -> FloatArray:
-    """Values without their mean and their trend."""
+    """Return values without their mean and their trend."""
     s = t - t.mean()
     return np.asarray(y - y.mean() - s * float(s @ y) / float(s @ s))

@@ -43,12 +43,12 @@ class Vehicle:
         return mends_of(self.autopilot, self.carrier)
 
     def with_firmware(self, firmware: str) -> "Vehicle":
-        """The same vehicle, its version known."""
+        """Return the same vehicle, its version known."""
         return replace(self, firmware=firmware)
 
 
 def is_aircraft(autopilot: int, kind: int) -> bool:
-    """Whether a heartbeat with this MAV_AUTOPILOT and MAV_TYPE is that of a vehicle."""
+    """Return whether a heartbeat with this MAV_AUTOPILOT and MAV_TYPE is that of a vehicle."""
     return autopilot != _AUTOPILOT_INVALID and kind not in _PERIPHERALS
 
 

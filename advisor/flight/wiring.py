@@ -58,15 +58,15 @@ class Wiring:
     """What of the roles is a guess, in a sentence."""
 
     def scale(self, n: int) -> Scale:
-        """Scale of output ``n``; where no parameter tells, that of ArduPilot's defaults."""
+        """Return the scale of output ``n``; where no parameter tells, that of ArduPilot's defaults."""
         return self.scales.get(n, Scale())
 
     def outputs_of(self, role: Role) -> list[int]:
-        """Outputs that have this role, rising."""
+        """Return outputs that have this role, rising."""
         return sorted(n for n, mine in self.roles.items() if mine == role)
 
     def surface(self, role: Role) -> Surface | None:
-        """The surface of the outputs with this role; None when no parameter says, or in two banks."""
+        """Return the surface of the outputs with this role; None when no parameter says, or in two banks."""
         outputs = self.outputs_of(role)
         surface = Surface(in_shares([Part(n, self.scale(n)) for n in outputs]), False, "")
         return surface if len(surface.ports) == 1 else None

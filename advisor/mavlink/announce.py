@@ -15,7 +15,7 @@ SPOKEN = "@"
 
 
 def status_text(text: str, number: int) -> list[Any]:
-    """One sentence as STATUSTEXT messages.
+    """Return one sentence as STATUSTEXT messages.
 
     MAVLink, STATUSTEXT: a text longer than 50 bytes is sent in chunks that share an id
     other than 0; the chunk that is not full ends it. Texts are cut to ``MOST_CHUNKS``
@@ -75,11 +75,11 @@ class Announcer(Talker):
         self._waiting.append(SPOKEN + sentence)
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:
-        """A computer on board: ground stations show texts of their vehicle's system only."""
+        """Return a computer on board: ground stations show texts of their vehicle's system only."""
         return vehicle[0], dialect.MAV_COMP_ID_ONBOARD_COMPUTER
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """The next text that waits, once there is a vehicle whose link it can take."""
+        """Return the next text that waits, once there is a vehicle whose link it can take."""
         if vehicle is None or not self._waiting:
             return []
         self._number += 1

@@ -28,7 +28,7 @@ class Air:
 
 
 def air(tables: Mapping[str, Table], interrupted: bool) -> Air:
-    """The air data in these records.
+    """Return the air data in these records.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def air(tables: Mapping[str, Table], interrupted: bool) -> Air:
 def _airspeed(
     tables: Mapping[str, Table], interrupted: bool
 ) -> tuple[list[dict[str, NDArray[Any]]], list[Said]]:
-    """The air speed of the best record, and of the next one where no sensor was healthy."""
+    """Return the air speed of the best record, and of the next one where no sensor was healthy."""
     sources = [
         (tables[name], field)
         for name, field in _AIR_SPEED.items()
@@ -77,7 +77,7 @@ def _airspeed(
 
 
 def _first(tables: Mapping[str, Table], places: Iterable[tuple[str, str]]) -> tuple[Table, FloatArray] | None:
-    """The first record that has its field, and the values of the field; None where none has."""
+    """Return the first record that has its field, and the values of the field; None where none has."""
     for name, field in places:
         if name in tables and field in tables[name].fields:
             table = tables[name].first_instance()
@@ -86,7 +86,7 @@ def _first(tables: Mapping[str, Table], places: Iterable[tuple[str, str]]) -> tu
 
 
 def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
-    """Which of the other times lie further from all times than three of these are apart."""
+    """Return which of the other times lie further from all times than three of these are apart."""
     if len(time_us) < 2:
         return np.ones(len(other_us), dtype=np.bool_)
     apart_us = np.abs(other_us - time_us[nearest(other_us, time_us)])

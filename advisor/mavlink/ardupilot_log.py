@@ -56,7 +56,7 @@ _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
-    """The messages of a ``.bin``, or of PX4's ``.px4log`` in its container, in one batch.
+    """Yield the messages of a ``.bin``, or of PX4's ``.px4log`` in its container, in one batch.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
 
 
 def _believable(table: Table) -> Table:
-    """The fields that hold what their names say: damage to a definition makes a number a text."""
+    """Return the fields that hold what their names say: damage to a definition makes a number a text."""
     fields = {
         name: values
         for name, values in table.fields.items()
@@ -96,7 +96,7 @@ def _believable(table: Table) -> Table:
 
 
 def _batch(columns: Iterator[Columns], names: set[str] | None) -> Iterator[list[Columns]]:
-    """All wanted messages in one batch; none where there are none."""
+    """Yield all wanted messages in one batch; none where there are none."""
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
         wanted = [c for c in columns if len(c) and (names is None or c.name in names)]
     if wanted:
@@ -146,7 +146,7 @@ class _Translation:
         yield self._statustext()
 
     def _message(self, name: str, table: Table, fields: dict[str, ArrayLike], place: int = 0) -> Columns:
-        """A message made of each record; ``place`` keeps several made of one record in order."""
+        """Return a message made of each record; ``place`` keeps several made of one record in order."""
         return self._made(name, table.order + place, table.time_us, fields)
 
     def _made(self, name: str, order: IntArray, time_us: IntArray, fields: dict[str, ArrayLike]) -> Columns:
@@ -154,7 +154,7 @@ class _Translation:
         return message(name, self._system, order, arrival_s, fields, "dataflash")
 
     def _attitude(self) -> Iterator[Columns]:
-        """Angles at the stamps of ATT, rates at those of their own records."""
+        """Yield angles at the stamps of ATT, rates at those of their own records."""
         blocks: list[tuple[IntArray, IntArray, NDArray[np.float64]]] = []
         if "ATT" in self._tables:
             att = self._tables["ATT"]
@@ -195,7 +195,7 @@ class _Translation:
         return self._message("AOA_SSA", aoa, {"time_usec": aoa.time_us, **angles})
 
     def _servo_outputs(self) -> Iterator[Columns]:
-        """RCOU has outputs 1 to 14, RCO2 15 to 18, RCO3 19 to 32; each bank of 16 is one message."""
+        """Yield RCOU has outputs 1 to 14, RCO2 15 to 18, RCO3 19 to 32; each bank of 16 is one message."""
         pulses: dict[int, NDArray[Any]] = {}
         if "RCOU" not in self._tables:
             return
@@ -229,7 +229,7 @@ class _Translation:
         return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
     def _vfr_hud(self) -> Iterator[Columns]:
-        """Air speed, climb rate and throttle, each at the stamps of its own record."""
+        """Yield the air speed, climb rate and throttle, each at the stamps of its own record."""
         found = air(self._tables, "ARSP" in self._interrupted)
         self._said += found.said
         if found.records:
@@ -248,7 +248,7 @@ class _Translation:
         return self._message("GLOBAL_POSITION_INT", pos, fields)
 
     def _statustext(self) -> Columns:
-        """The vehicle's own texts, and what was chosen in reading the log."""
+        """Return the vehicle's own texts, and what was chosen in reading the log."""
         msg = self._tables.get("MSG")
         own = [] if msg is None else zip(msg.order, msg.time_us, msg.fields["Message"].tolist(), strict=True)
         # A record's own messages take its place and the one after it.

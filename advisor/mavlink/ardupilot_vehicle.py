@@ -29,7 +29,7 @@ _MIXERS = ("ELEVON_MIXING", "ELEVON_OUTPUT", "VTAIL_OUTPUT")
 
 
 def system_of(tables: Mapping[str, Table]) -> int:
-    """System id as the parameters give it, under its old or its new name."""
+    """Return the system id as the parameters give it, under its old or its new name."""
     for name, value in _parameters(tables):
         if name in (b"SYSID_THISMAV", b"MAV_SYSID"):
             return system_id(value)
@@ -37,7 +37,7 @@ def system_of(tables: Mapping[str, Table]) -> int:
 
 
 def heartbeats(tables: Mapping[str, Table]) -> tuple[IntArray, IntArray, dict[str, ArrayLike]]:
-    """One before everything else, so that the vehicle is known, and two at each change of mode.
+    """Return one before everything else, so that the vehicle is known, and two at each change of mode.
 
     A log tells of a change when it happens. The mode of before lasted until then, which the first of the
     two says: heard once a second, as over a link, it may have ended any time since the heartbeat before.
@@ -65,7 +65,7 @@ def heartbeats(tables: Mapping[str, Table]) -> tuple[IntArray, IntArray, dict[st
 
 
 def parameter_fields(parm: Table) -> dict[str, ArrayLike]:
-    """The fields of PARAM_VALUE."""
+    """Return the fields of PARAM_VALUE."""
     return {
         "param_id": parm.fields["Name"],
         "param_value": parm.fields["Value"],
@@ -76,7 +76,7 @@ def parameter_fields(parm: Table) -> dict[str, ArrayLike]:
 
 
 def in_todays_parameters(parm: Table) -> Table:
-    """The parameters; those of outputs under today's names in firmware older than SERVOn_FUNCTION."""
+    """Return the parameters; those of outputs under today's names in firmware older than SERVOn_FUNCTION."""
     names = [bytes(name) for name in parm.fields["Name"].tolist()]
     if any(name.startswith(b"SERVO") and name.endswith(b"_FUNCTION") for name in names):
         return parm
@@ -116,7 +116,7 @@ def _stick_functions(stored: Mapping[str, float]) -> dict[bytes, float]:
 
 
 def version_fields(ver: Table) -> dict[str, ArrayLike]:
-    """The fields of AUTOPILOT_VERSION."""
+    """Return the fields of AUTOPILOT_VERSION."""
     major, minor, patch, kind = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))
     return {"flight_sw_version": major << 24 | minor << 16 | patch << 8 | kind}
 

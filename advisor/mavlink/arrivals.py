@@ -54,7 +54,7 @@ COUNT = 256
 
 @kernel()
 def _heard_ago(packets: Ints, newest: Ints, sequence: int, mark: int, now_us: int) -> int:
-    """How long ago, us, a packet was heard; -1: not within ``REPEAT_US``."""
+    """Return how long ago, us, a packet was heard; -1: not within ``REPEAT_US``."""
     number = newest[sequence]
     while number > newest[COUNT] - PACKETS and number > 0:
         row = number % PACKETS
@@ -69,7 +69,7 @@ def _heard_ago(packets: Ints, newest: Ints, sequence: int, mark: int, now_us: in
 
 @kernel()
 def _has_path(senders: Ints, source: int, now_us: int) -> bool:
-    """Whether a second path was heard lately."""
+    """Return whether a second path was heard lately."""
     return bool(senders[source, _ECHO_RUN] > 0 and 0 <= now_us - senders[source, _ECHO_US] <= _PATH_US)
 
 
@@ -77,7 +77,7 @@ def _has_path(senders: Ints, source: int, now_us: int) -> bool:
 def _is_heard_again(
     senders: Ints, packets: Ints, newest: Ints, source: int, sequence: int, mark: int, now_us: int
 ) -> bool:
-    """Whether a packet was heard before; the second path then stands at the packet.
+    """Return whether a packet was heard before; the second path then stands at the packet.
 
     Without a second path, what a vehicle says again with its next sequence number is news.
     """
@@ -99,7 +99,7 @@ def _is_heard_again(
 
 @kernel()
 def _is_overtaken(senders: Ints, source: int, sequence: int, now_us: int) -> bool:
-    """Whether a packet that is no repeat came by the late path, after younger ones by the first."""
+    """Return whether a packet that is no repeat came by the late path, after younger ones by the first."""
     if senders[source, _ECHO_RUN] < _RUN or not _has_path(senders, source, now_us):
         return False
     ahead = (sequence - senders[source, NEWEST] - 1) & 0xFF

@@ -53,7 +53,7 @@ class Aside(Talker):
             self._transport = None
 
     def report(self) -> list[str]:
-        """Whether the connection could be opened, once."""
+        """Return whether the connection could be opened, once."""
         said, self._said = self._said, []
         return said
 

@@ -43,7 +43,8 @@ class Rates:
 
 
 def body_rates(tables: Mapping[str, Table]) -> Rates | None:
-    """The rates of IMU, else GYR, PIDP, RATE, else those by which the angles of ATT change; None without."""
+    """Return the rates of IMU, else GYR, PIDP, RATE, else those by which the angles of ATT change; None
+    without."""
     if "IMU" in tables:
         return _read(tables["IMU"], ("GyrX", "GyrY", "GyrZ"), 1.0, "")
     if "GYR" in tables:
@@ -58,7 +59,7 @@ def body_rates(tables: Mapping[str, Table]) -> Rates | None:
 
 
 def gyro_delay_s(parm: Table | None) -> float:
-    """How late the autopilot's gyro readings are at the frequencies of flight, s.
+    """Return how late the autopilot's gyro readings are at the frequencies of flight, s.
 
     That of a second-order Butterworth low-pass, √2 / (2π f), with f of INS_GYRO_FILTER; 11 ms at 20 Hz, where
     12 ms were measured in a log of ArduPlane 4.5 (logs/arduplane-calm.tlog).
@@ -71,7 +72,7 @@ def gyro_delay_s(parm: Table | None) -> float:
 
 
 def calmed(table: Table) -> Table:
-    """Records of the first of several raw sensors, as means of so many that no more than
+    """Return records of the first of several raw sensors, as means of so many that no more than
     ``FASTEST_SAMPLES_HZ`` remain."""
     table = table.first_instance()
     steps_us = np.diff(table.time_us)
@@ -95,14 +96,14 @@ def _read(table: Table, fields: tuple[str | None, str | None, str | None], scale
 
 
 def _stands_still(pid: Table) -> bool:
-    """Whether the controller's rate ever stands still for ``_FROZEN_S``."""
+    """Return whether the controller's rate ever stands still for ``_FROZEN_S``."""
     moved = np.flatnonzero(np.diff(pid.fields["Act"]) != 0.0) + 1
     edges_us = pid.time_us[np.concatenate(([0], moved, [len(pid) - 1]))]
     return bool(np.max(np.diff(edges_us)) > 1e6 * _FROZEN_S)
 
 
 def _from_angles(att: Table, delay_s: float) -> Rates | None:
-    """Rates from the change of the angles from record to record, as late as the gyro's would be.
+    """Return rates from the change of the angles from record to record, as late as the gyro's would be.
 
     The angle of attack is late, too: beside a rate that is not, derivatives come out wrong by half.
     """

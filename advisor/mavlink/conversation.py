@@ -82,7 +82,7 @@ class Conversation:
         ]
 
     def note(self, text: bytes, unix_s: float) -> bytes:
-        """A text of the advisor for its own stream alone, as a frame; nothing goes on the air."""
+        """Return a text of the advisor for its own stream alone, as a frame; nothing goes on the air."""
         message = dialect.MAVLink_statustext_message(dialect.MAV_SEVERITY_INFO, text)
         return self._packer.pack(message, self._own, signing_time(unix_s))
 

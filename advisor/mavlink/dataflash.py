@@ -69,7 +69,7 @@ class Table:
         return np.asarray(self.fields["TimeUS"], dtype=np.int64)
 
     def first_instance(self) -> "Table":
-        """The records of the first of several like sensors or estimators."""
+        """Return the records of the first of several like sensors or estimators."""
         for name in ("I", "C"):
             if name in self.fields:
                 return self[self.fields[name] == 0]
@@ -80,7 +80,7 @@ class Table:
 
 
 def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
-    """The records of the named types, as the log has them; those that do not occur are left out."""
+    """Return the records of the named types, as the log has them; those that do not occur are left out."""
     stream = np.fromfile(path, dtype=np.uint8)
     starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
     starts = starts[: scan_records(stream, starts)]
@@ -106,7 +106,7 @@ def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
 
 
 def first_definition(beginning: bytes) -> int:
-    """Where the first FMT record begins that another record follows; -1 for none."""
+    """Return where the first FMT record begins that another record follows; -1 for none."""
     at = beginning.find(_DEFINITION)
     while at >= 0 and beginning[at + _FMT_LENGTH : at + _FMT_LENGTH + len(HEADER)] != HEADER:
         at = beginning.find(_DEFINITION, at + 1)
@@ -114,7 +114,7 @@ def first_definition(beginning: bytes) -> int:
 
 
 def gps_time_base_s(gps: Table | None) -> float:
-    """Seconds since 1970 at boot, from the first fix with a GPS week; 0 when there is none."""
+    """Return seconds since 1970 at boot, from the first fix with a GPS week; 0 when there is none."""
     if gps is None:
         return 0.0
     known = np.flatnonzero(gps.fields["GWk"] > 0)
@@ -127,7 +127,7 @@ def gps_time_base_s(gps: Table | None) -> float:
 
 
 def _layout(definition: Any) -> tuple["np.dtype[np.void] | None", list[float | None]]:
-    """How records of a type are laid out, and the divisors of their fields; None when unreadable."""
+    """Return how records of a type are laid out, and the divisors of their fields; None when unreadable."""
     characters = definition["format"].decode("ascii", "replace")
     names = definition["columns"].decode("ascii", "replace").split(",")
     if (
@@ -185,5 +185,5 @@ def scan_records(stream: NDArray[np.uint8], starts: IntArray) -> int:
 
 
 def seconds(time_us: IntArray) -> FloatArray:
-    """Microseconds as seconds."""
+    """Return microseconds as seconds."""
     return time_us.astype(np.float64) * 1e-6

@@ -31,14 +31,15 @@ class Decoding:
         self._followed: Ids | None = None
 
     def feed(self, records: bytes) -> list[Columns]:
-        """The messages of these records."""
+        """Return the messages of these records."""
         columns = self._scanner.feed(records)
         for piece in pieces(columns, by_second=True):
             self._who.learn(piece)
         return columns
 
     def counted(self, statistics: LinkStatistics) -> LinkStatistics:
-        """The statistics with what the decoder counts of the vehicle: frames lost, late, and come twice."""
+        """Return the statistics with what the decoder counts of the vehicle: frames lost, late, and come
+        twice."""
         vehicle = statistics.vehicle
         received = self._scanner.statistics.senders.get(vehicle) if vehicle is not None else None
         if received is None:
@@ -57,7 +58,7 @@ class Decoding:
         self._followed = None
 
     def newly_followed(self) -> Ids | None:
-        """The vehicle followed since the last call; None: the same as before."""
+        """Return the vehicle followed since the last call; None: the same as before."""
         vehicle = self._who.vehicle
         followed = (vehicle.system, vehicle.component) if vehicle is not None else None
         if followed == self._followed:

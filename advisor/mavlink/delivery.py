@@ -35,7 +35,7 @@ class Delivery:
             self._counts[message] += 1
 
     def look(self, now_s: float) -> dict[int, float] | None:
-        """Rate of each message over the window that is complete now, Hz; None: none is."""
+        """Return the rate of each message over the window that is complete now, Hz; None: none is."""
         if self._since_s is None:
             self._begin(now_s)
         assert self._since_s is not None

@@ -29,7 +29,7 @@ def message(
     fields: Mapping[str, ArrayLike],
     carrier: Carrier,
 ) -> Columns:
-    """Messages of one type from the values at hand, put into their order.
+    """Return messages of one type from the values at hand, put into their order.
 
     Parameters
     ----------
@@ -66,7 +66,8 @@ def message(
 
 
 def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Fields of several records, each in rows of its own: what a record does not hold is NaN in its rows.
+    """Return fields of several records, each in rows of its own: what a record does not hold is NaN in its
+    rows.
 
     Parameters
     ----------
@@ -83,18 +84,18 @@ def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]
 
 
 def air_data(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Fields of VFR_HUD from records of air speed, climb rate and throttle; NaN without a throttle."""
+    """Return fields of VFR_HUD from records of air speed, climb rate and throttle; NaN without a throttle."""
     fields = side_by_side(*records)
     return {"throttle": np.full(len(next(iter(fields.values()))), np.nan), **fields}
 
 
 def system_id(parameter: object) -> int:
-    """The system id that a parameter states; 1 when it is none."""
+    """Return the system id that a parameter states; 1 when it is none."""
     return int(parameter) if isinstance(parameter, int | float) and 1 <= parameter <= 255 else 1
 
 
 def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
-    """The newest of ``values`` before each place ``at``: what the vehicle then knew.
+    """Return the newest of ``values`` before each place ``at``: what the vehicle then knew.
 
     Parameters
     ----------
@@ -113,7 +114,7 @@ def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
 
 
 def nearest(at_us: IntArray, time_us: IntArray) -> IntArray:
-    """Index of the record nearest to each time asked for, the earlier of two."""
+    """Return the index of the record nearest to each time asked for, the earlier of two."""
     after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
     before = after - 1
     after = np.minimum(after, len(time_us) - 1)

@@ -42,7 +42,7 @@ class Clocked:
 
 
 def in_todays_names(tables: Mapping[str, Table]) -> Clocked:
-    """All records of a log, renamed, several records of like sensors joined, and clocked."""
+    """Return all records of a log, renamed, several records of like sensors joined, and clocked."""
     named = {name: _renamed(name, table) for name, table in tables.items()}
     timed = _timed(named)
     stamps = np.concatenate([table.time_us for table in timed.values()]) if timed else np.zeros(0, np.int64)
@@ -54,7 +54,7 @@ def in_todays_names(tables: Mapping[str, Table]) -> Clocked:
 
 
 def _renamed(name: str, table: Table) -> Table:
-    """Fields under today's names; TimeUS where the record states its time since boot in any unit."""
+    """Return fields under today's names; TimeUS where the record states its time since boot in any unit."""
     fields = dict(table.fields)
     if "TimeUS" in fields:
         fields["TimeUS"] = fields["TimeUS"].astype(np.int64)
@@ -73,7 +73,8 @@ def _renamed(name: str, table: Table) -> Table:
 
 
 def _timed(tables: Mapping[str, Table]) -> dict[str, Table]:
-    """The tables, where a record states no time with that of the stamped record before it in the file."""
+    """Return the tables, where a record states no time with that of the stamped record before it in the
+    file."""
     stamped = [table for table in tables.values() if "TimeUS" in table.fields]
     if not stamped:
         return {}
@@ -95,7 +96,8 @@ def _at(table: Table, time_us: IntArray) -> Table:
 
 
 def _joined(tables: Mapping[str, Table]) -> dict[str, Table]:
-    """Further sensors that have records of their own as further numbers in the field I of the first."""
+    """Return further sensors that have records of their own as further numbers in the field I of the
+    first."""
     found = dict(tables)
     for name, apart in SENSORS_APART.items():
         further = [found.pop(other) for other in apart if other in found]

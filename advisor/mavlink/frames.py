@@ -110,7 +110,7 @@ class FrameScanner:
         return self._scan(self._tail + data, final=False)
 
     def close(self) -> list[Columns]:
-        """The stream ends here: what the last bytes still hold when nothing follows."""
+        """Return the stream ends here: what the last bytes still hold when nothing follows."""
         return self._scan(self._tail, final=True)
 
     @property
@@ -201,7 +201,7 @@ def _received(sender: NDArray[np.int64]) -> Received:
 
 
 def _fields(definition: Definition, payloads: NDArray[np.uint8]) -> dict[str, NDArray[Any]]:
-    """The payloads seen through the layout of their message; texts end at their first zero."""
+    """Return the payloads seen through the layout of their message; texts end at their first zero."""
     records = payloads.view(definition.layout)[:, 0]
     fields: dict[str, NDArray[Any]] = {name: records[name] for name in definition.layout.names or ()}
     for name, column in fields.items():

@@ -112,7 +112,7 @@ class FrameCutter:
 
 
 def _frame_length(buffer: bytes, i: int) -> int | None:
-    """Length of the frame whose magic byte is at ``i``; None when its header is not whole yet."""
+    """Return the length of the frame whose magic byte is at ``i``; None when its header is not whole yet."""
     if buffer[i] == MAGIC_V1:
         return 8 + buffer[i + 1] if len(buffer) > i + 1 else None
     if len(buffer) < i + 3:

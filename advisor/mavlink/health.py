@@ -84,5 +84,5 @@ class LinkCounters:
             self._recent.popleft()
 
     def rate(self, now_s: float) -> float:
-        """Frames per second over the last ``RATE_WINDOW_S``."""
+        """Return frames per second over the last ``RATE_WINDOW_S``."""
         return sum(n for t, n in tuple(self._recent) if t >= now_s - RATE_WINDOW_S) / RATE_WINDOW_S

@@ -73,7 +73,7 @@ class Inquiry(Talker):
             self._to_ask += [detail for detail in details if detail not in self.parameters]
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """The questions that are due."""
+        """Return the questions that are due."""
         if vehicle is None:
             return []
         if self._vehicle not in (None, vehicle):

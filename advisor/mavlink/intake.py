@@ -44,7 +44,7 @@ class Intake:
         """System ids of autopilots heard beside the vehicle."""
 
     def take(self, pieces: list[tuple[Peer, bytes]], now_s: float) -> list[Frame]:
-        """The frames that these pieces complete, of every system, in order of arrival."""
+        """Return the frames that these pieces complete, of every system, in order of arrival."""
         taken: list[Frame] = []
         for peer, data in pieces:
             frames = [frame for frame in self._cutter(peer).feed(data) if self._believed(frame)]

@@ -161,7 +161,7 @@ class Keeper:
             reader.send(message)
 
     def _abandoned(self) -> bool:
-        """Whether nobody looks after the link, and the vehicle has been silent for long."""
+        """Return whether nobody looks after the link, and the vehicle has been silent for long."""
         since_s, now_s = self._alone_since_s, time.monotonic()
         if since_s is None or now_s - since_s < ALONE_FOR_S:
             return False

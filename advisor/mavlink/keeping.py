@@ -30,7 +30,7 @@ class Door:
 
 
 def new_door() -> Door:
-    """A door that nobody else has: a local socket in a folder of its own, on Windows a named pipe."""
+    """Return a door that nobody else has: a local socket in a folder of its own, on Windows a named pipe."""
     name = secrets.token_hex(8)
     if os.name == "nt":
         return Door(rf"\\.\pipe\advisor-{name}", secrets.token_bytes(32))

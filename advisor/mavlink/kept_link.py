@@ -63,7 +63,7 @@ class KeptLink:
             self._connection.close()
 
     def read(self, timeout_s: float = 0.1) -> list[Columns]:
-        """The next messages in order of arrival, or nothing when none came in time."""
+        """Return the next messages in order of arrival, or nothing when none came in time."""
         if self._connection is None:
             self._connect(timeout_s)
         piece = next(self._past, None)
@@ -149,7 +149,7 @@ class KeptLink:
             yield unread
 
     def _hear(self, timeout_s: float) -> bytes:
-        """The next records of the process; nothing when none came in time."""
+        """Return the next records of the process; nothing when none came in time."""
         if self._connection is None:
             return b""
         try:

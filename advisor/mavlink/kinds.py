@@ -35,7 +35,7 @@ class Found:
 
 
 def recognised(beginning: bytes) -> Found | None:
-    """The kind of log that begins within the first ``BEGINNING_BYTES`` of a file; None for no log."""
+    """Return the kind of log that begins within the first ``BEGINNING_BYTES`` of a file; None for no log."""
     if beginning.startswith(dataflash.HEADER):
         return Found("dataflash", 0)
     starts: dict[Kind, int] = {
@@ -62,7 +62,7 @@ def _telemetry(beginning: bytes) -> Found | None:
 
 
 def refusal(name: str, beginning: bytes) -> Problem:
-    """Why a file that begins like this is no log, and what to give in its place.
+    """Return why a file that begins like this is no log, and what to give in its place.
 
     Parameters
     ----------

@@ -169,7 +169,7 @@ class Link:
     """A link of this process has no past that a reader would have to catch up with."""
 
     def read(self, timeout_s: float = 0.1) -> list[Columns]:
-        """The messages of the next micro-batch, or nothing when none came in time."""
+        """Return the messages of the next micro-batch, or nothing when none came in time."""
         records = self.read_records(timeout_s)
         if not records:
             return []
@@ -184,7 +184,7 @@ class Link:
         return columns
 
     def read_records(self, timeout_s: float = 0.1) -> bytes:
-        """The next micro-batch as records of a tlog, or nothing when none came in time."""
+        """Return the next micro-batch as records of a tlog, or nothing when none came in time."""
         with contextlib.suppress(Empty):
             return self._queue.get(timeout=timeout_s)
         if self._failure is not None:
@@ -313,7 +313,7 @@ class Link:
         return self._conversation.speak(self._intake.vehicle, reachable, now_s, unix_s, self._send)
 
     def _reachable(self, now_s: float) -> bool:
-        """Whether the vehicle is known and hears what is asked."""
+        """Return whether the vehicle is known and hears what is asked."""
         down = not self._line.is_open or self._watch.silent_s(now_s) > UNREACHABLE_S
         return not down and self._intake.vehicle is not None
 

@@ -47,7 +47,7 @@ class LinkProcess:
         """File of the recording; None where nothing is recorded."""
 
     def link(self, elevator: Elevator | None = None) -> KeptLink:
-        """A new reader of the link; it can be handed to another process before it reads.
+        """Return a new reader of the link; it can be handed to another process before it reads.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class LinkProcess:
         return self._process.pid if self._process else None
 
     def __enter__(self) -> Self:
-        """Start.
+        """Return Start.
 
         Raises
         ------

@@ -70,7 +70,7 @@ def _batches(
 
 
 def _skipped(found: Found, first: list[Columns]) -> Columns:
-    """The note that something stood in front of the first record, before the first messages."""
+    """Return the note that something stood in front of the first record, before the first messages."""
     text = f"{READER.decode()}{found.starts_at} bytes in front of the first record were skipped"
     return message(
         "STATUSTEXT",

@@ -19,7 +19,7 @@ class Talker(ABC):
     """Something that speaks with the vehicle over a link: a state machine without a clock."""
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:
-        """Ids under which the messages go out: the advisor's own."""
+        """Return ids under which the messages go out: the advisor's own."""
         return own
 
     def hear(self, frame: Frame, now_s: float) -> None:  # noqa: B027
@@ -27,10 +27,10 @@ class Talker(ABC):
 
     @abstractmethod
     def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
-        """Messages to send now; no vehicle: none was heard yet, or none is heard at present."""
+        """Return messages to send now; no vehicle: none was heard yet, or none is heard at present."""
 
     def leave(self, now_s: float) -> list[Any] | None:
-        """Messages to send before the link is closed; None: nothing is left to say or to wait for."""
+        """Return messages to send before the link is closed; None: nothing is left to say or to wait for."""
         return None
 
     def report(self) -> list[str]:
@@ -52,7 +52,7 @@ class Packer:
         self._senders: dict[Ids, dialect.MAVLink] = {}
 
     def pack(self, message: Any, source: Ids, signing_time: int) -> bytes:
-        """One frame; ``signing_time`` in 10 us since 2015, raised when it does not rise by itself."""
+        """Return one frame; ``signing_time`` in 10 us since 2015, raised when it does not rise by itself."""
         mavlink = self._senders.get(source) or self._senders.setdefault(source, self._sender(source))
         mavlink.signing.timestamp = max(mavlink.signing.timestamp, signing_time)
         raw = bytes(message.pack(mavlink))
@@ -74,7 +74,7 @@ class Heartbeat(Talker):
         self._next_s = float("-inf")
 
     def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
-        """A heartbeat when one is due."""
+        """Return a heartbeat when one is due."""
         if now_s < self._next_s:
             return []
         self._next_s = now_s + 1.0

@@ -34,7 +34,7 @@ Series = tuple[IntArray, FloatArray]
 
 
 def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
-    """VFR_HUD, and sentences on where the air speed comes from."""
+    """Return VFR_HUD, and sentences on where the air speed comes from."""
     speed, said = _airspeed(topics)
     found = {"airspeed": speed, "climb": _climb(topics), "throttle": _throttle(topics)}
     records = [{"time_usec": one[0], name: one[1]} for name, one in found.items() if one is not None]
@@ -45,7 +45,8 @@ def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
 
 
 def _airspeed(topics: Topics) -> tuple[Series | None, list[str]]:
-    """The faster of the validated air speed and of its sensor's, while the autopilot believes a sensor."""
+    """Return the faster of the validated air speed and of its sensor's, while the autopilot believes a
+    sensor."""
     validated, raw = first(topics, "airspeed_validated"), topics.get("airspeed", [])
     measured = [] if validated is None else [rows(validated, _is_measured(validated))]
     sensor = _joined([rows(topic, _is_believed(topic, k, validated)) for k, topic in enumerate(raw, start=1)])
@@ -61,7 +62,7 @@ def _airspeed(topics: Topics) -> tuple[Series | None, list[str]]:
 
 
 def _source(validated: Topic) -> FloatArray:
-    """Number of the source at each sample; the first sensor where the topic does not tell."""
+    """Return the number of the source at each sample; the first sensor where the topic does not tell."""
     for name in _SOURCES:
         if name in validated:
             return validated[name].astype(np.float64)
@@ -83,7 +84,7 @@ def _is_believed(sensor: Topic, number: int, validated: Topic | None) -> BoolArr
 
 
 def _joined(topics: Sequence[Topic]) -> Topic | None:
-    """Samples of several sensors that flew one after the other, in the order of their time."""
+    """Return samples of several sensors that flew one after the other, in the order of their time."""
     if not topics:
         return None
     names = set.intersection(*(set(topic) for topic in topics))
@@ -93,7 +94,8 @@ def _joined(topics: Sequence[Topic]) -> Topic | None:
 
 
 def _calibrated(speed: Topic, validated: Topic | None) -> Series:
-    """Calibrated air speed: a sensor's indicated one times the scale that the validator has found."""
+    """Return the calibrated air speed: a sensor's indicated one times the scale that the validator has
+    found."""
     if _CALIBRATED in speed:
         return sampled_us(speed), speed[_CALIBRATED].astype(np.float64)
     scale = 1.0
@@ -106,7 +108,8 @@ def _calibrated(speed: Topic, validated: Topic | None) -> Series:
 
 
 def _climb(topics: Topics) -> Series | None:
-    """Climb rate of the position filter, where that calls it valid; of the global position in older logs."""
+    """Return the climb rate of the position filter, where that calls it valid; of the global position in
+    older logs."""
     local, globally = first(topics, "vehicle_local_position"), first(topics, "vehicle_global_position")
     if local is not None:
         valid = local["v_z_valid"] > 0 if "v_z_valid" in local else np.ones(len(local["vz"]), dtype=np.bool_)
@@ -118,7 +121,8 @@ def _climb(topics: Topics) -> Series | None:
 
 
 def _throttle(topics: Topics) -> Series | None:
-    """Throttle in percent: the thrust along the body's x axis, in older logs the throttle command."""
+    """Return the throttle in percent: the thrust along the body's x axis, in older logs the throttle
+    command."""
     thrust, lever = first(topics, "vehicle_thrust_setpoint"), first(topics, "actuator_controls_0")
     chosen = thrust or lever
     if chosen is None:

@@ -12,7 +12,7 @@ from advisor.mavlink.px4_topics import TimedMessages, Topics
 
 
 def translate(log: Any, topics: Topics) -> list[TimedMessages]:
-    """Every message that a `pyulog.ULog` and the topics in it give."""
+    """Return every message that a `pyulog.ULog` and the topics in it give."""
     parameters = px4_vehicle.parameters_of(log)
     breathed, said = air(topics)
     moved = outputs(topics, parameters)

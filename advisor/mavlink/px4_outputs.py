@@ -33,7 +33,7 @@ class Outputs:
 
 
 def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
-    """The outputs by the parameters that describe them, else by what follows the pitch command."""
+    """Return the outputs by the parameters that describe them, else by what follows the pitch command."""
     moving = _moving(topics.get("actuator_outputs", []))
     if any(role.surface for role in px4_wiring(parameters).roles.values()):
         servos = first(topics, "actuator_servos")
@@ -54,7 +54,7 @@ def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
 
 
 def _moving(instances: Sequence[Topic]) -> list[Topic]:
-    """The instances in which any output moves; all where none does."""
+    """Return the instances in which any output moves; all where none does."""
     moving = [topic for topic in instances if any(_moves(topic, k) for k in OUTPUTS)]
     return moving or list(instances)
 
@@ -69,7 +69,7 @@ def _varies(values: FloatArray) -> bool:
 
 
 def _assigned(instances: Sequence[Topic], parameters: Mapping[str, float]) -> dict[int, Topic]:
-    """Instances by the number of the group whose functions agree best with what moves, from 0."""
+    """Return instances by the number of the group whose functions agree best with what moves, from 0."""
     agreements = []
     for bank, group in enumerate(banks(parameters) or ["PWM_MAIN"]):
         used = {k for k in OUTPUTS if parameters.get(f"{group}_FUNC{k}")}
@@ -87,7 +87,7 @@ def _of_instance(port: int, topic: Topic) -> TimedMessages:
 
 
 def _of_servos(servos: Topic, parameters: Mapping[str, float]) -> list[TimedMessages]:
-    """The pulses that normalised servo commands become at the outputs which carry them."""
+    """Return the pulses that normalised servo commands become at the outputs which carry them."""
     ports: dict[int, dict[int, FloatArray]] = {}
     for output in servo_outputs(parameters):
         field = f"control[{output.servo}]"
@@ -101,7 +101,7 @@ def _of_servos(servos: Topic, parameters: Mapping[str, float]) -> list[TimedMess
 
 
 def _of_command(command: Command) -> TimedMessages:
-    """The pitch command as the pulses of output 1."""
+    """Return the pitch command as the pulses of output 1."""
     return _pulses(0, published_us(command.topic), {1: 1500.0 + 500.0 * command.axes["pitch"]})
 
 

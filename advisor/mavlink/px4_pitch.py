@@ -34,7 +34,8 @@ class Command:
 
 
 def pitch_commands(topics: Topics) -> list[Command]:
-    """The topics that hold the commands, the preferred first; of a VTOL the one for wings comes last."""
+    """Return the topics that hold the commands, the preferred first; of a VTOL the one for wings comes
+    last."""
     found = []
     for topic in topics.get("actuator_controls_0", []):
         axes = dict(zip(("roll", "pitch", "yaw", "throttle"), vector(topic, "control", 4), strict=True))
@@ -46,7 +47,8 @@ def pitch_commands(topics: Topics) -> list[Command]:
 
 
 def followers(outputs: Topic, command: Command) -> dict[int, float]:
-    """Outputs that follow the pitch command: number from 1 to 1.0, or -1.0 where they follow its opposite."""
+    """Return outputs that follow the pitch command: number from 1 to 1.0, or -1.0 where they follow its
+    opposite."""
     at, known = published_us(outputs), published_us(command.topic)
     told = {name: np.interp(at, known, values) for name, values in command.axes.items()}
     inside = (at >= known[0]) & (at <= known[-1]) & np.all(np.isfinite([*told.values()]), axis=0)

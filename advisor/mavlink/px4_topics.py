@@ -52,7 +52,7 @@ class TimedMessages:
 
 
 def topics_of(log: Any) -> dict[str, list[Topic]]:
-    """The instances of each topic that have the fields needed, in the order of their time."""
+    """Return the instances of each topic that have the fields needed, in the order of their time."""
     topics: dict[str, list[Topic]] = {}
     for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
         if {"timestamp"} | TOPICS[data.name] <= data.data.keys() and len(data.data["timestamp"]):
@@ -64,12 +64,13 @@ def topics_of(log: Any) -> dict[str, list[Topic]]:
 
 
 def _wide(values: NDArray[Any]) -> NDArray[Any]:
-    """Floating-point values in double precision: damaged ones convert here, where nobody warns of them."""
+    """Return floating-point values in double precision: damaged ones convert here, where nobody warns of
+    them."""
     return values.astype(np.float64) if values.dtype.kind == "f" else values
 
 
 def first(topics: Topics, name: str) -> Topic | None:
-    """The first instance of a topic, None where the log has none."""
+    """Return the first instance of a topic, None where the log has none."""
     return topics[name][0] if name in topics else None
 
 
@@ -88,24 +89,24 @@ def sampled_us(topic: Topic) -> IntArray:
 
 
 def vector(topic: Topic, name: str, size: int) -> FloatArray:
-    """An array field, shape (size, n)."""
+    """Return an array field, shape (size, n)."""
     return np.array([topic[f"{name}[{i}]"] for i in range(size)], dtype=np.float64)
 
 
 def rows(topic: Topic, which: NDArray[np.bool_]) -> Topic:
-    """Some samples of a topic."""
+    """Return some samples of a topic."""
     return {name: values[which] for name, values in topic.items()}
 
 
 def rate_hz(topic: Topic) -> float:
-    """Samples per second in the typical interval; 0 with fewer than two samples."""
+    """Return samples per second in the typical interval; 0 with fewer than two samples."""
     if len(topic["timestamp"]) < 2:
         return 0.0
     return 1e6 / max(float(np.median(np.diff(published_us(topic)))), 1.0)
 
 
 def best(candidates: Iterable[Topic | None]) -> Topic | None:
-    """The first that is fast enough, otherwise the fastest; None without any.
+    """Return the first that is fast enough, otherwise the fastest; None without any.
 
     Parameters
     ----------
@@ -118,5 +119,5 @@ def best(candidates: Iterable[Topic | None]) -> Topic | None:
 
 
 def milliseconds(time_us: IntArray) -> IntArray:
-    """Microseconds rounded to milliseconds."""
+    """Return microseconds rounded to milliseconds."""
     return (time_us + 500) // 1000

@@ -43,7 +43,7 @@ _KEY_BYTES = 10
 
 
 def unix_time_base_s(topics: Topics) -> float:
-    """Seconds since 1970 at boot, from the first fix that has a date; 0 when there is none."""
+    """Return seconds since 1970 at boot, from the first fix that has a date; 0 when there is none."""
     for fixes in topics.get("vehicle_gps_position", []):
         for utc_us, boot_us in zip(fixes["time_utc_usec"].tolist(), fixes["timestamp"].tolist(), strict=True):
             if utc_us > 0:
@@ -52,7 +52,7 @@ def unix_time_base_s(topics: Topics) -> float:
 
 
 def heartbeat(topics: Topics, parameters: Mapping[str, Any], start_us: int) -> TimedMessages:
-    """One before everything else, so that the vehicle is known, then as the mode may change."""
+    """Return one before everything else, so that the vehicle is known, then as the mode may change."""
     status = first(topics, "vehicle_status")
     at, states = np.array([start_us]), np.zeros(1, np.int64)
     if status is not None:
@@ -70,7 +70,7 @@ def heartbeat(topics: Topics, parameters: Mapping[str, Any], start_us: int) -> T
 
 
 def vtol_states(topics: Topics) -> Iterator[TimedMessages]:
-    """EXTENDED_SYS_STATE of a VTOL aircraft: whether rotors or the wing carry it."""
+    """Yield EXTENDED_SYS_STATE of a VTOL aircraft: whether rotors or the wing carry it."""
     status = first(topics, "vehicle_status")
     if status is not None and np.any(status.get("is_vtol", 0)):
         rotors = _on_rotors(status) | (status.get("in_transition_mode", np.zeros(1)) > 0)
@@ -79,14 +79,14 @@ def vtol_states(topics: Topics) -> Iterator[TimedMessages]:
 
 
 def _on_rotors(status: Topic) -> NDArray[np.bool_]:
-    """Whether vehicle_status says rotary wing: by vehicle_type, once by is_rotary_wing."""
+    """Return whether vehicle_status says rotary wing: by vehicle_type, once by is_rotary_wing."""
     if "is_rotary_wing" in status:
         return np.asarray(status["is_rotary_wing"] > 0)
     return np.asarray(status.get("vehicle_type", np.zeros(len(status["timestamp"]))) == _ROTARY_WING)
 
 
 def _mav_type(parameters: Mapping[str, Any], status: Topic | None) -> int:
-    """MAV_TYPE as the parameter states, else as vehicle_status does.
+    """Return MAV_TYPE as the parameter states, else as vehicle_status does.
 
     A VTOL aircraft says rotary wing while it hovers; its elevator is there all the same.
     """
@@ -99,13 +99,13 @@ def _mav_type(parameters: Mapping[str, Any], status: Topic | None) -> int:
 
 
 def parameters_of(log: Any) -> dict[str, float]:
-    """The parameters that are numbers, as they were when the log began."""
+    """Return the parameters that are numbers, as they were when the log began."""
     initial = log.initial_parameters.items()
     return {name: float(v) for name, v in initial if isinstance(v, int | float) and isfinite(v)}
 
 
 def dropouts(log: Any) -> list[str]:
-    """A sentence on the times in which the logger could not write; none where it always could."""
+    """Return a sentence on the times in which the logger could not write; none where it always could."""
     lasted_s = [dropout.duration * 1e-3 for dropout in log.dropouts]
     if not lasted_s:
         return []
@@ -116,7 +116,7 @@ def dropouts(log: Any) -> list[str]:
 
 
 def stated(log: Any, further: Mapping[str, float], start_us: int) -> Iterator[TimedMessages]:
-    """PARAM_VALUE of every parameter at the start of the log, then of every change.
+    """Yield PARAM_VALUE of every parameter at the start of the log, then of every change.
 
     Parameters
     ----------
@@ -141,19 +141,19 @@ def stated(log: Any, further: Mapping[str, float], start_us: int) -> Iterator[Ti
 
 
 def texts(log: Any) -> Iterator[TimedMessages]:
-    """STATUSTEXT: what the vehicle said."""
+    """Yield STATUSTEXT: what the vehicle said."""
     yield from _said(
         [(text.timestamp, text.log_level - ord("0"), text.message.encode()) for text in log.logged_messages]
     )
 
 
 def remarks(said: Sequence[str], start_us: int) -> Iterator[TimedMessages]:
-    """STATUSTEXT: what the reader of the log has to say."""
+    """Yield STATUSTEXT: what the reader of the log has to say."""
     yield from _said([(start_us, 6, READER + text.encode()) for text in said])
 
 
 def _said(rows: Sequence[tuple[int, int, bytes]]) -> Iterator[TimedMessages]:
-    """Time in us, severity and text."""
+    """Yield the time in us, severity and text."""
     if rows:
         fields: dict[str, ArrayLike] = {
             "severity": np.array([level for _, level, _ in rows]),
@@ -163,14 +163,14 @@ def _said(rows: Sequence[tuple[int, int, bytes]]) -> Iterator[TimedMessages]:
 
 
 def version(log: Any, start_us: int) -> Iterator[TimedMessages]:
-    """AUTOPILOT_VERSION, where the log states a release."""
+    """Yield AUTOPILOT_VERSION, where the log states a release."""
     release = log.msg_info_dict.get("ver_sw_release")
     if isinstance(release, int):
         yield TimedMessages("AUTOPILOT_VERSION", np.array([start_us]), {"flight_sw_version": release})
 
 
 def named_values(topics: Topics) -> Iterator[TimedMessages]:
-    """NAMED_VALUE_FLOAT, as a vane may send its angle."""
+    """Yield NAMED_VALUE_FLOAT, as a vane may send its angle."""
     values = first(topics, "debug_key_value")
     if values is not None:
         letters = np.stack([values[f"key[{i}]"].astype(np.uint8) for i in range(_KEY_BYTES)], axis=1)
@@ -184,7 +184,7 @@ def named_values(topics: Topics) -> Iterator[TimedMessages]:
 
 
 def receiver(topics: Topics) -> Iterator[TimedMessages]:
-    """RC_CHANNELS: the pilot's sticks and switches."""
+    """Yield RC_CHANNELS: the pilot's sticks and switches."""
     received = first(topics, "input_rc")
     if received is not None:
         at = published_us(received)

@@ -31,7 +31,7 @@ class Questions(Protocol):
     """All that is asked anyway."""
 
     def value(self, payload: bytes) -> float:
-        """The value in a PARAM_VALUE."""
+        """Return the value in a PARAM_VALUE."""
 
     def follow(self, name: str, value: float) -> list[str]:
         """What an answer makes worth asking."""
@@ -44,11 +44,11 @@ class ArduPilotQuestions:
     first: Sequence[str] = (*outputs, *(name for pair in RENAMED.items() for name in pair))
 
     def value(self, payload: bytes) -> float:
-        """Integers come converted to floating point."""
+        """Return integers come converted to floating point."""
         return float(struct.unpack_from("<f", payload)[0])
 
     def follow(self, name: str, value: float) -> list[str]:
-        """MIN, TRIM, MAX and REVERSED of the outputs that pitch."""
+        """Return MIN, TRIM, MAX and REVERSED of the outputs that pitch."""
         stem, _, kind = name.rpartition("_")
         if kind != "FUNCTION" or not stem.startswith("SERVO") or value not in PITCH_FUNCTIONS:
             return []
@@ -66,12 +66,12 @@ class Px4Questions:
     first = outputs
 
     def value(self, payload: bytes) -> float:
-        """Integers come as their bytes."""
+        """Return integers come as their bytes."""
         is_float = payload[24] == dialect.MAV_PARAM_TYPE_REAL32
         return float(struct.unpack_from("<f" if is_float else "<i", payload)[0])
 
     def follow(self, name: str, value: float) -> list[str]:
-        """The torque in pitch of every surface, the limits of the outputs that move one."""
+        """Return the torque in pitch of every surface, the limits of the outputs that move one."""
         if name.startswith("CA_SV_CS") and name.endswith("_TYPE") and value:
             return [f"{name.removesuffix('_TYPE')}_TRQ_P"]
         bank, _, number = name.partition("_FUNC")

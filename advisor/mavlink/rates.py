@@ -86,7 +86,7 @@ class RateRequest(Talker):
                 self._answered(_ANSWERS[result], now_s)
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """The request that is due, if one is; none while the vehicle is not heard."""
+        """Return the request that is due, if one is; none while the vehicle is not heard."""
         if vehicle is None:
             self._delivery.restart()
             self._asked_s = float("-inf")
@@ -125,7 +125,7 @@ class RateRequest(Talker):
         return [_set_interval(self._vehicle, wish.message, 0.0, self._put_back - 1) for wish in asked]
 
     def report(self) -> list[str]:
-        """Answers and delivered rates, once."""
+        """Return answers and delivered rates, once."""
         said, self._said = self._said, []
         return said
 
@@ -204,7 +204,8 @@ class RateRequest(Talker):
 
 
 def _set_interval(vehicle: tuple[int, int], message: int, interval_us: float, confirmation: int) -> Any:
-    """SET_MESSAGE_INTERVAL; an interval of 0 gives the message its default rate (MAVLink common.xml)."""
+    """Return SET_MESSAGE_INTERVAL; an interval of 0 gives the message its default rate (MAVLink
+    common.xml)."""
     return dialect.MAVLink_command_long_message(
         *vehicle, _SET_INTERVAL, confirmation, message, interval_us, 0, 0, 0, 0, 0
     )

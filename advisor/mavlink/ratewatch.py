@@ -36,7 +36,7 @@ class RateWatch:
         self._delivery.restart()
 
     def look(self, from_vehicle: list[Frame], now_s: float, stations: Collection[int] = ()) -> list[str]:
-        """Sentences for what the vehicle's newest frames reveal.
+        """Return sentences for what the vehicle's newest frames reveal.
 
         Parameters
         ----------

@@ -83,7 +83,7 @@ class Recorder:
                 self._pending += records
 
     def recorded(self) -> Recorded:
-        """Everything handed over so far: what the file holds, and what waits in memory."""
+        """Return everything handed over so far: what the file holds, and what waits in memory."""
         with self._lock:
             return Recorded(self._written, bytes(self._pending))
 

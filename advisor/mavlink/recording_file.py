@@ -16,7 +16,7 @@ _TAIL_BYTES = 65_536
 
 
 def default_recording(folder: Path | None = None, now: datetime | None = None) -> Path:
-    """The place of a recording that the user does not name.
+    """Return the place of a recording that the user does not name.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def default_recording(folder: Path | None = None, now: datetime | None = None) -
 
 
 def recordings_folder() -> Path:
-    """The user's own folder of recordings."""
+    """Return the user's own folder of recordings."""
     return Path(platformdirs.user_data_dir("inflight-advisor")) / "recordings"
 
 
@@ -89,7 +89,7 @@ def take_up(path: Path) -> tuple[Path, BinaryIO]:
 
 
 def _end_of_whole_records(file: BinaryIO, path: Path) -> int:
-    """Where the last whole record ends, in bytes; what follows was cut off by a power cut."""
+    """Return where the last whole record ends, in bytes; what follows was cut off by a power cut."""
     size = file.seek(0, os.SEEK_END)
     start = max(0, size - _TAIL_BYTES)
     file.seek(start)
@@ -109,7 +109,7 @@ def _end_of_whole_records(file: BinaryIO, path: Path) -> int:
 
 
 def _last_frame_ends(data: bytes) -> int:
-    """Where the last frame that the cutter finds ends; 0 without a frame."""
+    """Return where the last frame that the cutter finds ends; 0 without a frame."""
     frames = FrameCutter(CRC_EXTRA).feed(data)
     return data.rindex(frames[-1].raw) + len(frames[-1].raw) if frames else 0
 

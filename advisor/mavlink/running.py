@@ -44,7 +44,8 @@ def forget(pid: int) -> None:
 
 
 def running_alone() -> Iterator[RunningLink]:
-    """Links that run though their advisor is gone; notes of processes that are gone too are struck out."""
+    """Yield links that run though their advisor is gone; notes of processes that are gone too are struck
+    out."""
     for path in sorted(_folder().glob("*.json")):
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
             link = _read(path)

@@ -44,7 +44,7 @@ def _little_endian(stream: Bytes, at: int, size: int) -> int:
 
 @kernel()
 def _remainder(stream: Bytes, first: int, past: int) -> int:
-    """CRC-16 of the bytes from ``first`` to before ``past``, four at a time."""
+    """Return CRC-16 of the bytes from ``first`` to before ``past``, four at a time."""
     crc = INITIAL
     at = first
     while at + 4 <= past:
@@ -58,7 +58,7 @@ def _remainder(stream: Bytes, first: int, past: int) -> int:
 
 @kernel()
 def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
-    """Length of the good frame that begins at ``at``; ``_NONE``, or ``_WAIT`` for more bytes.
+    """Return the length of the good frame that begins at ``at``; ``_NONE``, or ``_WAIT`` for more bytes.
 
     ``seeds`` holds the CRC_EXTRA of each message id, -1 where it is not known. The checksum
     of an unknown message then fits one seed in 256 of the possible remainders; that, and
@@ -103,7 +103,7 @@ def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
 
 @kernel()
 def _stamp(stream: Bytes, at: int, last: int) -> int:
-    """Big-endian microseconds at ``at``; the last good stamp instead of an impossible one."""
+    """Return big-endian microseconds at ``at``; the last good stamp instead of an impossible one."""
     stamp = 0
     for i in range(at, at + STAMP_BYTES):
         stamp = stamp << 8 | int(np.int64(stream[i]))

@@ -35,7 +35,7 @@ _AUTO = 4
 
 
 def is_sdlog2(tables: Mapping[str, Table]) -> bool:
-    """Whether records of a DataFlash container are PX4's."""
+    """Return whether records of a DataFlash container are PX4's."""
     return "TIME" in tables and "StartTime" in tables["TIME"].fields
 
 
@@ -66,7 +66,7 @@ class Sdlog2:
         self._type = int(stored.get(b"MAV_TYPE", MAV_TYPE_FIXED_WING))
 
     def columns(self) -> Iterator[Columns]:
-        """The messages of each type."""
+        """Yield the messages of each type."""
         yield self._heartbeat()
         if "PARM" in self._tables:
             parm = self._tables["PARM"]
@@ -108,7 +108,7 @@ class Sdlog2:
         return message(name, self._system, table.order, arrival_s, fields, "sdlog2")
 
     def _heartbeat(self) -> Columns:
-        """One before everything else, so that the vehicle is known, then as the mode may change."""
+        """Return one before everything else, so that the vehicle is known, then as the mode may change."""
         order, states, time_us = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(1, np.int64)
         if "STAT" in self._tables:
             stat = self._tables["STAT"]
@@ -133,7 +133,7 @@ class Sdlog2:
         return dict(zip(fields["Name"].tolist(), fields["Value"].tolist(), strict=True))
 
     def _unix_time_base_s(self) -> float:
-        """Seconds since 1970 at boot, from the first fix that has a date; 0 when there is none."""
+        """Return seconds since 1970 at boot, from the first fix that has a date; 0 when there is none."""
         if "GPS" not in self._tables:
             return 0.0
         gps = self._tables["GPS"]

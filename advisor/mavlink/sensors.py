@@ -23,7 +23,7 @@ repeats them from one record to the next at most, when records come faster than 
 
 
 def flown(table: Table) -> Table:
-    """The records of the sensor that flew, at each time; none where no sensor was healthy.
+    """Return the records of the sensor that flew, at each time; none where no sensor was healthy.
 
     ARSP.Pri names the primary sensor. Where it names one that is not both healthy and in use, the
     lowest-numbered such sensor flew; where there is none, the lowest-numbered healthy one.
@@ -60,7 +60,7 @@ class Said:
 
 
 def said(every: Table, table: Table, quantity: str) -> list[Said]:
-    """The sensor that flew first, each change of sensor, and the time without a healthy one.
+    """Return the sensor that flew first, each change of sensor, and the time without a healthy one.
 
     Nothing is said where sensor 0 flew throughout.
 
@@ -77,7 +77,7 @@ def said(every: Table, table: Table, quantity: str) -> list[Said]:
 
 
 def _doubts(every: Table, quantity: str) -> list[Said]:
-    """That no record calls any of the sensors healthy: they are then read as if all were."""
+    """Return that no record calls any of the sensors healthy: they are then read as if all were."""
     if len(every) == 0 or _spoken_for(every) == _stated(every):
         return []
     text = f"{quantity}: no sensor is ever stated to be healthy, and they are used all the same"
@@ -107,7 +107,8 @@ def _silences(every: Table, table: Table, quantity: str) -> list[Said]:
 
 
 def silent(every: Table, table: Table) -> list[tuple[int, int]]:
-    """Stretches in which sensors were recorded and none was healthy: rows of ``every``, first and last.
+    """Return stretches in which sensors were recorded and none was healthy: rows of ``every``, first and
+    last.
 
     Parameters
     ----------
@@ -130,7 +131,7 @@ def silent(every: Table, table: Table) -> list[tuple[int, int]]:
 
 
 def _numbers(table: Table) -> IntArray:
-    """The sensor of each record; shape (n,)."""
+    """Return the sensor of each record; shape (n,)."""
     if "I" not in table.fields:
         return np.zeros(len(table), dtype=np.int64)
     return table.fields["I"].astype(np.int64)
@@ -152,17 +153,17 @@ def _healthy(table: Table, instance: IntArray) -> BoolArray:
 
 
 def _stated(table: Table) -> list[str]:
-    """The fields of health that the records have."""
+    """Return the fields of health that the records have."""
     return [name for name in _HEALTH if name in table.fields]
 
 
 def _spoken_for(table: Table) -> list[str]:
-    """Those that ever say healthy: one that never does cannot tell one sensor or time from another."""
+    """Return those that ever say healthy: one that never does cannot tell one sensor or time from another."""
     return [name for name in _stated(table) if np.any(table.fields[name] != 0)]
 
 
 def _frozen(table: Table) -> BoolArray:
-    """Records of one inertial sensor that belong to a stretch of ``_FROZEN_S`` without any change."""
+    """Return records of one inertial sensor that belong to a stretch of ``_FROZEN_S`` without any change."""
     values = np.stack([table.fields[name] for name in _MOVING], axis=1)
     moved = np.concatenate(([True], np.any(np.diff(values, axis=0) != 0.0, axis=1)))
     stretch = np.cumsum(moved) - 1

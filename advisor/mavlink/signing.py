@@ -30,7 +30,7 @@ Verdict = Literal["ok", "unsigned", "forged", "replayed"]
 
 
 def read_key(path: Path) -> bytes:
-    """The key in a file: 32 bytes as they are, anything else a passphrase.
+    """Return the key in a file: 32 bytes as they are, anything else a passphrase.
 
     A passphrase is hashed with SHA-256 after the line end is taken off, as Mission
     Planner and MAVProxy do, so that the same words give the same key everywhere.
@@ -53,7 +53,7 @@ def read_key(path: Path) -> bytes:
 
 
 def signing_time(unix_s: float) -> int:
-    """Time stamp of a signature made now: 10 us since 2015-01-01."""
+    """Return the time stamp of a signature made now: 10 us since 2015-01-01."""
     return int((unix_s - EPOCH_2015_S) * 1e5)
 
 
@@ -74,7 +74,7 @@ class SignatureCheck:
         """Newest time of a sender (system, component) on any of its links, 10 us since 2015."""
 
     def verdict(self, frame: bytes) -> Verdict:
-        """Whether one whole frame may be believed.
+        """Return whether one whole frame may be believed.
 
         A time is remembered only after its signature was found good: otherwise one forged
         frame from the future would silence the real sender.

@@ -43,11 +43,11 @@ class UdpTransport(Transport):
             raise
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there."""
+        """Return whether bytes are there."""
         return bool(select.select([self._socket], [], [], timeout_s)[0])
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived."""
+        """Return everything that has arrived."""
         pieces: list[tuple[Peer, bytes]] = []
         for _ in range(_MOST_CHUNKS):
             try:
@@ -111,7 +111,7 @@ class StreamTransport(Transport):
         self._stream = stream
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there."""
+        """Return whether bytes are there."""
         ends = [end for end in (self._stream or self._listener,) if end is not None]
         ready = select.select(ends, [], [], timeout_s)[0]
         if ready and self._stream is None and self._listener is not None:
@@ -121,7 +121,7 @@ class StreamTransport(Transport):
         return bool(ready)
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived."""
+        """Return everything that has arrived."""
         if self._stream is None:
             return []
         try:

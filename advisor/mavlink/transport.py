@@ -33,11 +33,11 @@ class Transport(ABC):
 
     @abstractmethod
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there, waiting for them at most so long."""
+        """Return whether bytes are there, waiting for them at most so long."""
 
     @abstractmethod
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived, each piece with its sender."""
+        """Return everything that has arrived, each piece with its sender."""
 
     @abstractmethod
     def send(self, data: bytes, to: Peer | None) -> bool:

@@ -21,14 +21,14 @@ class SerialTransport(Transport):
         self._line = serial.Serial(address.host, address.port, timeout=0, write_timeout=0.5, exclusive=True)
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there."""
+        """Return whether bytes are there."""
         try:
             return bool(select.select([self._line.fileno()], [], [], timeout_s)[0])
         except (OSError, ValueError, TypeError) as error:
             raise ConnectionCutError(str(error)) from None
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived."""
+        """Return everything that has arrived."""
         try:
             data = self._line.read(CHUNK_BYTES)
         except (OSError, TypeError) as error:  # pyserial's own error is an OSError
@@ -56,11 +56,11 @@ class PymavlinkTransport(Transport):
         self._may_end = address.text.startswith("ws")
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there."""
+        """Return whether bytes are there."""
         return bool(self._connection.select(timeout_s))
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived."""
+        """Return everything that has arrived."""
         data = bytes(self._connection.recv(CHUNK_BYTES))
         if not data and self._may_end:
             raise ConnectionCutError("closed by the other side")
@@ -78,7 +78,7 @@ class PymavlinkTransport(Transport):
 
 
 def _is_terminal(path: str) -> bool:
-    """Whether a file of the system is a serial line; a name that is no file may be one of Windows."""
+    """Return whether a file of the system is a serial line; a name that is no file may be one of Windows."""
     if not os.path.exists(path):
         return True
     end = os.open(path, os.O_RDWR | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_NONBLOCK", 0))

@@ -16,7 +16,7 @@ from advisor.mavlink.scan import SIGNED, STAMP_BYTES, V1
 
 
 def trim(log: bytes, drop: Iterable[str] = ()) -> bytes:
-    """The log with the records of known messages but those in ``drop``."""
+    """Return the log with the records of known messages but those in ``drop``."""
     dropped = set(drop)
     if unknown := dropped - DEFINITIONS.keys():
         raise KeyError(*sorted(unknown))

@@ -29,7 +29,7 @@ class WholeFile(io.BufferedReader):
     """
 
     def read(self, size: int | None = -1, /) -> bytes:
-        """That many bytes, or none at the end."""
+        """Return that many bytes, or none at the end."""
         data = super().read(size)
         if size is not None and 0 < len(data) < size:
             raise struct.error
@@ -37,7 +37,7 @@ class WholeFile(io.BufferedReader):
 
 
 def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 0) -> Iterator[list[Columns]]:
-    """The messages of a ``.ulg``, in one batch, ordered by time.
+    """Yield the messages of a ``.ulg``, in one batch, ordered by time.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def _nothing_in(path: Path) -> UnusableInputError:
 
 
 def _columns(log: Any) -> list[Columns]:
-    """Every message the topics give, numbered by time."""
+    """Return every message the topics give, numbered by time."""
     topics = topics_of(log)
     messages = translate(log, topics)
     time_us = np.concatenate([m.time_us for m in messages])

@@ -30,7 +30,7 @@ _OTHER_FILES = {
 
 
 def beginning_of(path: Path) -> bytes:
-    """The first ``BEGINNING_BYTES`` of a file.
+    """Return the first ``BEGINNING_BYTES`` of a file.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def beginning_of(path: Path) -> bytes:
 
 @contextmanager
 def unpacked(path: Path, beginning: bytes) -> Iterator[Path]:
-    """The file itself; of a packed one the log inside, for as long as the context lasts.
+    """Yield the file itself; of a packed one the log inside, for as long as the context lasts.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def _copy(packed: IO[bytes] | gzip.GzipFile, name: str, to: Path) -> Path:
 
 
 def _only_log(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
-    """The one member of an archive that is a log."""
+    """Return the one member of an archive that is a log."""
     logs = []
     for member in archive.infolist()[:_MOST_MEMBERS]:
         if member.is_dir() or member.filename.startswith("__MACOSX/"):
@@ -149,5 +149,5 @@ def _only_log(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
 
 
 def _shown(member: zipfile.ZipInfo) -> str:
-    """The name of a member without what would steer a terminal."""
+    """Return the name of a member without what would steer a terminal."""
     return "".join(letter for letter in member.filename if letter.isprintable())

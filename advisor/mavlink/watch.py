@@ -38,17 +38,17 @@ class LinkWatch:
         self._reboots = RebootWatch()
 
     def silent_s(self, now_s: float) -> float:
-        """Time since the vehicle, or before it is known anything, was last heard."""
+        """Return the time since the vehicle, or before it is known anything, was last heard."""
         return max(0.0, now_s - self._heard_s)
 
     def cut(self, why: str, now_s: float) -> str:
-        """The connection was cut."""
+        """Return the connection was cut."""
         if self._cut_s is None:
             self._cut_s = now_s
         return f"{self._connection}: connection lost ({why}), trying again"
 
     def look(self, intake: Intake, frames: list[Frame], now_s: float) -> list[str]:
-        """Sentences for what these frames, or their absence, mean."""
+        """Return sentences for what these frames, or their absence, mean."""
         said = []
         vehicle = intake.vehicle
         relevant = [frame for frame in frames if vehicle is None or frame.system == vehicle[0]]
@@ -84,7 +84,7 @@ class LinkWatch:
 
 
 def _instead(intake: Intake) -> str:
-    """How to follow another vehicle that is heard."""
+    """Return how to follow another vehicle that is heard."""
     others = sorted(intake.other_vehicles)
     if intake.vehicle is None or not others:
         return ""

@@ -47,7 +47,7 @@ class Wish:
             self._rest(now_s, self.rounds)
 
     def fell(self, now_s: float) -> bool:
-        """A granted rate is not delivered; true when it is asked against at once."""
+        """Return a granted rate is not delivered; true when it is asked against at once."""
         self.held_since_s = float("inf")
         if self.rounds < AT_ONCE:
             self.due_s, self.rounds = now_s, self.rounds + 1

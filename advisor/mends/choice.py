@@ -14,7 +14,7 @@ and PX4's own log before 2017 (``.px4log``)."""
 
 
 def mends_of(autopilot: str, carrier: Carrier) -> Mends:
-    """The mends for a vehicle.
+    """Return the mends for a vehicle.
 
     Parameters
     ----------

@@ -34,11 +34,11 @@ class Dataflash:
     """Records of ArduPlane's log."""
 
     def called(self, message: str) -> str:
-        """The record."""
+        """Return the record."""
         return _RECORDS[message].name if message in _RECORDS else message
 
     def faster(self, message: str) -> str:
-        """The rate that the log has anyway, and what has a higher one."""
+        """Return the rate that the log has anyway, and what has a higher one."""
         record = _RECORDS.get(message)
         logged = (
             f"LOG_BITMASK logs {record.name} at {record.paced} (bit {record.bit}, {record.bit_name}); "
@@ -48,7 +48,7 @@ class Dataflash:
         return f"{logged}for more record a telemetry log with {message} at {GOOD_HZ} Hz"
 
     def present(self, messages: Sequence[str]) -> str:
-        """The bits that log the records at all."""
+        """Return the bits that log the records at all."""
         records = [_RECORDS[message] for message in messages if message in _RECORDS]
         bits = dict.fromkeys(f"{one.name} by bit {one.bit} ({one.bit_name})" for one in records)
         return f"set LOG_BITMASK so that these are logged: {', '.join(bits)}; its default, 65535, has all"

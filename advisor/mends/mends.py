@@ -17,12 +17,12 @@ class Mends(Protocol):
         """Name under which users of this record know the values of a message."""
 
     def faster(self, message: str) -> str:
-        """A clause without a full stop: how the values of a message come at ``GOOD_HZ``."""
+        """Return a clause without a full stop: how the values of a message come at ``GOOD_HZ``."""
 
     def present(self, messages: Sequence[str]) -> str:
-        """A clause without a full stop: how the values of messages come at all."""
+        """Return a clause without a full stop: how the values of messages come at all."""
 
 
 def sentence(clause: str, end: str = ".") -> str:
-    """A clause with a capital at its beginning and an end."""
+    """Return a clause with a capital at its beginning and an end."""
     return clause[:1].upper() + clause[1:] + end

@@ -38,15 +38,15 @@ class Ulog:
     """Topics of PX4's log."""
 
     def called(self, message: str) -> str:
-        """The topic."""
+        """Return the topic."""
         return _TOPICS.get(message, message)
 
     def faster(self, message: str) -> str:
-        """The bit that logs the topic at its full rate."""
+        """Return the bit that logs the topic at its full rate."""
         return f"set {_bit(_BITS.get(message, _DEFAULT))}"
 
     def present(self, messages: Sequence[str]) -> str:
-        """The bits that log the topics at all."""
+        """Return the bits that log the topics at all."""
         bits = dict.fromkeys(_BITS[m] if _BITS.get(m) == _DEBUG else _DEFAULT for m in messages)
         topics = " and ".join(dict.fromkeys(self.called(message) for message in messages))
         return f"set {' and '.join(map(_bit, bits))}, so that {topics} are logged"

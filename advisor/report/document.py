@@ -162,7 +162,8 @@ def _rule(result: RuleResult) -> dict[str, Any]:
 
 
 def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
-    """Every parameter as ``{value, std, std_cr}``; one that is not identifiable has None and its reason."""
+    """Return every parameter as ``{value, std, std_cr}``; one that is not identifiable has None and its
+    reason."""
     if not isinstance(estimate, Estimate):
         return None
     return {
@@ -176,13 +177,13 @@ def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
 
 
 def instruments(estimate: Estimate | None) -> dict[str, Any]:
-    """Parameters of the instruments that were estimated with the derivatives, by name."""
+    """Return parameters of the instruments that were estimated with the derivatives, by name."""
     found = estimate.instruments if estimate else ()
     return {x.name: {"value": number(x.value), "std": number(x.std)} for x in found}
 
 
 def identifiability(estimate: Estimate | None) -> dict[str, Any] | None:
-    """How well the input told the parameters apart."""
+    """Return how well the input told the parameters apart."""
     if estimate is None:
         return None
     return {
@@ -252,5 +253,5 @@ def _model(model: Estimate | None) -> dict[str, Any] | None:
 
 
 def number(value: float | None) -> float | None:
-    """A number JSON can hold: None for what is missing, infinite or not a number."""
+    """Return a number JSON can hold: None for what is missing, infinite or not a number."""
     return None if value is None or not math.isfinite(value) else float(value)

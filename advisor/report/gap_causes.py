@@ -16,7 +16,7 @@ PRESENT = "●"
 
 
 def ranking(causes: Sequence[Cause]) -> Iterator[RenderableType]:
-    """The causes as a table, the unlikely in a line, then every tie as a sentence."""
+    """Yield the causes as a table, the unlikely in a line, then every tie as a sentence."""
     likely = [c for c in causes if c.present or c.probability >= _LIKELY]
     if likely:
         yield _table(likely)

@@ -26,19 +26,19 @@ _BESIDE_BARS = 34
 
 
 def errors(d: Diagnosis, width: int) -> Text:
-    """Largest error along the manoeuvre with the largest gap, one scale a channel."""
+    """Return the largest error along the manoeuvre with the largest gap, one scale a channel."""
     worst = worst_maneuver(d)
     lines = [line for t in d.traces if t.number == worst for line in _pair(t, max(width - _BESIDE_BARS, 10))]
     return Text("\n".join(lines) or "no traces", no_wrap=True, overflow="crop")
 
 
 def worst_maneuver(d: Diagnosis) -> int:
-    """Number of the manoeuvre with the largest gap."""
+    """Return the number of the manoeuvre with the largest gap."""
     return max(d.gap.by_maneuver, key=lambda row: row[1])[0]
 
 
 def yardsticks(d: Diagnosis) -> Iterator[RenderableType]:
-    """Gap, Theil's coefficient with its split, R² and the share inside the qualification's band."""
+    """Yield gap, Theil's coefficient with its split, R² and the share inside the qualification's band."""
     yield Text("fidelity on manoeuvres kept out, before → after", style="bold")
     yield _yardsticks(d)
     yield Text(_LEGEND, style="dim")

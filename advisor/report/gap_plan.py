@@ -82,7 +82,7 @@ class ForesightScreen:
 
 
 def size_of(f: Foreseen) -> str:
-    """The smallest size that shows, with a unit people use."""
+    """Return the smallest size that shows, with a unit people use."""
     factor, unit = in_units(f.parameter)
     size = abs(factor * f.smallest)
     if f.share is not None:
@@ -106,7 +106,7 @@ def _table(shown: Sequence[Foreseen]) -> Table:
 
 
 def _ways(found: Sequence[Foreseen]) -> list[tuple[str, str]]:
-    """Each pair of twins once, and what would tell the two apart."""
+    """Return each pair of twins once, and what would tell the two apart."""
     ways: dict[frozenset[str], tuple[str, str]] = {}
     for f in found:
         twins = [name for name, cosine in f.confused_with if cosine > CONFUSED_AT]
@@ -134,7 +134,7 @@ def _noise() -> str:
 
 
 def _whole(x: float) -> str:
-    """Two digits; all of them before the point."""
+    """Return two digits; all of them before the point."""
     return f"{x:.0f}" if x >= 100.0 else f"{x:.2g}"
 
 

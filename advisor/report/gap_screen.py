@@ -99,7 +99,7 @@ class GapScreen:
 
 
 def _note(text: str) -> Table:
-    """A note whose further lines stand under its first."""
+    """Return a note whose further lines stand under its first."""
     table = Table.grid(padding=(0, 1))
     table.add_row("·", Text(text))
     return table
@@ -138,7 +138,8 @@ def _where(d: Diagnosis) -> str:
 
 
 def _picture(d: Diagnosis) -> Iterator[RenderableType]:
-    """The simulator as blocks: the guilty one between arrows, others that are named, how well the rest do."""
+    """Yield the simulator as blocks: the guilty one between arrows, others that are named, how well the rest
+    do."""
     table = Table.grid(expand=True, padding=(0, 1))
     guilty = d.where.block if d.verdict in ("effect", "unknown") else ""
     named = {c.block for c in d.causes if c.present} - {guilty}

@@ -40,14 +40,15 @@ _IN_WORDS = {
 
 
 def short(x: float) -> str:
-    """Three digits, never in powers of ten where people count in thousands or it might as well be nothing."""
+    """Return three digits, never in powers of ten where people count in thousands or it might as well be
+    nothing."""
     if abs(x) < _LEAST:
         return "0" if abs(x) < _ROUNDING else "<0.001"
     return f"{x:,.0f}" if 1e3 <= abs(x) < 1e7 else f"{x:.3g}"
 
 
 def in_units(parameter: str) -> tuple[float, str]:
-    """Factor from SI and the unit a parameter is shown in."""
+    """Return the factor from SI and the unit a parameter is shown in."""
     if parameter in _SHARES or parameter in _ICE:
         return 100.0, "%"
     if parameter in _OF_DERIVATIVES:
@@ -74,7 +75,7 @@ def with_error(parameter: str, value: Value) -> str:
 
 
 def sizes_of(cause: Cause) -> list[str]:
-    """Every parameter of a cause, one a line; its name only where there are several."""
+    """Return every parameter of a cause, one a line; its name only where there are several."""
     words = [text for name, text in _IN_WORDS.items() if name in cause.parameters]
     shown = {
         name: with_error(name, value) for name, value in cause.parameters.items() if name not in _IN_WORDS
@@ -89,7 +90,7 @@ def _rounded(x: float, decimals: int, sign: str = "") -> str:
 
 
 def _named(parameter: str) -> str:
-    """A parameter's name without its unit."""
+    """Return a parameter's name without its unit."""
     if parameter in _ICE or parameter in _OF_DERIVATIVES:
         return parameter
     for ending in _ENDINGS:

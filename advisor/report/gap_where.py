@@ -17,7 +17,7 @@ _LEFT = 38
 
 
 def whereabouts(gap: Gap) -> Text:
-    """Phases beside frequencies, then every manoeuvre before and after; bars are in proportion."""
+    """Return phases beside frequencies, then every manoeuvre before and after; bars are in proportion."""
     lines = [*_beside(list(_phases(gap)), list(_bands(gap))), "", *_maneuvers(gap)]
     return Text("\n".join(lines), no_wrap=True, overflow="crop")
 

@@ -14,7 +14,7 @@ from advisor.gap.result import Diagnosis
 
 
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
-    """The aircraft file with the fitted model and the effects found in it."""
+    """Return the aircraft file with the fitted model and the effects found in it."""
     content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
     flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, diagnosis.effects))
     kept = replace(flown, name=Aircraft().name, model={}, effects={}, simulator=None)
@@ -59,7 +59,7 @@ def _digits(x: float) -> float:
 
 
 def _plain(value: Any) -> Any:
-    """Tuples as lists, so that the file reads as people write it."""
+    """Return tuples as lists, so that the file reads as people write it."""
     if isinstance(value, Mapping):
         return {k: _plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):

@@ -24,7 +24,7 @@ class Quantity:
         return f"{self.symbol} [{self.unit}]"
 
     def with_interval(self, value: float, std: float) -> str:
-        """An SI value with its 95 % interval, in digits that mean something: ``-48.3 ± 2.1``."""
+        """Return an SI value with its 95 % interval, in digits that mean something: ``-48.3 ± 2.1``."""
         return with_half(value * self.factor, 1.96 * std * self.factor)
 
 

@@ -40,24 +40,24 @@ UNITS = {
 
 
 def shown(parameter: str, value: float) -> float:
-    """A parameter's value in the unit of ``UNITS`` (SI inside, degrees for people)."""
+    """Return a parameter's value in the unit of ``UNITS`` (SI inside, degrees for people)."""
     return math.degrees(value) if parameter in ("Z_0", "M_0") else value
 
 
 def maneuver_line(judged: JudgedManeuver) -> str:
-    """One line a verdict: number, time, input, verdict and why."""
+    """Return one line a verdict: number, time, input, verdict and why."""
     span, verdict = judged.maneuver.span, judged.verdict
     mark = "✓" if verdict.accepted else "✗"
     return f"{judged.maneuver.number:2d}  {span.start_s:8.2f} s  {span.kind:<15}  {mark} {verdict.sentence}"
 
 
 def activity_line(activity: Activity) -> str:
-    """One line a movement of the elevator that was no test input: when, and what it was."""
+    """Return one line a movement of the elevator that was no test input: when, and what it was."""
     return f" -  {activity.start_s:8.2f} s  to {activity.end_s:8.2f} s      {activity.text}"
 
 
 def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
-    """Each caution once, with the numbers of the manoeuvres it stands on."""
+    """Return each caution once, with the numbers of the manoeuvres it stands on."""
     numbers: dict[str, list[int]] = {}
     for judged in maneuvers:
         for caution in judged.verdict.cautions:
@@ -122,7 +122,7 @@ class AnalysisText:
         yield from self._decision()
 
     def _movements(self) -> Iterator[Text]:
-        """The manoeuvres, and where wanted whatever else moved the elevator, in the order of time."""
+        """Yield the manoeuvres, and where wanted whatever else moved the elevator, in the order of time."""
         lines = []
         for judged in self.state.maneuvers:
             maneuver = judged.maneuver

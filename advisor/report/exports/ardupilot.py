@@ -26,7 +26,7 @@ SERVO_TRAVEL_DEG = 45.0
 
 
 def model_text(improvement: Improvement) -> Exported:
-    """The plane's coefficients as JSON with comments.
+    """Return the plane's coefficients as JSON with comments.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def model_text(improvement: Improvement) -> Exported:
 
 
 def servo_text(improvement: Improvement) -> Exported:
-    """Parameters of ArduPilot's servo model, one a line.
+    """Return parameters of ArduPilot's servo model, one a line.
 
     Alone, ``SIM_SERVO_SPEED`` is the time constant of a first-order lag. With a delay or a filter, it becomes
     a rate limit, and the lag becomes a Butterworth filter of two poles that trails a ramp by the same time.
@@ -96,7 +96,8 @@ def servo_text(improvement: Improvement) -> Exported:
 
 
 def elevator_line(elevator: Elevator) -> tuple[float, float]:
-    """Deflection at 1500 us, and its change over 500 us more, rad: the line through the calibration's ends.
+    """Return the deflection at 1500 us, and its change over 500 us more, rad: the line through the
+    calibration's ends.
 
     Raises
     ------

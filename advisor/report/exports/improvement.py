@@ -53,17 +53,18 @@ class Improvement:
         return SEA_LEVEL_DENSITY_KG_M3 * math.pow(warmth, 4.2559)
 
     def interval95(self, parameter: str) -> tuple[float, float]:
-        """The 95 % interval of one of the eight parameters."""
+        """Return the 95 % interval of one of the eight parameters."""
         found = self.model[parameter]
         return found.value - NORMAL_95 * found.std, found.value + NORMAL_95 * found.std
 
     def differs(self, parameter: str, believed: float) -> bool:
-        """Whether the flight contradicts a believed value: it lies outside the 95 % interval."""
+        """Return whether the flight contradicts a believed value: it lies outside the 95 % interval."""
         low, high = self.interval95(parameter)
         return not low <= believed <= high
 
     def coefficients(self) -> Mapping[str, Coefficient]:
-        """The eight non-dimensional coefficients, per radian: C_L_0 and C_m_0 are those at zero angles.
+        """Return the eight non-dimensional coefficients, per radian: C_L_0 and C_m_0 are those at zero
+        angles.
 
         C_L_0 follows from Z_0 = g/V - q̄·S·C_L0/(m·V), without the part of the thrust in the lift direction.
 

@@ -17,7 +17,7 @@ UNITS = {
 
 
 def script_text(improvement: Improvement) -> Exported:
-    """The script; it needs no toolbox, and leaves all it defines in the workspace."""
+    """Return the script; it needs no toolbox, and leaves all it defines in the workspace."""
     m = {name: improvement.model[name].value for name in PARAMETERS}
     speed, servo = improvement.airspeed_m_s, improvement.servo
     head = commented(

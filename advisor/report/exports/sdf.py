@@ -17,7 +17,7 @@ from advisor.report.exports.improvement import Improvement
 
 
 def block_text(improvement: Improvement) -> Exported:
-    """The two plugins, to be put into a ``<model>``.
+    """Return the two plugins, to be put into a ``<model>``.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def block_text(improvement: Improvement) -> Exported:
 
 
 def _plugin(numbers: dict[str, float], ahead_m: float, joint: dict[str, str]) -> str:
-    """One surface, with what drives its control."""
+    """Return one surface, with what drives its control."""
     texts = {name: f"{value:.8g}" for name, value in numbers.items()} | joint
     inside = "".join(f" <{name}>{text}</{name}>\n" for name, text in texts.items())
     return (

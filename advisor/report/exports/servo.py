@@ -34,7 +34,7 @@ class Servo:
         return self == Servo()
 
     def lines(self) -> list[str]:
-        """Each property with its number and unit, for people."""
+        """Return each property with its number and unit, for people."""
         said = {
             f"delay {self.delay_s:.4g} s": self.delay_s,
             f"lag {self.lag_s:.4g} s": self.lag_s,
@@ -47,7 +47,7 @@ class Servo:
 
 
 def servo_of(elevator: Elevator, effects: Mapping[str, Mapping[str, float]]) -> Servo:
-    """The servo that the aircraft file states, with the effects found beyond the statement."""
+    """Return the servo that the aircraft file states, with the effects found beyond the statement."""
     lag = effects.get("actuator_lag", {})
     band = effects.get("actuator_deadband", {})
     return Servo(

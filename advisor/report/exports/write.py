@@ -125,7 +125,7 @@ def _maker(order: Order) -> Callable[[Improvement], Exported]:
 
 
 def _model(aircraft: Aircraft) -> Model:
-    """The user's JSBSim aircraft, from the specification of the simulator."""
+    """Return the user's JSBSim aircraft, from the specification of the simulator."""
     kind, _, what = (aircraft.simulator or "").partition(":")
     if kind != "jsbsim" or not what:
         raise ConfigurationError(

@@ -7,7 +7,7 @@ from advisor.report.page.content import Content
 
 
 def assumptions(content: Content) -> Section:
-    """Notes of the reading and of the estimate, then the sources of the channels."""
+    """Return notes of the reading and of the estimate, then the sources of the channels."""
     return Section("assumptions", "What was assumed", tuple(_blocks(content)))
 
 

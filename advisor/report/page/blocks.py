@@ -72,5 +72,5 @@ class Section:
 
 
 def listing(items: Sequence[str]) -> tuple[Listing, ...]:
-    """A list, or nothing where it would be empty."""
+    """Return a list, or nothing where it would be empty."""
     return (Listing(tuple(items)),) if items else ()

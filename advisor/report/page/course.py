@@ -83,7 +83,7 @@ def _joined(parts: Sequence[Channel]) -> Channel:
 
 
 def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:
-    """Times and values that draw the same line: lowest and highest of each bin, a break in each gap.
+    """Return times and values that draw the same line: lowest and highest of each bin, a break in each gap.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ _EXPLAINED = (
 
 
 def criterion(content: Content) -> Section:
-    """A figure a rule, and the same as numbers."""
+    """Return a figure a rule, and the same as numbers."""
     return Section("criterion", "Stop criterion", tuple(_blocks(content)))
 
 

@@ -44,7 +44,7 @@ def picture(
     paint: Callable[[Drawing, *Shown], None],
     *shown: *Shown,
 ) -> Callable[[], str]:
-    """A picture that is drawn when it is asked for; parameters as those of :func:`draw`."""
+    """Return a picture that is drawn when it is asked for; parameters as those of :func:`draw`."""
     return lambda: draw(name, width_in, height_in, paint, *shown)
 
 
@@ -76,7 +76,7 @@ def draw(
 
 
 def _inline(svg: str, width_in: float) -> str:
-    """The element alone, as wide as its place allows, with only those ids that are referred to."""
+    """Return the element alone, as wide as its place allows, with only those ids that are referred to."""
     element = svg[svg.index("<svg") :].strip()
     element = re.sub(r' (width|height)="[\d.]+pt"', "", element, count=2)
     element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.DOTALL)

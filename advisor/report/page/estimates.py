@@ -15,7 +15,7 @@ from advisor.report.text import SYMBOLS, UNITS, shown
 
 
 def estimates(content: Content) -> Section:
-    """Joint estimate as a table, a forest plot a parameter, then the table of the manoeuvres."""
+    """Return the joint estimate as a table, a forest plot a parameter, then the table of the manoeuvres."""
     return Section("estimates", "Estimates", tuple(_blocks(content)))
 
 
@@ -65,7 +65,7 @@ def _alone(maneuver: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _narrow(cell: str) -> str:
-    """The cell with one place to break its line, before the interval."""
+    """Return the cell with one place to break its line, before the interval."""
     return cell.replace("± ", "±\N{NO-BREAK SPACE}")
 
 

@@ -22,7 +22,7 @@ _EXPLAINED = (
 
 
 def fits(content: Content) -> Section:
-    """A gallery for each accepted manoeuvre."""
+    """Return a gallery for each accepted manoeuvre."""
     return Section("fits", "Measured against fitted", tuple(_blocks(content)))
 
 

@@ -10,7 +10,7 @@ from advisor.report.qualities import NAMES
 
 
 def flying(content: Content) -> Section:
-    """Numbers, levels, coefficients, air."""
+    """Return numbers, levels, coefficients, air."""
     return Section("flying-qualities", "Flying qualities", tuple(_blocks(content)))
 
 

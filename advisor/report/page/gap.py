@@ -22,7 +22,7 @@ _LINEAR = 10.0
 
 
 def gap(content: Content) -> Section | None:
-    """The diagnosis; None where it was not asked for."""
+    """Return the diagnosis; None where it was not asked for."""
     if content.gap is None:
         return None
     return Section("gap", "Sim-to-real gap", tuple(_blocks(content.gap)))
@@ -68,7 +68,7 @@ def _size(size: Mapping[str, Any], untested: bool) -> str:
 
 
 def _short(value: float) -> str:
-    """Three digits; what is only rounding is 0."""
+    """Return three digits; what is only rounding is 0."""
     return f"{value:.3g}" if abs(value) > _ROUNDING else "0"
 
 

@@ -7,7 +7,7 @@ from advisor.report.page.content import Content
 
 
 def headline(content: Content) -> Section:
-    """Decision, counts, what to fly next, warnings."""
+    """Return decision, counts, what to fly next, warnings."""
     return Section("verdict", "Verdict", tuple(_blocks(content)))
 
 

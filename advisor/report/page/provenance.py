@@ -5,7 +5,7 @@ from advisor.report.page.content import Content
 
 
 def provenance(content: Content) -> Section:
-    """Hashes, versions, command."""
+    """Return hashes, versions, command."""
     origin = content.origin
     return Section(
         "origin",

@@ -21,7 +21,8 @@ from advisor.report.exports.servo import Servo
 
 
 def aircraft_text(improvement: Improvement, model: Model) -> Exported:
-    """The corrected aircraft, measured at the speed and height flown; at sea level where that is not known.
+    """Return the corrected aircraft, measured at the speed and height flown; at sea level where that is not
+    known.
 
     Raises
     ------
@@ -80,7 +81,8 @@ def _left_out(improvement: Improvement, surface: str) -> list[str]:
 def _targets(
     improvement: Improvement, first: Slopes, terms: Mapping[str, Sequence[str]], per_rad: float | None
 ) -> dict[str, float]:
-    """Derivative to the value that the aircraft shall have: those contradicted, and moments that lift moves.
+    """Return the derivative to the value that the aircraft shall have: those contradicted, and moments that
+    lift moves.
 
     ``per_rad`` is how many units of the elevator's property are a radian; None: the property is no angle.
     """
@@ -99,7 +101,7 @@ def _targets(
 
 
 def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float]) -> str:
-    """The comment on top: what changed, in the condition in which that holds."""
+    """Return the comment on top: what changed, in the condition in which that holds."""
     changed = [f"{p} {first.derivatives[p]:.4g} becomes {target:.4g}" for p, target in targets.items()]
     servo = improvement.servo.lines() or ["as it was"]
     return (

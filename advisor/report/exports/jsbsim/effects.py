@@ -20,7 +20,7 @@ CURVES = {
 def functions_of(
     effects: Mapping[str, Mapping[str, float]], slopes: Slopes, surface: str
 ) -> tuple[list[Added], list[str]]:
-    """The functions, and the names of the effects that they carry whole.
+    """Return the functions, and the names of the effects that they carry whole.
 
     Parameters
     ----------

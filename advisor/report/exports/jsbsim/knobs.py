@@ -27,12 +27,12 @@ class Knob:
     """Of the derivative by the number."""
 
     def turned(self, missing: float) -> "Knob":
-        """The knob with the number that makes up for what is missing of the derivative."""
+        """Return the knob with the number that makes up for what is missing of the derivative."""
         return replace(self, change=replace(self.change, value=self.change.value + missing / self.gain))
 
 
 def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) -> Knob:
-    """A knob that changes nothing yet."""
+    """Return a knob that changes nothing yet."""
     axis, variable = AXES[parameter[0]], parameter[2:]
     per_force = first.per_force(parameter[0])
     share = per_force * sum(first.shares[name][COLUMNS.index(variable)] for name in terms)
@@ -44,7 +44,7 @@ def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) 
 
 
 def _turned(knob: Knob, missing: float, first: Slopes, surface: str) -> Knob:
-    """The knob turned by what is missing; a factor below zero becomes an added function."""
+    """Return the knob turned by what is missing; a factor below zero becomes an added function."""
     turned = knob.turned(missing)
     if isinstance(turned.change, Added) or turned.change.value > 0.0:
         return turned
@@ -83,7 +83,7 @@ def settled(
 
 
 def missed(now: Slopes, targets: Mapping[str, float]) -> list[str]:
-    """Derivatives that are not as asked for."""
+    """Return derivatives that are not as asked for."""
     return [
         p for p, target in targets.items()
         if not math.isclose(now.derivatives[p], target, rel_tol=WITHIN, abs_tol=1e-6)

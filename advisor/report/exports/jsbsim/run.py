@@ -33,7 +33,8 @@ class Model:
 
 
 def model_of(what: str) -> Model:
-    """The aircraft that ``jsbsim:`` names, with the engines and systems of its own JSBSim tree, if any.
+    """Return the aircraft that ``jsbsim:`` names, with the engines and systems of its own JSBSim tree, if
+    any.
 
     Raises
     ------

@@ -68,7 +68,7 @@ class Slopes:
     """Whether JSBSim's trim found a throttle that holds the speed."""
 
     def per_force(self, letter: str) -> float:
-        """Change of α̇ (``Z``) by a lift of 1 lb, or of q̇ (``M``) by a moment of 1 lb·ft."""
+        """Return the change of α̇ (``Z``) by a lift of 1 lb, or of q̇ (``M``) by a moment of 1 lb·ft."""
         return -1.0 / self.momentum if letter == "Z" else 1.0 / self.inertia
 
 
@@ -92,7 +92,7 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     fdm.suspend_integration()
 
     def respond(alpha: float, q: float, command: float) -> tuple[Any, Any]:
-        """The variables as they came out, and α̇, q̇ and every term."""
+        """Return the variables as they came out, and α̇, q̇ and every term."""
         fdm["ic/alpha-rad"], fdm["ic/q-rad_sec"] = alpha, q
         fdm["fcs/elevator-cmd-norm"] = command
         fdm.run_ic()

@@ -76,7 +76,7 @@ def parse(content: bytes, name: str) -> ET.Element:
 
 
 def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
-    """Derivative to the names of the model's functions that make it, in the order of the file."""
+    """Return the derivative to the names of the model's functions that make it, in the order of the file."""
     found: dict[str, tuple[str, ...]] = {}
     for letter, axis in AXES.items():
         for function in _functions(root, axis):
@@ -89,7 +89,7 @@ def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
 
 
 def surface_of(root: ET.Element) -> str:
-    """The property of the elevator's position that the pitching moment depends on."""
+    """Return the property of the elevator's position that the pitching moment depends on."""
     for function in _functions(root, "PITCH"):
         for text in _properties(function):
             if VARIABLES["delta_e"].fullmatch(text):
@@ -98,7 +98,7 @@ def surface_of(root: ET.Element) -> str:
 
 
 def corrected(content: bytes, name: str, changes: Sequence[Factor | Added], servo: Servo, note: str) -> str:
-    """The aircraft's text with all changes made and the servo behind the elevator's command.
+    """Return the aircraft's text with all changes made and the servo behind the elevator's command.
 
     Raises
     ------
