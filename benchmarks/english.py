@@ -75,6 +75,8 @@ _NO_VERB = re.compile(
 _SENTENCE_END = re.compile(
     r"(?<=[.!?])(?<!\be\.g\.)(?<!\bi\.e\.)(?<!Eq\.)(?<!\bcf\.)(?<!\bvs\.)\s+(?=[A-Z`*\"“(Δαθ])"
 )
+_MESSAGE_END = re.compile(rf";\s+|{_SENTENCE_END.pattern}")
+"""A message says what is wrong before a semicolon, and the next step after it."""
 _PLACEHOLDER = "X"
 _GENERATED = "Made by `make"
 
@@ -107,7 +109,7 @@ def main() -> int:
         for text, finding in found:
             print(f"{text.path.relative_to(REPOSITORY)}:{text.line}: {finding}")
     counts = Counter(_room(text.path) for text, _ in found)
-    for room in sorted(counts.keys() | ALLOWED.keys()):
+    for room in sorted(counts):
         limit = ALLOWED.get(room, 0)
         verdict = "  ABOVE: see --list" if counts[room] > limit else ""
         print(f"{room:24s}{counts[room]:6d}  limit {limit}{verdict}")
@@ -160,7 +162,7 @@ def _python_texts(path: Path) -> Iterator[Text]:
             inside.update(id(part) for part in ast.walk(node))
         sentence = _literal(node)
         if _is_sentence(sentence):
-            yield Text(path, node.lineno, "string", tuple(_SENTENCE_END.split(sentence)))
+            yield Text(path, node.lineno, "string", tuple(_MESSAGE_END.split(sentence)))
 
 
 def _kind(node: ast.AST) -> str:

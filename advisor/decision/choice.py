@@ -1,4 +1,4 @@
-"""Which input to fly: every one worth trying, as large as the limits allow, by what it would teach."""
+"""Choice of the next input: candidates as large as the limits allow, compared by their information."""
 
 from collections.abc import Callable, Iterator
 
@@ -11,7 +11,7 @@ from advisor.flight.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
 Choice = tuple[StepInput, FloatArray]
-"""An input and the (8, 8) covariance of the errors to expect from it."""
+"""An input, and the (8, 8) covariance of the errors expected from flying the input."""
 
 
 def best_input(
@@ -23,10 +23,10 @@ def best_input(
     Parameters
     ----------
     measured_std
-        (8,) errors of the last manoeuvre as estimated. Whatever made them (colour of the residuals,
-        further outputs) holds for the next one too; the prediction supplies the ratio between inputs.
+        (8,) standard deviations of the last manoeuvre's estimate. Their causes (coloured residuals,
+        further outputs) persist in the next manoeuvre. The prediction supplies the ratio between inputs.
     unrest
-        What errors of the next manoeuvre, given as their covariance, leave in the way of the stop.
+        Covariance of the next manoeuvre's errors to a measure of the distance to the stop.
     """
     repeated = expect(conditions.theta, conditions.flown, conditions.instruments)
     if repeated is None:
@@ -38,7 +38,7 @@ def best_input(
 
 
 def _options(conditions: Conditions) -> Iterator[Choice]:
-    """Yield inputs in the direction not flown last."""
+    """Yield inputs in the direction that was not flown last, with their expected errors."""
     frequency = ShortPeriod(conditions.theta).natural_frequency
     if not np.isfinite(frequency) or frequency <= 0.0:
         return

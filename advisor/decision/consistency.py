@@ -1,4 +1,4 @@
-"""Do the manoeuvres agree as well as their errors say: which one is the odd one, and how much wider to be."""
+"""Consistency of manoeuvres: outliers among them, and the factor by which scatter widens the intervals."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,31 +16,31 @@ from advisor.decision.pooling import (
 )
 
 WIDEN_BELOW = 0.05
-"""Chance level below which scatter between manoeuvres widens the intervals."""
+"""Probability below which scatter between manoeuvres widens the intervals."""
 ODD_BELOW = 1e-3
-"""Chance level below which an odd manoeuvre is looked for."""
+"""Probability below which an outlier is looked for."""
 ODD_IMPROVEMENT = 3.0
-"""Leaving out an odd manoeuvre must lower χ² per degree of freedom by this factor."""
+"""Least factor by which leaving out an outlier must lower χ² per degree of freedom."""
 FEWEST = 4
-"""With fewer manoeuvres nobody knows which one is odd."""
+"""Fewest manoeuvres among which an outlier can be identified."""
 
 
 @dataclass(frozen=True, slots=True)
 class Odd:
-    """How far a manoeuvre is from what all the others say."""
+    """Distance of an outlying manoeuvre from all others."""
 
     sigma: float
-    """Mahalanobis distance of its derivatives."""
+    """Mahalanobis distance of the manoeuvre's derivatives."""
     limit: float
-    """What chance exceeds once in a thousand."""
+    """Distance that chance exceeds once in a thousand cases."""
 
 
 def odd_ones(beliefs: Sequence[Belief]) -> Mapping[int, Odd]:
-    """Return manoeuvres that contradict all the others, which agree among themselves, by their index.
+    """Return manoeuvres that contradict all the others, which agree with each other, by their index.
 
-    A search may end in a wrong minimum, or a gust may look like a response: such an estimate has a
-    small stated error and would spoil every mean. At most a third of the manoeuvres is odd; more is
-    not oddness but a change, or errors that are stated too small.
+    A search may end in a wrong minimum, or a gust may look like a response. Such an estimate has a small
+    stated error and would spoil every mean. At most a third of the manoeuvres are outliers. More
+    contradictions mean a change of the aircraft, or stated errors that are too small.
     """
     inside = list(range(len(beliefs)))
     odd: list[int] = []
@@ -71,7 +71,7 @@ def excess(beliefs: Sequence[Belief]) -> float:
     """Return the variance ratio of the scatter between manoeuvres to their stated errors, 1 unless
     significant.
 
-    The Birge ratio of metrology: χ² of the derivatives about their pooled value over its degrees of
+    The Birge ratio of metrology: χ² of the derivatives about their pooled value, divided by its degrees of
     freedom.
     """
     if len(beliefs) < 2:
@@ -81,12 +81,13 @@ def excess(beliefs: Sequence[Belief]) -> float:
 
 
 def widened(belief: Belief, factor: float) -> Belief:
-    """Return the same value with ``factor`` times its variance."""
+    """Return the estimate with ``factor`` times its variance."""
     return Belief(belief.theta, factor * belief.covariance)
 
 
 def consensus(beliefs: Sequence[Belief]) -> tuple[Belief, float, tuple[int, ...]]:
-    """Return the pooled belief without the odd manoeuvres, the widening in it, and who was left out."""
+    """Return the pooled estimate without outliers, the factor that widened its variance, and the indices of
+    the outliers."""
     odd = tuple(odd_ones(beliefs))
     agreeing = [belief for i, belief in enumerate(beliefs) if i not in odd]
     factor = excess(agreeing)

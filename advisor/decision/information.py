@@ -1,10 +1,10 @@
-"""The rule ``information``: stop when flying more changes nothing that matters.
+"""The rule ``information``: stop when further manoeuvres change nothing that matters.
 
-The paper's criterion asks whether the last estimates scatter little beside their mean. That has no
-scale where a parameter is near zero, and it forgets every manoeuvre outside its window. This rule asks
-what the model is for. Is the 95 % band of the predicted response within the tolerance? Was the newest
-manoeuvre predicted before the estimate had used it? Is each derivative that the crew named within its
-own tolerance? A parameter that moves no prediction and is not named holds nobody up.
+The paper's criterion asks whether the last estimates scatter little relative to their mean. That ratio has no
+scale where a parameter is near zero, and it ignores every manoeuvre outside its window. This rule asks three
+questions about the use of the model. Is the 95 % band of the predicted response within the tolerance? Was the
+newest manoeuvre predicted before the estimate had used it? Is each derivative that the crew named within its
+own tolerance? A parameter that moves no prediction and is not named delays no stop.
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,57 +22,64 @@ from advisor.decision.tolerance import tolerances
 from advisor.flight.messages import FloatArray
 
 SURPRISING = 0.01
-"""Chance level below which a manoeuvre contradicts its prediction."""
+"""Probability below which a manoeuvre contradicts its prediction."""
 
 
 @dataclass(frozen=True, slots=True)
 class Knowledge:
-    """How well the aircraft is known after some manoeuvres."""
+    """Knowledge of the aircraft after some manoeuvres."""
 
     belief: Belief
-    """From all manoeuvres that agree; wider when they scatter more than their intervals say."""
+    """Pooled estimate of all consistent manoeuvres, wider where they scatter more than their stated
+    errors."""
     prediction: Prediction
-    """The response to what was flown."""
+    """Predicted response to the flown inputs."""
     tolerance_percent: float
-    """What the half-width of the band must stay below, in percent of the response's peak."""
+    """Tolerance for the half-width of the prediction's 95 % band, % of the response's peak."""
     named: tuple[str, ...]
     """Parameters that have a tolerance of their own."""
     tolerance: FloatArray
-    """Shape (8,). What the 95 % half-width of a named parameter must stay below."""
+    """Shape (8,). Tolerance for the 95 % half-width of each named parameter."""
     surprise: float
-    """Distance of the newest from its prediction, as a share of the 99 % limit; NaN without one."""
+    """Distance of the newest manoeuvre from its prediction, as a share of the 99 % limit. NaN without a
+    prediction."""
     missed_percent: float
-    """Largest error of the newest's predicted response, in percent of its peak; NaN without one."""
+    """Largest error of the newest manoeuvre's predicted response, % of the response's peak. NaN without a
+    prediction."""
     foretold_percent: float
-    """The 95 % band of that prediction, in percent of its peak; NaN without one."""
+    """Half-width of the 95 % band of the newest manoeuvre's prediction, % of its peak. NaN without a
+    prediction."""
     widening: float
     """Variance ratio by which contradictions between manoeuvres have widened ``belief``, at least 1."""
     left_out: tuple[int, ...]
     """Indices of manoeuvres that contradict all the others."""
     not_identifiable: Mapping[str, str]
-    """Parameter to the reason, where no manoeuvre could tell it: a small error is then no knowledge."""
+    """Parameter to the reason for which no manoeuvre identifies it. Its small stated error is then no
+    knowledge."""
 
     @property
     def predicted(self) -> bool:
-        """Whether the manoeuvres before predicted the newest.
+        """Whether the earlier manoeuvres predicted the newest.
 
-        The predicted response came true within the tolerance: a small error of the model, which no interval
-        of a long campaign contains, does not withhold the stop. Or chance explains the difference, and the
-        prediction was surer than the tolerance: an unsure one agrees with anything.
+        Either the error of the predicted response is within the tolerance. Such a small error of the model,
+        which no interval of a long campaign contains, does not delay the stop. Or chance explains the error,
+        and the prediction was more precise than the tolerance. An imprecise prediction would agree with any
+        response.
         """
         unsure = self.foretold_percent >= self.tolerance_percent
         return self.missed_percent < self.tolerance_percent or (self.surprise < 1.0 and not unsure)
 
     @property
     def prediction_percent(self) -> Mapping[str, float]:
-        """Output to the half-width of its 95 % band at the widest, in percent of its peak."""
+        """Output to the largest half-width of its 95 % band, % of its peak."""
         return self.prediction.percent(self.belief.shared.covariance)
 
     @property
     def share(self) -> Mapping[str, float]:
-        """What must be known to its uncertainty as a share of its tolerance; infinite when unknown.
+        """Criterion's quantity to its uncertainty as a share of its tolerance. Infinite for an unknown
+        quantity.
 
-        Outputs by their name, then the named parameters.
+        The quantities are the outputs by their names, then the named parameters.
         """
         known = np.isfinite(self.belief.std) & np.isfinite(self.belief.theta)
         known &= [name not in self.not_identifiable for name in PARAMETERS]
@@ -80,18 +87,18 @@ class Knowledge:
         return self.shares_with(self.prediction_percent, half)
 
     def shares_with(self, band_percent: Mapping[str, float], half: FloatArray) -> Mapping[str, float]:
-        """As ``share``, for other bands and other (8,) half-widths over tolerance."""
+        """Return ``share`` for given bands of the outputs, and given (8,) half-widths over tolerance."""
         bands = {name: percent / self.tolerance_percent for name, percent in band_percent.items()}
         return bands | {name: float(half[PARAMETERS.index(name)]) for name in self.named}
 
     @property
     def percent(self) -> float:
-        """The criterion: the largest `share`, in percent; stop below 100."""
+        """Criterion of the rule: the largest `share`, in percent. Below 100 the rule says stop."""
         return 100.0 * max(self.share.values(), default=float("inf"))
 
     @property
     def holding_back(self) -> str:
-        """The output or parameter with the largest `share`."""
+        """Output or parameter with the largest `share`, which delays the stop."""
         share = self.share
         return max(share, key=lambda name: share[name], default="")
 
@@ -102,7 +109,7 @@ class Knowledge:
 
 
 def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
-    """What is known after usable manoeuvres (at least one), in the order flown."""
+    """Return the knowledge after at least one usable manoeuvre, in the order flown."""
     estimates = estimates_of(usable)
     beliefs, airspeed = beliefs_at_one_speed(estimates), common_airspeed(estimates)
     belief, widening, left_out = consensus(beliefs)
@@ -132,7 +139,7 @@ def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
 def _compared(
     newest: Flown, beliefs: Sequence[Belief], airspeed_m_s: float | None
 ) -> tuple[float, float, float]:
-    """Return the newest manoeuvre against those before: ``surprise``, ``missed_percent``,
+    """Return the comparison of the newest manoeuvre with its prediction: ``surprise``, ``missed_percent``,
     ``foretold_percent``."""
     if len(beliefs) < 2:
         return float("nan"), float("nan"), float("nan")

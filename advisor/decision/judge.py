@@ -1,4 +1,4 @@
-"""Was that manoeuvre good: what speaks against it itself, then the rule the crew chose."""
+"""Verdict on a manoeuvre: first objections to the manoeuvre itself, then the rule that the crew chose."""
 
 from collections.abc import Container, Mapping, Sequence
 from math import floor
@@ -15,17 +15,18 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.rounding import distinct_texts
 
 COLOURED = 0.5
-"""Lag-1 correlation of a residual below which nothing drives it."""
+"""Lag-1 correlation of a residual above which the residual counts as driven, by moving air or a model
+error."""
 
 
 def judge_campaign(
     history: Sequence[Flown], plan: CampaignPlan, course: Course | None = None
 ) -> tuple[ManeuverVerdict, ...]:
-    """Return verdicts on all manoeuvres flown so far, in the same order, each with what every rule says.
+    """Return verdicts on all manoeuvres so far, in the order flown, each with the result of every rule.
 
-    A verdict depends only on the manoeuvres before it, unless one of them is excluded by hand; under the
-    rule ``information`` later ones may show that it contradicts all the others. A ``course`` keeps what
-    earlier decisions on this campaign found; the verdicts are those without one.
+    A verdict depends only on the earlier manoeuvres, with two exceptions. A manoeuvre may be excluded by
+    hand. Under the rule ``information`` later manoeuvres may show that it contradicts all the others. A
+    ``course`` keeps results of earlier decisions, and changes no verdict.
     """
     course = course or Course(plan)
     odd = contradicting(history)
@@ -41,12 +42,12 @@ def judge_campaign(
 
 
 def judge(flown: Flown, history: Sequence[Flown], plan: CampaignPlan) -> ManeuverVerdict:
-    """Return the verdict on the newest manoeuvre, given those before it."""
+    """Return the verdict on the newest manoeuvre, given the earlier ones."""
     return judge_campaign([*history, flown], plan)[-1]
 
 
 def results_of(history: Sequence[Flown], rule: Rule) -> tuple[RuleResult, ...]:
-    """What one rule says of every manoeuvre."""
+    """Return the result of one rule for every manoeuvre."""
     return _results(history, rule, contradicting(history) if rule == "information" else ())
 
 
@@ -59,7 +60,7 @@ def _results(history: Sequence[Flown], rule: Rule, odd: Container[int]) -> tuple
 
 
 def contradicting(history: Sequence[Flown]) -> Mapping[int, Odd]:
-    """Return usable manoeuvres that contradict all the others, by their index: ``information`` leaves them
+    """Return usable manoeuvres that contradict all the others, by index. The rule ``information`` leaves them
     out."""
     usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
     odd = odd_ones(beliefs_at_one_speed([estimate for _, estimate in usable]))
@@ -67,7 +68,7 @@ def contradicting(history: Sequence[Flown]) -> Mapping[int, Odd]:
 
 
 def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
-    """Return estimates of the manoeuvres that ``rule`` accepts, in the order flown."""
+    """Return the estimates of the manoeuvres that ``rule`` accepts, in the order flown."""
     return [
         estimate
         for flown, result in zip(history, results_of(history, rule), strict=True)
@@ -122,14 +123,14 @@ def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
 
 
 def _explained(estimate: Estimate) -> str:
-    """Return how much of the motion the model explains; nothing of a record without any."""
+    """Return a clause on the share of the motion that the model explains; empty without a fit."""
     share = min(fit.r2 for name, fit in estimate.fits[0].items() if name in ("alpha", "q"))
-    # Cut, not rounded: 100 % is said of an exact fit only.
+    # Cut, not rounded: 100 % is printed for an exact fit only.
     return f"the model explains {floor(1000.0 * share) / 10.0:.1f} % of it; " if share > 0.0 else ""
 
 
 def _of_limit(cost: float, limit: float) -> str:
-    """Return a cost beside its limit: its unit tells nobody anything, the ratio does."""
+    """Return a cost as a multiple of its limit, for the unit of a cost means nothing to a reader."""
     if limit <= 0.0:
         return "cost above its limit, 0"
     ratio = distinct_texts(cost / limit, 1.0, 2)[0]
@@ -163,7 +164,7 @@ _LESS_WELL = "less well than the last accepted one"
 
 
 def _another_try(flown: Flown, estimate: Estimate, rule: Rule) -> str:
-    """What to do better: calmer air only where the air moved."""
+    """Return the advice for another try. Calmer air is advised only where the air moved."""
     if flown.air_moved:
         return "fly it again in calmer air"
     if rule == "separate":

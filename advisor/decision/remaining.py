@@ -1,4 +1,4 @@
-"""How many more manoeuvres: what each rule needs when the next ones teach as expected."""
+"""Expected number of further manoeuvres, for each rule, if the next ones give the expected information."""
 
 from collections.abc import Sequence
 
@@ -16,22 +16,22 @@ from advisor.decision.verdict import Remaining
 from advisor.flight.messages import FloatArray
 
 MOST = 50
-"""Beyond this many there is no end in sight."""
+"""Largest number that is predicted. Beyond it there is no end in sight."""
 _DRAWS = 400
 
 
 def by_information(known: Knowledge, next_covariance: FloatArray, usable_share: float) -> Remaining:
-    """Return more manoeuvres until all that must be known is within its tolerance and the newest is
+    """Return the number of further manoeuvres until every tolerance is met and the newest manoeuvre is
     predicted.
 
     Parameters
     ----------
     known
-        What is known now.
+        Present knowledge.
     next_covariance
-        (8, 8) of the errors to expect from each further manoeuvre.
+        (8, 8) covariance of the errors expected from each further manoeuvre.
     usable_share
-        Share of manoeuvres that turn out usable.
+        Share of manoeuvres that are usable.
     """
     good = 1 if np.isnan(known.surprise) or not known.predicted else 0
     while good <= MOST and share_after(known, next_covariance, good) >= 1.0:
@@ -42,10 +42,10 @@ def by_information(known: Knowledge, next_covariance: FloatArray, usable_share: 
 
 
 def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> float:
-    """Return the largest uncertainty over its tolerance after ``more`` manoeuvres with errors as in
-    ``next_covariance``.
+    """Return the largest uncertainty over its tolerance after ``more`` manoeuvres with ``next_covariance``
+    each.
 
-    Trims and the constants that hold them are each manoeuvre's own: only their variances add up.
+    Trims and the constants that hold them belong to each manoeuvre: only their variances add up.
     """
     inside = np.ix_(DERIVATIVES, DERIVATIVES)
     information = known.belief.information + more * information_of(next_covariance[inside])
@@ -60,16 +60,17 @@ def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> flo
 def by_scatter(
     window: FloatArray, belief: Belief, next_std: FloatArray, plan: CampaignPlan, accepted_share: float
 ) -> Remaining:
-    """Return more manoeuvres until the scatter of the last n accepted ones is below the limit, by simulation.
+    """Return the number of further manoeuvres until the scatter of the last n accepted ones is low enough, by
+    simulation.
 
     Parameters
     ----------
     window
-        (k, 8) the last accepted estimates, at most n - 1 of which stay in the next window.
+        (k, 8) last accepted estimates. At most n - 1 of them stay in the next window.
     belief
-        The values about which the next estimates scatter, with their errors.
+        Values about which the next estimates scatter, with their errors.
     next_std
-        (8,) that scatter.
+        (8,) standard deviations of that scatter.
     accepted_share
         Share of manoeuvres that the rule accepts.
     """
@@ -92,14 +93,13 @@ def by_scatter(
 
 
 def usable_share(history: Sequence[Flown]) -> float:
-    """Return the share of manoeuvres that were usable, with the experience of nine good out of ten before the
-    first."""
+    """Return the share of usable manoeuvres so far, with a prior of nine good manoeuvres out of ten."""
     good = sum(flown.usable is not None for flown in history)
     return (good + 9.0) / (len(history) + 10.0)
 
 
 def _flights_for(good: int, share: float, confidence: float) -> int:
-    """Return flights within which ``good`` usable ones come about with this confidence (negative
+    """Return the number of flights that give ``good`` usable ones with this confidence (negative
     binomial)."""
     spoilt = 0
     # To rounding: half of all chances may be reached exactly.
