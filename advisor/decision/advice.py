@@ -60,16 +60,16 @@ def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | Non
 
 def _choose(conditions: Conditions, known: Knowledge, plan: CampaignPlan) -> Choice | None:
     std = np.sqrt(known.widening * np.diag(conditions.last_covariance))
-    return best_input(conditions, std, lambda expected: _unrest(expected, plan, known))
+    return best_input(conditions, std, lambda expected: _distance_to_stop(expected, plan, known))
 
 
-def _unrest(covariance: FloatArray, plan: CampaignPlan, known: Knowledge) -> float:
+def _distance_to_stop(covariance: FloatArray, plan: CampaignPlan, known: Knowledge) -> float:
     """Return a measure of the distance to the stop after one more manoeuvre with these errors; smaller is
     better."""
     if plan.rule == "information":
         return share_after(known, covariance, 1)
     std = np.sqrt(np.diag(covariance))
-    size = np.maximum(np.abs(known.belief.theta), known.belief.std)
+    size = np.maximum(np.abs(known.posterior.theta), known.posterior.std)
     return float(np.linalg.norm(std / size))
 
 
@@ -81,7 +81,7 @@ def _remaining(
         return by_information(known, next_covariance, share)
     members = np.array([e.theta for e in accepted_estimates(history, plan.rule)]).reshape(-1, len(PARAMETERS))
     next_std = np.sqrt(np.diag(next_covariance))
-    return by_scatter(members, known.belief, next_std, plan, share * PASSING.get(plan.rule, 1.0))
+    return by_scatter(members, known.posterior, next_std, plan, share * PASSING.get(plan.rule, 1.0))
 
 
 def _held_by(history: Sequence[Flown], plan: CampaignPlan, known: Knowledge) -> str:

@@ -13,18 +13,18 @@ import numpy as np
 from scipy.special import chdtri
 
 from advisor.aircraft import PARAMETERS
-from advisor.decision.consistency import odd_ones
+from advisor.decision.consistency import outliers
 from advisor.decision.history import Flown
 from advisor.decision.inverses import information_of
 from advisor.decision.pooling import (
     DERIVATIVES,
-    Belief,
     Pooled,
+    Posterior,
     Shared,
-    beliefs_at_one_speed,
     disagreement,
     pooled,
     pooled_on_both_sides,
+    posteriors_at_one_speed,
 )
 from advisor.flight.messages import FloatArray
 
@@ -75,13 +75,13 @@ def find_change(history: Sequence[Flown]) -> Change | None:
     At least two manoeuvres must stand before the change. With only one, either side may be the outlier.
     """
     flown = [(i, e) for i, m in enumerate(history, start=1) if (e := m.usable)]
-    beliefs = beliefs_at_one_speed([e for _, e in flown])
-    odd = [k for k in odd_ones(beliefs) if k < len(beliefs) - 1]
-    numbers = [i for k, (i, _) in enumerate(flown) if k not in odd]
-    beliefs = [belief for k, belief in enumerate(beliefs) if k not in odd]
-    if len(beliefs) < 3:
+    posteriors = posteriors_at_one_speed([e for _, e in flown])
+    excluded = [k for k in outliers(posteriors) if k < len(posteriors) - 1]
+    numbers = [i for k, (i, _) in enumerate(flown) if k not in excluded]
+    posteriors = [posterior for k, posterior in enumerate(posteriors) if k not in excluded]
+    if len(posteriors) < 3:
         return None
-    splits = pooled_on_both_sides(beliefs)[1:]
+    splits = pooled_on_both_sides(posteriors)[1:]
     apart = [_compare(before, after) for before, after in splits]
     k = int(np.argmax(apart))
     if apart[k] <= 1.0:
@@ -90,10 +90,10 @@ def find_change(history: Sequence[Flown]) -> Change | None:
     k += 2
     widening = _widening(first, second)
     moved = _moved(first.shared, second.shared, widening)
-    if not moved or _back_to_normal(first, beliefs[k:]):
+    if not moved or _back_to_normal(first, posteriors[k:]):
         return None
     looks_like = _simplest_cause(first.shared, second.shared, widening)
-    return _told(numbers[k - 1], numbers[k], len(beliefs) > k + 1, moved, looks_like)
+    return _told(numbers[k - 1], numbers[k], len(posteriors) > k + 1, moved, looks_like)
 
 
 def _compare(before: Pooled, after: Pooled) -> float:
@@ -111,7 +111,7 @@ def _widening(before: Pooled, after: Pooled) -> float:
     return max(1.0, (before.inconsistency + after.inconsistency) / dof) if dof > 0 else 1.0
 
 
-def _back_to_normal(before: Pooled, after: Sequence[Belief]) -> bool:
+def _back_to_normal(before: Pooled, after: Sequence[Posterior]) -> bool:
     """Return whether the newest manoeuvre agrees with those before the change. Then the others were merely
     poor."""
     if len(after) < 2:

@@ -15,17 +15,16 @@ Choice = tuple[StepInput, FloatArray]
 
 
 def best_input(
-    conditions: Conditions, measured_std: FloatArray, unrest: Callable[[FloatArray], float]
+    conditions: Conditions, measured_std: FloatArray, distance_to_stop: Callable[[FloatArray], float]
 ) -> Choice | None:
-    """Return the input with the least ``unrest`` of its expected errors; None when the model allows no
-    prediction.
+    """Return the input whose expected errors leave the least ``distance_to_stop``; None without a prediction.
 
     Parameters
     ----------
     measured_std
         (8,) standard deviations of the last manoeuvre's estimate. Their causes (coloured residuals,
         further outputs) persist in the next manoeuvre. The prediction supplies the ratio between inputs.
-    unrest
+    distance_to_stop
         Covariance of the next manoeuvre's errors to a measure of the distance to the stop.
     """
     repeated = expect(conditions.theta, conditions.flown, conditions.instruments)
@@ -34,7 +33,7 @@ def best_input(
     ratio = measured_std / repeated.std
     scale = np.outer(ratio, ratio)
     expected = [(option, covariance * scale) for option, covariance in _options(conditions)]
-    return min(expected, key=lambda choice: unrest(choice[1])) if expected else None
+    return min(expected, key=lambda choice: distance_to_stop(choice[1])) if expected else None
 
 
 def _options(conditions: Conditions) -> Iterator[Choice]:

@@ -61,7 +61,7 @@ def find_conditions(history: Sequence[Flown], aircraft: Aircraft, course: Course
     _, estimate, last = flown[-1]
     fits = estimate.fits[0]
     span, elevator = last.span, last.channels["elevator"]
-    theta = course.known(usable_ones(history)).belief.theta
+    theta = course.known(usable_ones(history)).posterior.theta
     trim = trim_of(last)
     travel = _travel(aircraft, trim)
     largest_seen = max(_excursion(m, e) for m, e, _ in flown)

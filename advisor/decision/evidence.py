@@ -58,7 +58,7 @@ def evidence(known: Knowledge) -> tuple[str, ...]:
     bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
     named = ", ".join(f"{name} {100.0 * share[name]:.0f} %" for name in known.named)
     weak = ", ".join(
-        f"{PARAMETERS[k]} {known.belief.theta[k]:.3g} ± {Z95 * known.belief.std[k]:.2g}"
+        f"{PARAMETERS[k]} {known.posterior.theta[k]:.3g} ± {Z95 * known.posterior.std[k]:.2g}"
         for k in DERIVATIVES
         if PARAMETERS[k] not in known.named
     )

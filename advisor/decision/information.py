@@ -16,7 +16,7 @@ from scipy.special import chdtri
 from advisor.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.consistency import consensus, widened
 from advisor.decision.history import Flown, estimates_of
-from advisor.decision.pooling import Belief, Shared, beliefs_at_one_speed, common_airspeed, disagreement
+from advisor.decision.pooling import Posterior, Shared, common_airspeed, disagreement, posteriors_at_one_speed
 from advisor.decision.prediction import Z95, Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
 from advisor.flight.messages import FloatArray
@@ -29,7 +29,7 @@ SURPRISING = 0.01
 class Knowledge:
     """Knowledge of the aircraft after some manoeuvres."""
 
-    belief: Belief
+    posterior: Posterior
     """Pooled estimate of all consistent manoeuvres, wider where they scatter more than their stated
     errors."""
     prediction: Prediction
@@ -50,7 +50,7 @@ class Knowledge:
     """Half-width of the 95 % band of the newest manoeuvre's prediction, % of its peak. NaN without a
     prediction."""
     widening: float
-    """Variance ratio by which contradictions between manoeuvres have widened ``belief``, at least 1."""
+    """Variance ratio by which contradictions between manoeuvres have widened ``posterior``, at least 1."""
     left_out: tuple[int, ...]
     """Indices of manoeuvres that contradict all the others."""
     not_identifiable: Mapping[str, str]
@@ -72,7 +72,7 @@ class Knowledge:
     @property
     def prediction_percent(self) -> Mapping[str, float]:
         """Output to the largest half-width of its 95 % band, % of its peak."""
-        return self.prediction.percent(self.belief.shared.covariance)
+        return self.prediction.percent(self.posterior.shared.covariance)
 
     @property
     def share(self) -> Mapping[str, float]:
@@ -81,9 +81,9 @@ class Knowledge:
 
         The quantities are the outputs by their names, then the named parameters.
         """
-        known = np.isfinite(self.belief.std) & np.isfinite(self.belief.theta)
+        known = np.isfinite(self.posterior.std) & np.isfinite(self.posterior.theta)
         known &= [name not in self.not_identifiable for name in PARAMETERS]
-        half = np.where(known, Z95 * np.where(known, self.belief.std, 0.0) / self.tolerance, np.inf)
+        half = np.where(known, Z95 * np.where(known, self.posterior.std, 0.0) / self.tolerance, np.inf)
         return self.shares_with(self.prediction_percent, half)
 
     def shares_with(self, band_percent: Mapping[str, float], half: FloatArray) -> Mapping[str, float]:
@@ -111,18 +111,18 @@ class Knowledge:
 def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
     """Return the knowledge after at least one usable manoeuvre, in the order flown."""
     estimates = estimates_of(usable)
-    beliefs, airspeed = beliefs_at_one_speed(estimates), common_airspeed(estimates)
-    belief, widening, left_out = consensus(beliefs)
+    posteriors, airspeed = posteriors_at_one_speed(estimates), common_airspeed(estimates)
+    posterior, widening, left_out = consensus(posteriors)
     agreeing = [flown for i, flown in enumerate(usable) if i not in left_out]
-    surprise, missed, foretold = _compared(usable[-1], beliefs, airspeed)
+    surprise, missed, foretold = _compared(usable[-1], posteriors, airspeed)
     used = estimates_of(agreeing)
-    prediction = predict(agreeing, belief.shared.theta, airspeed)
+    prediction = predict(agreeing, posterior.shared.theta, airspeed)
     return Knowledge(
-        belief=belief,
+        posterior=posterior,
         prediction=prediction,
         tolerance_percent=plan.tolerance_percent,
         named=plan.parameters,
-        tolerance=tolerances(belief.theta, prediction, plan),
+        tolerance=tolerances(posterior.theta, prediction, plan),
         surprise=surprise,
         missed_percent=missed,
         foretold_percent=foretold,
@@ -137,14 +137,14 @@ def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
 
 
 def _compared(
-    newest: Flown, beliefs: Sequence[Belief], airspeed_m_s: float | None
+    newest: Flown, posteriors: Sequence[Posterior], airspeed_m_s: float | None
 ) -> tuple[float, float, float]:
     """Return the comparison of the newest manoeuvre with its prediction: ``surprise``, ``missed_percent``,
     ``foretold_percent``."""
-    if len(beliefs) < 2:
+    if len(posteriors) < 2:
         return float("nan"), float("nan"), float("nan")
-    before, excess, _ = consensus(beliefs[:-1])
-    own: Shared = widened(beliefs[-1], excess).shared
+    before, excess, _ = consensus(posteriors[:-1])
+    own: Shared = widened(posteriors[-1], excess).shared
     distance, dof = disagreement(before.shared, own)
     surprise = distance / float(chdtri(dof, SURPRISING)) if dof else float("nan")
     bands = predict([newest], before.shared.theta, airspeed_m_s).percent(before.shared.covariance)

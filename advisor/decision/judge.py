@@ -5,11 +5,11 @@ from math import floor
 
 from advisor.aircraft import CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
-from advisor.decision.consistency import Odd, odd_ones
+from advisor.decision.consistency import Outlier, outliers
 from advisor.decision.course import Course
 from advisor.decision.history import Flown
 from advisor.decision.larger import Larger, larger_and_agreeing
-from advisor.decision.pooling import beliefs_at_one_speed
+from advisor.decision.pooling import posteriors_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.rounding import distinct_texts
@@ -29,15 +29,15 @@ def judge_campaign(
     ``course`` keeps results of earlier decisions, and changes no verdict.
     """
     course = course or Course(plan)
-    odd = contradicting(history)
-    by_rule = {rule: _results(history, rule, odd) for rule in MANEUVER_RULES}
+    contradicted = contradicting(history)
+    by_rule = {rule: _results(history, rule, contradicted) for rule in MANEUVER_RULES}
     accepted = [result.accepted for result in by_rule[plan.rule]]
     verdicts = []
     for i, flown in enumerate(history):
         costly = flown.usable is not None and plan.rule != "information" and not accepted[i]
         larger = larger_and_agreeing(history[: i + 1], accepted, course) if costly else None
         rules = {name: results[i] for name, results in by_rule.items()}
-        verdicts.append(_verdict(flown, plan.rule, rules, odd.get(i), larger))
+        verdicts.append(_verdict(flown, plan.rule, rules, contradicted.get(i), larger))
     return tuple(verdicts)
 
 
@@ -51,20 +51,20 @@ def results_of(history: Sequence[Flown], rule: Rule) -> tuple[RuleResult, ...]:
     return _results(history, rule, contradicting(history) if rule == "information" else ())
 
 
-def _results(history: Sequence[Flown], rule: Rule, odd: Container[int]) -> tuple[RuleResult, ...]:
+def _results(history: Sequence[Flown], rule: Rule, outliers: Container[int]) -> tuple[RuleResult, ...]:
     costs = [estimate.cost if (estimate := flown.usable) else None for flown in history]
     results = MANEUVER_RULES[rule](costs)
     if rule != "information":
         return results
-    return tuple(RuleResult(r.accepted and i not in odd, r.limit) for i, r in enumerate(results))
+    return tuple(RuleResult(r.accepted and i not in outliers, r.limit) for i, r in enumerate(results))
 
 
-def contradicting(history: Sequence[Flown]) -> Mapping[int, Odd]:
+def contradicting(history: Sequence[Flown]) -> Mapping[int, Outlier]:
     """Return usable manoeuvres that contradict all the others, by index. The rule ``information`` leaves them
     out."""
     usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
-    odd = odd_ones(beliefs_at_one_speed([estimate for _, estimate in usable]))
-    return {usable[k][0]: found for k, found in odd.items()}
+    found = outliers(posteriors_at_one_speed([estimate for _, estimate in usable]))
+    return {usable[k][0]: outlier for k, outlier in found.items()}
 
 
 def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
@@ -77,9 +77,9 @@ def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
 
 
 def _verdict(
-    flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], odd: Odd | None, larger: Larger | None
+    flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], outlier: Outlier | None, larger: Larger | None
 ) -> ManeuverVerdict:
-    reasons = _reasons(flown, rule, rules[rule], odd, larger)
+    reasons = _reasons(flown, rule, rules[rule], outlier, larger)
     notes = flown.estimate.notes if isinstance(flown.estimate, Estimate) else ()
     cautions = tuple(dict.fromkeys((*flown.cautions, *notes)))
     if flown.excluded_because is not None:
@@ -94,7 +94,7 @@ def _verdict(
 
 
 def _reasons(
-    flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None, larger: Larger | None
+    flown: Flown, rule: Rule, result: RuleResult, outlier: Outlier | None, larger: Larger | None
 ) -> tuple[Reason, ...]:
     if flown.excluded_because is not None:
         text = f"excluded by hand: {flown.excluded_because}"
@@ -104,7 +104,7 @@ def _reasons(
     if flown.reasons or result.accepted:
         return flown.reasons
     if rule == "information":
-        return (_contradicts(odd),) if odd else ()
+        return (_contradicts(outlier),) if outlier else ()
     if larger is not None:
         return (_only_larger(flown.estimate, larger, result.limit or 0.0),)
     return (_too_costly(flown, flown.estimate, rule, result.limit or 0.0),)
@@ -137,10 +137,10 @@ def _of_limit(cost: float, limit: float) -> str:
     return f"cost {ratio} of its limit" if cost < limit else f"cost {ratio} times its limit"
 
 
-def _contradicts(odd: Odd) -> Reason:
-    distance, limit = distinct_texts(odd.sigma, odd.limit, 1)
+def _contradicts(outlier: Outlier) -> Reason:
+    distance, limit = distinct_texts(outlier.sigma, outlier.limit, 1)
     text = f"contradicts all the others, {distance} sigma from them (limit {limit}); fly it again"
-    return Reason("odd", text, odd.sigma, odd.limit)
+    return Reason("odd", text, outlier.sigma, outlier.limit)
 
 
 def _too_costly(flown: Flown, estimate: Estimate, rule: Rule, limit: float) -> Reason:

@@ -38,7 +38,7 @@ class Shared(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Belief:
+class Posterior:
     """Mean and covariance of θ."""
 
     theta: FloatArray
@@ -62,7 +62,7 @@ class Belief:
         return information_of(self.shared.covariance)
 
 
-def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
+def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
     """Return the estimates converted to their mean air speed, where every estimate has its air speed.
 
     Each parameter scales with its power of V (``SPEED_EXPONENTS``); gravity's part g/V of Z_0 is treated
@@ -75,13 +75,13 @@ def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
     scale, values = _at_one_speed(estimates)
     factors = _widening_by_colour(estimates) * scale[:, :, None] * scale[:, None, :]
     return [
-        Belief(value, e.covariance_cr * factor)
+        Posterior(value, e.covariance_cr * factor)
         for e, value, factor in zip(estimates, values, factors, strict=True)
     ]
 
 
 def values_at_one_speed(estimates: Sequence[Estimate]) -> FloatArray:
-    """Return the means of ``beliefs_at_one_speed``, shape (n, 8)."""
+    """Return the means of ``posteriors_at_one_speed``, shape (n, 8)."""
     return _at_one_speed(estimates)[1]
 
 
@@ -116,12 +116,12 @@ def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
     return np.outer(median, median)
 
 
-def pool_shared(beliefs: Sequence[Belief]) -> Shared:
+def pool_shared(posteriors: Sequence[Posterior]) -> Shared:
     """Return the information-weighted mean of the derivatives of at least one estimate."""
-    return _Summed.of(beliefs).pooled().shared
+    return _Summed.of(posteriors).pooled().shared
 
 
-def pool(beliefs: Sequence[Belief]) -> Belief:
+def pool(posteriors: Sequence[Posterior]) -> Posterior:
     """Return the information-weighted mean of several estimates, each with its own Z_0 and M_0.
 
     The six derivatives are shared. Z_0 and M_0 of the result are means over the manoeuvres. Each manoeuvre's
@@ -129,12 +129,12 @@ def pool(beliefs: Sequence[Belief]) -> Belief:
 
     Parameters
     ----------
-    beliefs
+    posteriors
         At least one estimate.
     """
-    shared = pool_shared(beliefs)
-    n, values = len(beliefs), np.array([belief.theta for belief in beliefs])
-    covariances = np.array([belief.covariance for belief in beliefs])
+    shared = pool_shared(posteriors)
+    n, values = len(posteriors), np.array([posterior.theta for posterior in posteriors])
+    covariances = np.array([posterior.covariance for posterior in posteriors])
     cross = _finite(covariances[:, _CD[0], _CD[1]])
     each = cross @ information_of(covariances[:, _DD[0], _DD[1]])
     apart = _finite(shared.theta - values[:, _D])
@@ -146,7 +146,7 @@ def pool(beliefs: Sequence[Belief]) -> Belief:
     covariance[_DD], covariance[_CC] = shared.covariance, own + gain @ known @ gain.T
     covariance[_CD] = gain @ known
     covariance[_DC] = covariance[_CD].T
-    return Belief(theta, covariance)
+    return Posterior(theta, covariance)
 
 
 def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
@@ -171,19 +171,19 @@ class Pooled(NamedTuple):
     """Degrees of freedom of χ²: those of the single estimates, less those of the pooled one."""
 
 
-def pooled(beliefs: Sequence[Belief]) -> Pooled:
+def pooled(posteriors: Sequence[Posterior]) -> Pooled:
     """Return the pooled estimate of at least one estimate."""
-    return _Summed.of(beliefs).pooled()
+    return _Summed.of(posteriors).pooled()
 
 
-def pooled_without_each(beliefs: Sequence[Belief]) -> list[Pooled]:
+def pooled_without_each(posteriors: Sequence[Posterior]) -> list[Pooled]:
     """Return, for each of at least two estimates, the pooled estimate of all others."""
-    return _Summed.of(beliefs).without_each()
+    return _Summed.of(posteriors).without_each()
 
 
-def pooled_on_both_sides(beliefs: Sequence[Belief]) -> list[tuple[Pooled, Pooled]]:
+def pooled_on_both_sides(posteriors: Sequence[Posterior]) -> list[tuple[Pooled, Pooled]]:
     """Return, for each estimate but the first, the pooled estimates of those before it and of the others."""
-    return _Summed.of(beliefs).both_sides()
+    return _Summed.of(posteriors).both_sides()
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,9 +207,11 @@ class _Summed:
     """(n,) number of derivatives that each estimate knows."""
 
     @classmethod
-    def of(cls, beliefs: Sequence[Belief]) -> "_Summed":
-        information = information_of(np.array([belief.covariance for belief in beliefs])[:, _DD[0], _DD[1]])
-        theta = _finite(np.array([belief.theta for belief in beliefs])[:, _D])
+    def of(cls, posteriors: Sequence[Posterior]) -> "_Summed":
+        information = information_of(
+            np.array([posterior.covariance for posterior in posteriors])[:, _DD[0], _DD[1]]
+        )
+        theta = _finite(np.array([posterior.theta for posterior in posteriors])[:, _D])
         total, weighted = information.sum(axis=0), np.einsum("nij,nj->i", information, theta)
         centre = _finite(covariance_of(total)) @ weighted
         apart = theta - centre

@@ -9,7 +9,7 @@ from advisor.aircraft import CampaignPlan
 from advisor.decision.history import Flown
 from advisor.decision.information import Knowledge
 from advisor.decision.inverses import covariance_of, information_of
-from advisor.decision.pooling import DERIVATIVES, Belief
+from advisor.decision.pooling import DERIVATIVES, Posterior
 from advisor.decision.prediction import Z95
 from advisor.decision.scatter import SCATTER_FACTOR
 from advisor.decision.verdict import Remaining
@@ -48,17 +48,17 @@ def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> flo
     Trims and the constants that hold them belong to each manoeuvre: only their variances add up.
     """
     inside = np.ix_(DERIVATIVES, DERIVATIVES)
-    information = known.belief.information + more * information_of(next_covariance[inside])
+    information = known.posterior.information + more * information_of(next_covariance[inside])
     covariance = covariance_of(information)
     with np.errstate(divide="ignore", invalid="ignore"):
-        variance = 1.0 / (1.0 / known.belief.std**2 + more / np.diag(next_covariance))
+        variance = 1.0 / (1.0 / known.posterior.std**2 + more / np.diag(next_covariance))
         variance[list(DERIVATIVES)] = np.diag(covariance)
         half = np.nan_to_num(Z95 * np.sqrt(variance) / known.tolerance, nan=np.inf)
     return max(known.shares_with(known.prediction.percent(covariance), half).values(), default=np.inf)
 
 
 def by_scatter(
-    window: FloatArray, belief: Belief, next_std: FloatArray, plan: CampaignPlan, accepted_share: float
+    window: FloatArray, posterior: Posterior, next_std: FloatArray, plan: CampaignPlan, accepted_share: float
 ) -> Remaining:
     """Return the number of further manoeuvres until the scatter of the last n accepted ones is low enough, by
     simulation.
@@ -67,7 +67,7 @@ def by_scatter(
     ----------
     window
         (k, 8) last accepted estimates. At most n - 1 of them stay in the next window.
-    belief
+    posterior
         Values about which the next estimates scatter, with their errors.
     next_std
         (8,) standard deviations of that scatter.
@@ -75,7 +75,7 @@ def by_scatter(
         Share of manoeuvres that the rule accepts.
     """
     rng = np.random.default_rng(0)
-    centre = np.where(np.isfinite(belief.theta), belief.theta, 0.0)
+    centre = np.where(np.isfinite(posterior.theta), posterior.theta, 0.0)
     spread = np.where(np.isfinite(next_std), next_std, np.abs(centre))
     kept = window[len(window) - min(len(window), plan.window - 1) :]
     future = centre + spread * rng.standard_normal((_DRAWS, MOST, len(centre)))

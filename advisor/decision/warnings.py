@@ -38,8 +38,8 @@ def _left_out(history: Sequence[Flown], course: Course) -> list[str]:
     numbers = [i for i, flown in enumerate(history, start=1) if flown.usable]
     if not numbers:
         return []
-    odd = [str(numbers[k]) for k in course.known(usable_ones(history)).left_out]
-    return [f"Manoeuvre {', '.join(odd)} contradicts all the others and is left out."] if odd else []
+    names = [str(numbers[k]) for k in course.known(usable_ones(history)).left_out]
+    return [f"Manoeuvre {', '.join(names)} contradicts all the others and is left out."] if names else []
 
 
 def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:

@@ -85,7 +85,7 @@ def outcome(
             history.append(known.percent)
             if known.sufficient or number == len(campaign):
                 needed = number if known.sufficient else None
-                return Outcome(needed, known.belief.theta, known.tolerance, tuple(history), 0)
+                return Outcome(needed, known.posterior.theta, known.tolerance, tuple(history), 0)
             continue
         members = window(taken, plan)
         history.append(None if members is None else scatter_percent(members, plan.criterion))

@@ -209,7 +209,7 @@ def _measured(case: Case, campaigns: Sequence[Sequence[Flown]], flights: Sequenc
 def _error_percent(flown: Sequence[Flown], flights: Sequence[Flight], plan: CampaignPlan) -> float:
     """Return the largest error of the response that the model left by the stop predicts, in percent of its
     peak."""
-    derivatives = knowledge(flown, plan).belief.shared.theta
+    derivatives = knowledge(flown, plan).posterior.shared.theta
     worst = 0.0
     for one, flight in zip(flown, flights, strict=True):
         predicted = response_to(one, derivatives, None)
