@@ -54,7 +54,7 @@ def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | No
     ----------
     log : str or path
         A ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not. Marks in ``LOG.maneuvers.yaml``
-        beside the log count.
+        next to the log count.
     aircraft : Aircraft, str or path, optional
         The aircraft, or its YAML file; by default nothing is known of it.
 

@@ -193,7 +193,7 @@ def _docstring_sentences(docstring: str) -> tuple[str, ...]:
     """Return the sentences of a docstring, without code, rules and names of parameters."""
     found: list[str] = []
     for paragraph in re.split(r"\n\s*\n", ast.get_docstring(ast.parse(repr(docstring))) or ""):
-        if not paragraph.startswith("    "):
+        if not paragraph.startswith(("    ", "\b")):
             found += _sentences(paragraph.splitlines())
     return tuple(found)
 

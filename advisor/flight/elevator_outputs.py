@@ -1,4 +1,4 @@
-"""The elevator: which servo outputs make it, how they are mixed, and what the user is told of that.
+"""The elevator: its servo outputs, their mixing, and the sentences for the user on both.
 
 Elevons, the halves of a V-tail or A-tail and differential spoilers all follow the pitch demand upwards and
 the other demand in opposite directions (ArduPlane, ``servos.cpp``; PX4's control allocation). The mean of the
@@ -23,16 +23,16 @@ _CANCELS = {
 def find_elevator(
     elevator: Elevator, wiring: Wiring, why: str = "as the aircraft file says"
 ) -> Surface | Problem:
-    """Return which outputs are the elevator, and their scales.
+    """Return the outputs of the elevator with their scales, or a problem.
 
     Parameters
     ----------
     elevator
-        As the aircraft file has it.
+        Elevator of the aircraft file.
     wiring
-        What the vehicle's parameters say of its outputs; may be nothing.
+        Roles and scales of outputs by the vehicle's parameters; may be empty.
     why
-        Why ``elevator.output`` is what it is, in words.
+        Reason for the value of ``elevator.output``, in words.
     """
     if elevator.outputs:
         return _as_listed(elevator.outputs, wiring)
@@ -57,7 +57,7 @@ def _as_listed(outputs: Sequence[ElevatorOutput], wiring: Wiring) -> Surface | P
     halves = {wiring.roles[n] for n in _numbers(parts) if _is_half(n, wiring)}
     said = [_formed(parts, "as the aircraft file says", sorted({half.surface for half in halves}))]
     said += [
-        f"Only one side of the {kind} pair is among them: its other axis counts as elevator, too."
+        f"Only one side of the {kind} pair is among them: its other axis counts as elevator as well."
         for kind in _one_sided(halves)
     ]
     return Surface(parts, calibrated, " ".join(said if calibrated else [*said, _assumed(wiring)]))
@@ -76,7 +76,7 @@ def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) 
         return _uncalibrated(Part(output, wiring.scale(output)), why, wiring)
     said = (
         f"Output {output} is one half of a mixed {mixed} pair, calibrated as an elevator in the aircraft "
-        "file: what it does for the other axis counts as elevator, too."
+        "file: its part for the other axis counts as elevator as well."
     )
     return Surface((Part(output, Calibration(calibration)),), True, said if mixed else "")
 
@@ -108,7 +108,7 @@ def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
 def _carried_over(
     calibration: Pairs, parts: Sequence[Part], kinds: Sequence[str], wiring: Wiring
 ) -> Surface | Problem:
-    """Return one calibration for all that was found: that of the first output, carried over to the others."""
+    """Return the first output's calibration, carried over to the other outputs found."""
     first, *others = _numbers(parts)
     if not others:
         return Surface((Part(first, Calibration(calibration)),), True, "")
@@ -136,7 +136,7 @@ def _carried_over(
         else ""
     )
     said = (
-        f"elevator.calibration is taken for output {first} and carried over to {joined_numbers(others)}, "
+        f"elevator.calibration is used for output {first} and carried over to {joined_numbers(others)}, "
         f"counted from {wiring.words.trim}{way}; elevator.outputs can hold one for each."
     )
     return Surface(found, True, f"{_formed(found, _why(kinds, wiring), kinds)} {said}")
@@ -163,12 +163,12 @@ def _is_half(n: int, wiring: Wiring) -> bool:
 
 
 def _is_told(n: int, wiring: Wiring) -> bool:
-    """Return whether the parameters say which way a pitch demand moves output ``n``."""
+    """Return whether the parameters give the direction in which a pitch demand moves output ``n``."""
     return (wiring.roles.get(n) == ELEVATOR or _is_half(n, wiring)) and n in wiring.told
 
 
 def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
-    """Return how the outputs make the elevator, in a sentence."""
+    """Return a sentence on the outputs that make the elevator."""
     shares = [part.share for part in parts]
     if max(shares) - min(shares) < 1e-9:
         made = f"the mean of outputs {joined_numbers(_numbers(parts))}"
