@@ -136,7 +136,7 @@ def _carried_over(
         else ""
     )
     said = (
-        f"elevator.calibration is used for output {first} and carried over to {joined_numbers(others)}, "
+        f"elevator.calibration is taken for output {first} and carried over to {joined_numbers(others)}, "
         f"counted from {wiring.words.trim}{way}; elevator.outputs can hold one for each."
     )
     return Surface(found, True, f"{_formed(found, _why(kinds, wiring), kinds)} {said}")
