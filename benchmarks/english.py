@@ -68,7 +68,8 @@ OPENINGS = {
 }
 _NO_VERB = re.compile(
     r"(?:the|an?|whether|how|where|why|which|whose?|when|one|two|three|every\w*|all|nothing|of|for|another|each|no|as|per"
-    r"|from|share|mean|shape|ratio|median|root|power|largest|smallest|\w+ (?:of|that|whose))\b|[(-]",
+    r"|from|share|mean|shape|ratio|median|root|power|largest|smallest|(?!note that)\w+ (?:of|that|whose))\b"
+    r"|[(-]",
     re.IGNORECASE,
 )
 """Openings of a docstring that has no verb in front. A function's docstring begins with an imperative."""

@@ -11,8 +11,9 @@ from advisor.flight.motion import bank_at, gravity_in_plane
 from advisor.standard_gravity import GRAVITY_M_S2
 
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
-"""Length of a record's beginning, s; share by which an offset may differ between beginning and whole; and
-multiple of the manoeuvres' scatter that the difference must exceed."""
+"""Length of a record's beginning, s. Largest difference between the offsets of beginning and whole, as a
+share of the offset, in the mean of all manoeuvres. Multiple of the manoeuvres' scatter that a larger
+difference must exceed."""
 
 
 @dataclass(frozen=True, slots=True)

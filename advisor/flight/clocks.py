@@ -1,10 +1,10 @@
 """The vehicle's clock: seconds since boot, unwrapped, from counters that wrap and restart.
 
 ``ATTITUDE.time_boot_ms`` is the master clock. Every other stamp is placed on the master clock. A 32-bit
-counter of microseconds (SERVO_OUTPUT_RAW, and AOA_SSA as ArduPilot fills it) is the true time less a multiple
-of 71.6 minutes, and the master gives the multiple. No state is kept for a message, so that silences,
-duplicates and late packets do no harm. A clock that goes back by less than `_OLD_MS` is no reboot, because
-nobody tests in the first seconds after one.
+counter of microseconds is the true time less a multiple of 71.6 minutes, and the master gives the multiple.
+SERVO_OUTPUT_RAW has such a counter, and AOA_SSA as ArduPilot fills it. No state is kept for a message, so
+that silences, duplicates and late packets do no harm. A clock that goes back by less than `_OLD_MS` is no
+reboot, because nobody tests in the first seconds after one.
 """
 
 from dataclasses import dataclass

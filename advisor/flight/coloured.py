@@ -8,8 +8,8 @@ from advisor.flight.messages import FloatArray
 def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
     """Return the covariance of a least-squares fit with coloured residuals.
 
-    (JᵀJ)⁻¹ (Σ_ij R(i−j) J_iᵀ J_j) (JᵀJ)⁻¹ with the residuals' own autocovariance R, tapered to zero at a
-    fifth of the record (Klein & Morelli, Eq. 6.38 f.).
+    (JᵀJ)⁻¹ (Σ_ij R(i−j) J_iᵀ J_j) (JᵀJ)⁻¹ with the residuals' own autocovariance R (Klein & Morelli, Eq. 6.38
+    f.). R is tapered to zero at a fifth of the record.
 
     Parameters
     ----------

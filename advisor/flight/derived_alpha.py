@@ -1,7 +1,7 @@
 """The angle of attack in still air, derived from attitude, climb rate and air speed at equal times.
 
 Each of the three arrives at its own stamps. Attitude and air speed are interpolated at the stamps of the
-climb rate, so that neither the order of messages nor their delay enters the angle.
+climb rate. So neither the order of messages nor their delay enters the angle.
 """
 
 from collections.abc import Callable

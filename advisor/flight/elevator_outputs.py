@@ -1,8 +1,8 @@
 """The elevator: its servo outputs, their mixing, and the sentences for the user on both.
 
-Elevons, the halves of a V-tail or A-tail and differential spoilers all follow the pitch demand upwards and
-the other demand in opposite directions (ArduPlane, ``servos.cpp``; PX4's control allocation). The mean of the
-left and the right side is therefore the elevator, and the other demand cancels.
+Elevons, the halves of a V-tail or A-tail and differential spoilers all follow the pitch demand upwards. They
+follow the other demand in opposite directions (ArduPlane, ``servos.cpp``; PX4's control allocation). The mean
+of the left and the right side is therefore the elevator, and the other demand cancels.
 """
 
 from collections.abc import Collection, Sequence
@@ -76,7 +76,7 @@ def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) 
         return _uncalibrated(Part(output, wiring.scale(output)), why, wiring)
     said = (
         f"Output {output} is one half of a mixed {mixed} pair, calibrated as an elevator in the aircraft "
-        "file: its part for the other axis counts as elevator as well."
+        "file. Its part for the other axis counts as elevator as well."
     )
     return Surface((Part(output, Calibration(calibration)),), True, said if mixed else "")
 

@@ -1,9 +1,9 @@
 """Whether the aircraft flew during an elevator movement, by all its telemetry.
 
-An elevator movement in the preflight check, in the take-off run or after a crash is no test input, and an
-estimate from it would be nonsense. The autopilot's own statement counts first (EXTENDED_SYS_STATE). Then come
-the armed flag with the speed over ground, speed and height together, and an air speed that begins or ends
-near zero.
+An elevator movement in the preflight check, in the take-off run or after a crash is no test input. An
+estimate from such a movement would be nonsense. The autopilot's own statement counts first
+(EXTENDED_SYS_STATE). Then come the armed flag with the speed over ground, speed and height together, and an
+air speed that begins or ends near zero.
 """
 
 from collections.abc import Callable
@@ -40,7 +40,7 @@ def why_on_ground(span: Span, cut: Cut) -> str | None:
     span
         The movement of the elevator.
     cut
-        Gives ``landed_state``, ``armed``, ``groundspeed``, ``airspeed``, ``height`` and ``q``, where received.
+        Gives ``landed_state``, ``armed``, ``groundspeed``, ``airspeed``, ``height`` and ``q`` where received.
     """
     said = _lately("landed_state", span, cut)
     if _ON_GROUND in said:

@@ -57,7 +57,7 @@ def inferred_alpha(channels: Mapping[str, Channel], speed: FloatArray) -> Channe
     Parameters
     ----------
     channels
-        Channels of a manoeuvre. An ``alpha`` among them, such as one from climb rate, corrects level and drift.
+        Channels of a manoeuvre. An ``alpha`` among them, as from climb rate, corrects level and drift.
     speed
         Shape (n,), air speed at the stamps of the channel ``q``, m/s.
     """

@@ -24,8 +24,8 @@ NEEDED = ("alpha", "q", "theta", "a_z")
 _FOLLOW_S = np.array([0.08, 0.2, 0.5, 1.2])
 """Lags, s, that span the responses of aircraft, from the fastest short period to the slowest."""
 CORRUPTED_BY_LAG = ("Z_delta_e", "Z_q", "Z_alpha", "M_q")
-"""Parameters that a late α corrupts. M_alpha and M_delta_e keep their values: the lag only mixes α with its
-own rate, and the rate of α enters the moment equation as a change of M_q."""
+"""Parameters that a late α corrupts. M_alpha and M_delta_e keep their values, because the lag only mixes α
+with its own rate. The rate of α enters the moment equation as a change of M_q."""
 SMALLEST_LAG_S = 0.004
 SMALLEST_SCALE = 0.01
 

@@ -48,8 +48,8 @@ def mode_name(autopilot: str, kind: int, custom: int) -> str:
     kind
         MAV_TYPE.
     custom
-        HEARTBEAT.custom_mode. ArduPilot sends the number of the mode. PX4 sends the main mode in bits 16 to 23
-        and the sub mode in bits 24 to 31.
+        HEARTBEAT.custom_mode. ArduPilot sends the number of the mode. PX4 sends the main mode in bits 16 to
+        23 and the sub mode in bits 24 to 31.
     """
     names: dict[int, str] = {}
     if autopilot == "ardupilot":

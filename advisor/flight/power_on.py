@@ -11,9 +11,9 @@ from advisor.flight.record import Channel
 
 @dataclass(frozen=True, slots=True)
 class PowerOn:
-    """What one vehicle sent from one power-on to the next.
+    """All channels that one vehicle sent from one power-on to the next.
 
-    A stream keeps power-ons on request only: their memory grows with the length of the flight.
+    A stream keeps power-ons on request only, because their memory grows with the length of the flight.
     """
 
     boot: int
