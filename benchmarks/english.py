@@ -54,7 +54,7 @@ PHRASES = {
     r"\bfrom (?:\S+ ){1,3}on(?=[.,;:)]|$)": "say: at least x, after x",
     r"\bof itself\b": "say: alone, without a request",
     r"\bthe same of\b|\bas of\b": "name the quantity again",
-    r"\b(?:leftovers?|remainders?)\b": "say: residual, rest",
+    r"\bleftovers?\b|\b(?:the|its|no|a) remainder\b": "say: residual, rest",
     r"\b(?:companions?|amid|unrest|strangeness)\b": "use the word of the field",
     r"\bties\b": "say: bounds between parameters, equal values",
     r"\b(?:its|the|their|of) worth\b|\bworth of\b": "say: information, hold-out gain, value",
@@ -68,7 +68,7 @@ OPENINGS = {
 }
 _NO_VERB = re.compile(
     r"(?:the|an?|whether|how|where|why|which|whose?|when|one|two|three|every\w*|all|nothing|of|for|another|each|no|as|per"
-    r"|from|share|mean|shape|ratio|median|root|power|largest|smallest|(?!note that)\w+ (?:of|that|whose))\b"
+    r"|from|share (?:of|by)|mean|shape|ratio|median|root|power|largest|smallest|(?!note that)\w+ (?:of|that|whose))\b"
     r"|[(-]",
     re.IGNORECASE,
 )

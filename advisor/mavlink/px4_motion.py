@@ -1,4 +1,4 @@
-"""How a PX4 log tells of the motion: attitude, rates, specific force and height."""
+"""Motion data of a PX4 log: attitude, rates, specific force and height."""
 
 from collections.abc import Iterator
 
@@ -22,7 +22,7 @@ _RATES = ("rollspeed", "pitchspeed", "yawspeed")
 
 
 def motion(topics: Topics) -> Iterator[TimedMessages]:
-    """Yield ATTITUDE, HIGHRES_IMU and GLOBAL_POSITION_INT, as far as the log has their values."""
+    """Yield ATTITUDE, HIGHRES_IMU and GLOBAL_POSITION_INT, where the log has their values."""
     yield from _attitude(topics)
     yield from _highres_imu(topics)
     position = first(topics, "vehicle_local_position")

@@ -14,7 +14,7 @@ _STREAM_GROUPS = {
     "SCALED_IMU2": "RAW_SENS",
     "GLOBAL_POSITION_INT": "POSITION",
 }
-"""ArduPilot's stream groups, GCS_MAVLink: the suffix of the parameter that holds their rate."""
+"""Message to ArduPilot's stream group (GCS_MAVLink): the suffix of the parameter with the rate."""
 
 _IDS = {
     "SCALED_IMU": 26,
@@ -30,7 +30,7 @@ _IDS = {
 }
 
 _PX4_STREAMS = {"SERVO_OUTPUT_RAW": "SERVO_OUTPUT_RAW_0", "RAW_IMU": "HIGHRES_IMU"}
-"""Streams of PX4 whose name is not that of the message, PX4's ``mavlink_messages.cpp``."""
+"""Message to its PX4 stream, where the names differ (PX4's ``mavlink_messages.cpp``)."""
 
 
 def _request(message: str) -> str:
@@ -46,7 +46,7 @@ class ArduPilotTelemetry:
     """ArduPilot's streams: one parameter for each group of messages."""
 
     def called(self, message: str) -> str:
-        """Return the message itself."""
+        """Return the name of the message."""
         return message
 
     def faster(self, message: str) -> str:
@@ -68,7 +68,7 @@ class Px4Telemetry:
     """PX4's streams: a rate for each, under the limit of its link."""
 
     def called(self, message: str) -> str:
-        """Return the message that PX4 sends; HIGHRES_IMU takes the place of RAW_IMU."""
+        """Return the name of the message that PX4 sends. HIGHRES_IMU takes the place of RAW_IMU."""
         return "HIGHRES_IMU" if message == "RAW_IMU" else message
 
     def faster(self, message: str) -> str:
@@ -86,14 +86,14 @@ class Px4Telemetry:
 
 
 class OtherTelemetry:
-    """Streams of an autopilot whose parameters nobody here knows."""
+    """Streams of an autopilot with unknown parameters."""
 
     def called(self, message: str) -> str:
-        """Return the message itself."""
+        """Return the name of the message."""
         return message
 
     def faster(self, message: str) -> str:
-        """Return a request."""
+        """Return a request for the rate."""
         return f"raise the rate of {message} on the vehicle to {GOOD_HZ} Hz, or {_request(message)}"
 
     def present(self, messages: Sequence[str]) -> str:

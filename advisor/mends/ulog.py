@@ -13,7 +13,7 @@ _TOPICS = {
     "AOA_SSA": "vehicle_local_position",
     "NAMED_VALUE_FLOAT": "debug_key_value",
 }
-"""Topics in place of messages; the climb rate of the position gives the angle of attack that PX4 lacks."""
+"""Message to its topic. The climb rate of the position gives the angle of attack that PX4 lacks."""
 
 _DEFAULT, _REPLAY, _HIGH_RATE, _DEBUG = (
     (0, "default set"),
@@ -28,9 +28,9 @@ _BITS = {
     "VFR_HUD": _REPLAY,
     "NAMED_VALUE_FLOAT": _DEBUG,
 }
-"""Bits of SDLOG_PROFILE that log a topic at its full rate, PX4's ``logged_topics.cpp``.
+"""Message to the bit of SDLOG_PROFILE that logs its topic at full rate (PX4's ``logged_topics.cpp``).
 
-With the bit for high rates ``actuator_servos`` comes at full rate, ``actuator_outputs`` stays at 10 Hz.
+With the bit for high rates, ``actuator_servos`` comes at full rate, and ``actuator_outputs`` stays at 10 Hz.
 """
 
 
@@ -38,7 +38,7 @@ class Ulog:
     """Topics of PX4's log."""
 
     def called(self, message: str) -> str:
-        """Return the topic."""
+        """Return the name of the topic."""
         return _TOPICS.get(message, message)
 
     def faster(self, message: str) -> str:
