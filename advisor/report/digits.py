@@ -1,10 +1,10 @@
-"""Digits that mean something: two significant ones of the interval, and a real minus sign."""
+"""Significant digits: two of the interval, and a real minus sign."""
 
 from math import floor, isfinite, log10
 
 
 def decimals_for(spread: float) -> int:
-    """Return decimals that show two significant digits of ``spread``, between 0 and 6."""
+    """Return the number of decimals that show two significant digits of ``spread``, between 0 and 6."""
     if not (isfinite(spread) and spread > 0.0):
         return 3
     return min(max(1 - floor(log10(spread)), 0), 6)

@@ -75,7 +75,7 @@ def _mark(axes: Axes, judged: Sequence[JudgedManeuver]) -> None:
 
 
 def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
-    """Return the elevator turned the way the manoeuvres have it, where the sense was found only from them."""
+    """Return the elevator with the sign of the manoeuvres, where only they showed the sign."""
     flown = [j.maneuver.channels["elevator"] for j in judged if "elevator" in j.maneuver.channels]
     if channel.name != "elevator" or not flown:
         return channel

@@ -1,4 +1,4 @@
-"""From what is known of a flight to the page, as HTML or Markdown."""
+"""From the data of a flight to the page, as HTML or Markdown."""
 
 from importlib.resources import files
 from typing import Literal
