@@ -1,4 +1,4 @@
-"""Time histories of whole flights: a few channels from take-off to landing, for a picture."""
+"""The course of whole flights: a few channels from take-off to landing, for a picture."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,8 +14,7 @@ from advisor.flight.record import Channel
 SHOWN = ("elevator", "alpha", "q", "airspeed", "height")
 _SLICE_S = 40.0
 _LOOK_BACK_S = 100.0
-"""Length of each look back, s. Shorter than the stream keeps and longer than a slice, so that nothing is
-missed."""
+"""Shorter than what the stream keeps and longer than a slice, so that nothing is missed between two looks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +42,12 @@ def slices(columns: Sequence[Columns]) -> Iterator[list[Columns]]:
 
 
 class CourseWatch:
-    """Collects channels that a campaign drops, by a look after every piece of a log.
+    """Keeps what a campaign forgets: looks at its newest channels after every piece of a log.
 
     Parameters
     ----------
     campaign
-        Campaign that takes the logs.
+        Hears the logs.
     """
 
     def __init__(self, campaign: Campaign) -> None:
@@ -56,7 +55,7 @@ class CourseWatch:
         self._parts: dict[tuple[int, int], dict[str, list[Channel]]] = {}
 
     def look(self) -> None:
-        """Take the samples since the last look."""
+        """Take what is new since the last look."""
         at = self._campaign.power_on
         for name in SHOWN:
             recent = self._campaign.recent(name, _LOOK_BACK_S)
@@ -70,7 +69,7 @@ class CourseWatch:
 
     @property
     def courses(self) -> tuple[Course, ...]:
-        """Collected channels, flight by flight."""
+        """What was kept, flight by flight."""
         return tuple(
             Course(flight, boot, tuple(_joined(parts) for parts in channels.values()))
             for (flight, boot), channels in sorted(self._parts.items())
@@ -84,8 +83,7 @@ def _joined(parts: Sequence[Channel]) -> Channel:
 
 
 def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:
-    """Return times and values that draw an equal line: lowest and highest of each bin, and a break in each
-    gap.
+    """Times and values that draw the same line: lowest and highest of each bin, a break in each gap.
 
     Parameters
     ----------
