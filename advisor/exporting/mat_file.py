@@ -13,7 +13,8 @@ FILE = "flight.mat"
 
 
 def write_mat(data: Dataset, folder: Path) -> None:
-    """Write a dataset as version 5 MAT: a struct for each table, ``record_N.grid``, ``record_N.CHANNEL``, ``about``.
+    """Write a dataset as MAT of version 5: structs of tables, ``record_N.grid``, ``record_N.CHANNEL``,
+    ``about``.
 
     A struct has a vector for each column, and ``units`` and ``meanings`` with equal field names. Texts are
     cells. ``about`` is a JSON document on the logs.
