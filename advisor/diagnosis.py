@@ -13,7 +13,7 @@ from advisor.flight.same import are_one, is_fuller
 from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
-from advisor.gap.search.baseline import believed_derivatives
+from advisor.gap.search.baseline import prior_derivatives
 from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs import open_log
 from advisor.printable import printable
@@ -146,7 +146,7 @@ def compare_logs(
         compared = compare(flown.maneuvers, simulator, aircraft, holdout, progress)
     else:
         found = diagnose(flown.maneuvers, aircraft, holdout, progress)
-        told = found if believed_derivatives(aircraft) is not None else without_simulator(found)
+        told = found if prior_derivatives(aircraft) is not None else without_simulator(found)
         compared = Compared(told, aircraft)
     notes = list(flown.notes)
     if flown.again:

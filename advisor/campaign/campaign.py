@@ -229,27 +229,14 @@ class Campaign:
             told.append(event)
             match event:
                 case ManeuverFlown(maneuver):
-                    self._maneuvers.append(maneuver)
-                    flown = assess(maneuver, self._learnt, self._method)
-                    because = self.by_hand.excluded_because(maneuver)
-                    self._history.append(replace(flown, excluded_because=because))
-                    self._decide()
-                    self._learn()
-                    told.append(ManeuverJudged(self._judged[-1], self._flight_test))
-                    ended_s = maneuver.span.end_s
-                    self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
-                    self._log(self._flight_test.sentence, ended_s)
+                    told.append(self._judge(maneuver))
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
                 case ModeChanged(mode, at_s):
                     self._log(f"mode {mode}", at_s)
-                case Notice(code, text):
-                    self._log(text)
-                    if code in MARK_NOTICES:
-                        self._mark_notes += (text,)
-                    if code == READER_NOTICE:
-                        self._reader_notes += (text,)
+                case Notice():
+                    self._note_down(event)
                 case NoData(problems):
                     for problem in problems:
                         self._log(f"NO DATA: {problem}", self._stream.now_s)
@@ -267,6 +254,27 @@ class Campaign:
             for happened in told:
                 self._tell(happened)
         return told
+
+    def _judge(self, maneuver: Maneuver) -> ManeuverJudged:
+        """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
+        self._maneuvers.append(maneuver)
+        flown = assess(maneuver, self._learnt, self._method)
+        because = self.by_hand.excluded_because(maneuver)
+        self._history.append(replace(flown, excluded_because=because))
+        self._decide()
+        self._learn()
+        ended_s = maneuver.span.end_s
+        self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
+        self._log(self._flight_test.sentence, ended_s)
+        return ManeuverJudged(self._judged[-1], self._flight_test)
+
+    def _note_down(self, notice: Notice) -> None:
+        """Log a notice, and keep those about marks and about the reader for the report."""
+        self._log(notice.text)
+        if notice.code in MARK_NOTICES:
+            self._mark_notes += (notice.text,)
+        if notice.code == READER_NOTICE:
+            self._reader_notes += (notice.text,)
 
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
         """Take a manoeuvre that came a second time: the better record counts, and an exclusion of either

@@ -189,8 +189,12 @@ def _needs(effect: str, trait: Trait) -> Iterator[str]:
 
 
 def _apart(effect: str, trait: Trait) -> Iterator[tuple[str, str]]:
-    yield from ((f"`{other}`", way) for other, way in trait.apart.items())
-    yield from ((f"`{other}`", t.apart[effect]) for other, t in TRAITS.items() if effect in t.apart)
+    yield from ((f"`{other}`", way) for other, way in trait.distinguished_by.items())
+    yield from (
+        (f"`{other}`", t.distinguished_by[effect])
+        for other, t in TRAITS.items()
+        if effect in t.distinguished_by
+    )
     if trait.imitated_by is not None:
         yield trait.imitated_by
     if trait.imitated_without is not None:
