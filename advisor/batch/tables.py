@@ -17,7 +17,7 @@ from advisor.oem.estimate import Estimate
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
-    """Return flights, oldest first where all usable ones have dates, else in the given order."""
+    """Return flights oldest first where all usable ones tell when they began, else as given."""
     if not all(SINCE_1970_S <= one.began_s < inf for one in results if one.usable):
         return list(results)
     return sorted(results, key=lambda one: one.began_s if one.usable else inf)
@@ -40,18 +40,18 @@ def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
 
 
 def aircraft_of(flight: Analyzed) -> str:
-    """Return the identity of an aircraft: its aircraft file and the kind of autopilot."""
+    """What tells one aircraft from another: the aircraft file and the kind of autopilot."""
     vehicle = flight.document["log"]["vehicle"] or {}
     return " ".join(filter(None, (flight.aircraft_file, vehicle.get("autopilot"))))
 
 
 def tables_of(flights: Sequence[Analyzed]) -> Dataset:
-    """Return tables with a row for each flight, manoeuvre, and parameter of a change.
+    """Return one row a flight, one a manoeuvre, one a parameter of each change.
 
     Parameters
     ----------
     flights
-        Results in the order of flying, numbered from 1.
+        In the order of flying; flights are numbered from 1.
     """
     about = {"advisor": __version__, "logs": [{"file": f.log, "sha256": f.sha256} for f in flights]}
     return Dataset((), (_flights(flights), _maneuvers(flights), _changes(changes_of(flights))), about)

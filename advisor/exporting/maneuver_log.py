@@ -1,4 +1,4 @@
-"""Extraction of one manoeuvre's log, and a check that the cut log still gives the manoeuvre."""
+"""Which stretch of a log is one manoeuvre's, and whether the cut log still holds the manoeuvre."""
 
 from advisor.aircraft import Aircraft
 from advisor.exporting.cut import cut_tlog
@@ -11,9 +11,9 @@ from advisor.mavlink.frames import FrameScanner
 from advisor.problems import ConfigurationError, UnusableInputError
 
 LEAD_S = 10.0
-"""Flight before the record, s, because best rates are counted over ten seconds."""
+"""Flight before the record: best rates are counted over ten seconds."""
 AFTER_S = 5.0
-"""Flight after the record, s, in which a heartbeat and every channel arrive."""
+"""Flight after the record: a heartbeat, and every channel, has arrived."""
 
 
 def log_of_maneuver(
@@ -26,7 +26,7 @@ def log_of_maneuver(
     Parameters
     ----------
     number
-        Number of the manoeuvre in ``advisor analyze``.
+        Of the manoeuvre, as ``advisor analyze`` counts on the same logs.
     target_system
         System id of the vehicle; None: the first one heard.
 
@@ -48,14 +48,14 @@ def log_of_maneuver(
     if not _finds(data, maneuver, aircraft, target_system):
         raise UnusableInputError(
             "cut",
-            f"Manoeuvre {number} cannot be found in its stretch of {log.name} alone.",
+            f"Manoeuvre {number} cannot be told by its stretch of {log.name} alone.",
             "Analyze the whole log, or mark the manoeuvre with --maneuver.",
         )
     return data
 
 
 def _stretch(maneuver: Maneuver, every: list[Maneuver]) -> tuple[float, float]:
-    """Return the vehicle times between which packets are taken, s since boot."""
+    """Return the vehicle times between which the packets are taken, s since boot."""
     span = maneuver.span
     others = [m.span for m in every if m.power_on == maneuver.power_on and m.number != maneuver.number]
     earlier = [s.end_s for s in others if s.end_s <= span.start_s]

@@ -1,4 +1,4 @@
-"""Estimates by output error from many noisy copies of one manoeuvre."""
+"""Many noisy copies of one manoeuvre, each estimated by output error."""
 
 from collections.abc import Callable
 
@@ -13,7 +13,7 @@ from advisor.oem.surface import Servo
 from advisor.study.flying import Flight
 
 Advance = Callable[[int], None]
-"""Function that is called with the number of estimates since the last call."""
+"""Told how many estimates were done since the last call."""
 
 
 def estimate_copies(
@@ -40,8 +40,7 @@ def estimate_copies(
 
 
 def _correlation(flight: Flight, batch: Batch) -> FloatArray:
-    """Return the (8, 8) correlation of the errors. The input determines the correlation, so that one copy
-    suffices."""
+    """Return (8, 8) correlation of the errors: a matter of the input, so that one copy speaks for all."""
     step = float(flight.t[1] - flight.t[0])
     noise = (float(batch.noise[0, 0]), float(batch.noise[0, 1]))
     expected = expect(
@@ -53,10 +52,10 @@ def _correlation(flight: Flight, batch: Batch) -> FloatArray:
 
 
 def _estimate(flight: Flight, z: FloatArray, batch: Batch, i: int, correlation: FloatArray) -> Estimate:
-    """Return the estimate of one copy. The noise is white, so that the plain bound is the covariance."""
+    """Return one row as the rules see it; the noise is white, so the plain bound is the covariance."""
     covariance = correlation * np.outer(batch.std_cr[i], batch.std_cr[i])
     fits = {
-        # The clean response replaces the fitted one, which differs by less than its error.
+        # The clean response stands for the fitted one, which differs by less than its error.
         name: ChannelFit(name, flight.t, z[:, k], flight.response[:, k], float(batch.noise[i, k]))
         for k, name in enumerate(("alpha", "q"))
     }

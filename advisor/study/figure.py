@@ -17,17 +17,16 @@ TICKS_PERCENT = (2, 5, 10, 25, 50, 100, 200)
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Criterion of one rule at one noise level over all campaigns."""
+    """The criterion of one rule at one noise level over all campaigns."""
 
     rule: Rule
     noise_percent: float
     quantiles: tuple[tuple[float, float, float] | None, ...]
-    """Quantiles 10 %, 50 %, 90 % over the campaigns with a value, for each manoeuvre. None where no campaign
-    has one."""
+    """Per manoeuvre: 10 %, 50 %, 90 % over the campaigns that have a value; None where none has."""
 
 
 def curve(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome]) -> Curve:
-    """Collect the criterion's history, as if every campaign continued to its end."""
+    """Collect the criterion's history, as if every campaign flew on to its end."""
     quantiles: list[tuple[float, float, float] | None] = []
     for i in range(len(ORDER)):
         values = [
@@ -39,7 +38,7 @@ def curve(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome]) -> Curv
 
 
 def refuse_undrawable(path: Path) -> None:
-    """Refuse, before any work, a figure that could not be drawn after it.
+    """Refuse before the work a figure that could not be drawn after it.
 
     Raises
     ------
@@ -58,7 +57,7 @@ def refuse_undrawable(path: Path) -> None:
 
 
 def draw(curves: Sequence[Curve], path: Path) -> None:
-    """Write the figure in the format of the ending of ``path`` (.png, .svg)."""
+    """Write the figure; the ending of ``path`` (.png, .svg) says how."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.ticker import FixedLocator, FormatStrFormatter, NullLocator
@@ -85,7 +84,7 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
         axis.grid(visible=True, alpha=0.2)
     axes[0].set_ylabel("criterion, Eq. (12), in %")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, fontsize=8)
-    # Without a date, equal studies give equal files.
+    # Without a date the same study gives the same file.
     figure.savefig(path, dpi=150, metadata={"Date": None} if path.suffix == ".svg" else None)
 
 

@@ -1,4 +1,4 @@
-"""Measures of two flaws of the paper's rules that users must know."""
+"""The two flaws of the paper's rules that the study reveals, measured, because users must know them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from advisor.study.flying import Scene, as_maneuver, fly_named
 from advisor.study.paper import ORDER
 
 MOST_CAMPAIGNS = 100
-"""Number of campaigns, enough for a share of practically one."""
+"""Enough for a share of practically one."""
 NOISE_PERCENT = 1.0
 
 
@@ -25,15 +25,15 @@ class Flaws:
     thrown_away_percent: float
     """Share of equally good manoeuvres, after the first, that Eq. (11) rejects."""
     near_zero_campaigns: int
-    """Number of campaigns with Z_q = 0."""
+    """How many campaigns were flown with Z_q = 0."""
     near_zero_never_percent: float
     """Share of campaigns at 1 % noise that Eq. (12) never ends when Z_q is zero."""
     near_zero_information: int | None
-    """Median number of manoeuvres that the rule ``information`` needs in these campaigns."""
+    """Median number of manoeuvres the rule ``information`` needs for the same campaigns."""
 
 
 def measure(campaigns: Sequence[Sequence[Estimate]], seed: int, advance: Advance | None = None) -> Flaws:
-    """Measure the first flaw on given campaigns, the second on an aircraft with Z_q = 0."""
+    """Measure the first flaw on campaigns that were flown already, the second on an aircraft with Z_q = 0."""
     verdicts = [separate_computation([e.cost for e in campaign])[1:] for campaign in campaigns]
     thrown_away = 100.0 * float(np.mean([not result.accepted for v in verdicts for result in v]))
     scene = Scene()
