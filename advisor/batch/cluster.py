@@ -1,4 +1,4 @@
-"""Tasks on an existing Dask cluster, whose scheduler repeats the tasks of a worker that dies."""
+"""Tasks on an existing Dask cluster: its scheduler hands them out, and again when a worker dies."""
 
 import asyncio
 import logging
@@ -21,26 +21,26 @@ R = TypeVar("R")
 Versions = Mapping[str, str | None]
 
 CONNECT_S = 5.0
-"""Time within which a scheduler must answer, s, and a cluster's workers must start."""
+"""A scheduler that does not answer for so long is not there; a cluster whose workers do not start, empty."""
 _SAME = ("advisor", "python")
-"""Packages whose version must be equal in every worker. Otherwise its results differ or cannot be read."""
+"""With another version of these a worker's results are not those of this computer, or cannot be read."""
 _TOLD = ("distributed", "numba", "numpy", "scipy")
-"""Packages of which another version may change the last digits of a result."""
+"""Another version of these may change the last digits of a result."""
 
 
 def run_on_cluster(
     work: Callable[[T], R], tasks: Sequence[T], address: str, tell: Callable[[str], None]
 ) -> Iterator[tuple[T, R | Exception]]:
-    """Do all tasks; yield each with its result, or with the error that ended it, in the order of completion.
+    """Do all tasks; give each with its result, or with the error that ended it, as they are done.
 
     Parameters
     ----------
     work
-        Function of a task. Function, tasks and results can be pickled.
+        Can be pickled, as tasks and results.
     address
-        Address of the scheduler: ``tcp://host:port``.
+        Of the scheduler: ``tcp://host:port``.
     tell
-        Called with a sentence where a difference of versions may change the last digits.
+        Called with a sentence when versions differ that may change the last digits.
 
     Raises
     ------
@@ -107,16 +107,16 @@ def _connected(address: str) -> "Iterator[Client]":
     except (OSError, ValueError) as error:
         raise ConfigurationError(
             f"--scheduler: no Dask scheduler answers at {address} ({_cause(error)}). Start one with"
-            " 'dask scheduler', or correct the address."
+            " 'dask scheduler', or mend the address."
         ) from None
     with client:
         yield client
 
 
 def _versions_on(client: "Client") -> dict[str, Any]:
-    """Return the versions of the packages in the client and in each worker.
+    """Return versions of the packages in the client and in each worker.
 
-    Workers that start, or start again after a death, have ``CONNECT_S`` for the first answer.
+    A cluster whose workers start, or start again after a death, has ``CONNECT_S`` for the first.
     """
     end = time.monotonic() + CONNECT_S
     while True:
@@ -127,7 +127,7 @@ def _versions_on(client: "Client") -> dict[str, Any]:
 
 
 async def _answer(address: str) -> None:
-    """Connect once. The client itself would wait for ever at a silent port."""
+    """Shake hands once; the client itself would wait for ever at a port that is silent."""
     from distributed.comm import connect
     from distributed.security import Security
 
@@ -145,14 +145,14 @@ def _cause(error: BaseException) -> str:
 
 
 def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
-    """Compare the versions in the workers with those of this computer.
+    """Hold the versions in the workers against those of this computer.
 
     Parameters
     ----------
     here
         Version of each package; None where one is missing.
     workers
-        Versions in each worker, by the worker's address.
+        The versions in each worker, by the worker's address.
 
     Returns
     -------
@@ -180,7 +180,7 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
 
 
 def _version(versions: Versions, name: str) -> str | None:
-    """Return the version of a package; for Python without its last digits, which change no result."""
+    """Of a package; of Python without its last digits, which change no result."""
     version = versions.get(name)
     return ".".join(version.split(".")[:2]) if version and name == "python" else version
 
@@ -192,7 +192,7 @@ def _outcome(future: "Future[R]", address: str) -> R | Exception:
         return future.result()
     except CancelledError:
         raise ConfigurationError(
-            f"--scheduler: the connection to {address} is lost. Finished results are kept: repeat the command"
+            f"--scheduler: the connection to {address} is lost. What was done is kept: repeat the command"
             " when the scheduler is back."
         ) from None
     except KilledWorker as error:
@@ -202,7 +202,7 @@ def _outcome(future: "Future[R]", address: str) -> R | Exception:
 
 
 def _pinned(work: Callable[[T], R], task: T) -> R:
-    """Do a task in a worker, with one thread for linear algebra, because the workers are the parallelism."""
+    """Do a task in a worker, with one thread for linear algebra: the workers are the parallelism."""
     import scipy.linalg  # noqa: F401  # brings the libraries that are limited next
     from threadpoolctl import threadpool_limits
 

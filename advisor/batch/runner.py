@@ -1,4 +1,4 @@
-"""Tasks in processes. A process that dies costs only its own task."""
+"""Tasks in processes: a process that dies costs its own task only."""
 
 import multiprocessing
 import os
@@ -13,7 +13,7 @@ R = TypeVar("R")
 
 
 def processes(workers: int) -> Executor:
-    """Return fresh processes, which leave signals to this process and end with it."""
+    """Return fresh processes, which leave signals to this one and end with it."""
     context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker)
 
@@ -24,7 +24,7 @@ def run_all(
     workers: int,
     executor: Callable[[int], Executor] = processes,
 ) -> Iterator[tuple[T, R | Exception]]:
-    """Do all tasks; yield each with its result, or with the error that ended it, in the order of completion.
+    """Do all tasks; give each with its result, or with the error that ended it, as they are done.
 
     Parameters
     ----------

@@ -125,7 +125,7 @@ def test_a_scheduler_that_ends_in_the_middle_is_told_in_one_sentence() -> None:
         assert run.stdout.readline() == "done\n"
     _, told = run.communicate(timeout=60.0)
     assert told.count("\n") == 1, told
-    assert "is lost. Finished results are kept" in told
+    assert "is lost. What was done is kept" in told
 
 
 @pytest.mark.parametrize("address", ["8786", "host:8786", "http://host:8786", "tcp://host", "tcp://[:1"])
