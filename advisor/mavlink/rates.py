@@ -6,10 +6,10 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.mavlink.company import is_ground_station, who_sets_rates
 from advisor.mavlink.definitions import DEFINITIONS
 from advisor.mavlink.delivery import Delivery
 from advisor.mavlink.framing import Frame
+from advisor.mavlink.ground_stations import is_ground_station, who_sets_rates
 from advisor.mavlink.outgoing import Talker
 from advisor.mavlink.reboot import RebootWatch
 from advisor.mavlink.wish import LONGEST_REST_S, MOST_TRIES, Wish
