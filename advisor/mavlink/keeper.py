@@ -21,13 +21,13 @@ from threading import Thread
 from advisor import interrupt
 from advisor.mavlink import running
 from advisor.mavlink.announce import Announcer
-from advisor.mavlink.aside import Aside
 from advisor.mavlink.health import Notice
 from advisor.mavlink.inquiry import Inquiry
 from advisor.mavlink.keeping import Guard, Heard, Hello, Judged, Keeping, Listen, Order, Stop, Told
 from advisor.mavlink.link import Link
 from advisor.mavlink.outgoing import Talker
 from advisor.mavlink.rates import STREAMS, RateRequest
+from advisor.mavlink.separate_connection import SeparateConnection
 from advisor.problems import UnusableInputError
 
 TELL_EVERY_S = 0.2
@@ -224,7 +224,7 @@ class Keeper:
 def _talkers(keeping: Keeping, announcer: Announcer | None) -> list[Talker]:
     talkers: list[Talker] = [announcer] if announcer else []
     if announcer and keeping.announce_to:
-        talkers = [Aside(announcer, keeping.announce_to)]
+        talkers = [SeparateConnection(announcer, keeping.announce_to)]
     if keeping.request_rates:
         talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
     return talkers
