@@ -81,7 +81,9 @@ def analyzed(log: Path) -> dict[str, Any]:
 def write(path: Path, rows: Sequence[Row], measured: str) -> None:
     """Keep the rows, one a line, so that a change shows as one."""
     lines = ",\n".join(f"  {json.dumps(asdict(row), ensure_ascii=False)}" for row in rows)
-    path.write_text(f'{{\n "measured": {json.dumps(measured)},\n "records": [\n{lines}\n ]\n}}\n', encoding="utf-8")
+    path.write_text(
+        f'{{\n "measured": {json.dumps(measured)},\n "records": [\n{lines}\n ]\n}}\n', encoding="utf-8"
+    )
 
 
 def read(path: Path) -> tuple[list[Row], str]:

@@ -67,7 +67,8 @@ def command(
 ) -> int:
     """Channels, manoeuvres, estimates and residuals for other tools, with names and units.
 
-    Numbers are those of `advisor analyze` on the logs. docs/export.md lists files, units and the grid.
+    Numbers are those of `advisor analyze` on the logs. The documentation's page of exports lists files,
+    units and the grid.
 
     \b
     Example:

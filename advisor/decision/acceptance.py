@@ -2,7 +2,7 @@
 
 The costs handed in are those of usable manoeuvres: a quiet or spoilt record was refused for its own
 reasons before it came here, so it neither passes a rule nor sets the limit for the next one. None
-stands for such a manoeuvre. The readings chosen, and those tried, are in ``docs/rules.md``.
+stands for such a manoeuvre. The readings chosen, and those tried, are in ``docs/explanation/rules.md``.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -75,9 +75,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.pages", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    parser.add_argument(
-        "--examples", action="store_true", help="run the worked examples, too (a minute)"
-    )
+    parser.add_argument("--examples", action="store_true", help="run the worked examples, too (a minute)")
     commands = parser.add_subparsers(dest="command")
     run = commands.add_parser("add", help="add a scored run to the data")
     run.add_argument("score", type=Path, help="output of `score --json` or of `reveal --json`")

@@ -22,8 +22,11 @@ and s. The sizes in `effects` are those of [the effects](effects.md).
 """
 _OF_NO_FILE = frozenset({"lag_found_s"})
 """Fields that the program fills: no key of the file."""
-_UNITS = {"_m_s": "m/s", "_kg_m2": "kg m²", "_m2": "m²", "_kg": "kg", "_us": "us", "_deg": "deg", "_percent": "%",
-          "_percent_chord": "% of the chord", "_c": "°C", "_m": "m", "_s": "s"}  # fmt: skip
+_UNITS = {
+    "_m_s": "m/s", "_kg_m2": "kg m²", "_m2": "m²", "_kg": "kg", "_us": "us", "_deg": "deg", "_m": "m",
+    "_s": "s", "_percent": "%", "_percent_chord": "% of the chord", "_c": "°C",
+}  # fmt: skip
+"""Ending of a key to the unit of its value."""
 
 
 def page() -> str:
@@ -53,8 +56,9 @@ def _sections(path: str, kind: type) -> Iterator[str]:
 def _table(title: str, plain: list[Field[Any]], kind: type, lead: str) -> str:
     meanings = _meanings(kind)
     rows = [
-        f"| `{f.name}` | {_type(_hint(f, kind))} | {_unit(f.name)} | {_default(f)} | {meanings.get(f.name, '')} |"
+        f"| `{f.name}` | {_type(_hint(f, kind))} | {_unit(f.name)} | {_default(f)} | {meaning} |"
         for f in plain
+        for meaning in [meanings.get(f.name, "")]
     ]
     head = "| key | value | unit | default | meaning |\n|---|---|---|---|---|"
     return "\n".join([f"## {title}\n", f"{lead}{head}", *rows]) + "\n"
@@ -86,7 +90,10 @@ def _type(hint: Any) -> str:
 
 
 def _unit(name: str) -> str:
-    return next((unit for ending, unit in sorted(_UNITS.items(), key=lambda e: -len(e[0])) if name.endswith(ending)), "")
+    return next(
+        (unit for ending, unit in sorted(_UNITS.items(), key=lambda e: -len(e[0])) if name.endswith(ending)),
+        "",
+    )
 
 
 def _default(field: Field[Any]) -> str:

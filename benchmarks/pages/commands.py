@@ -41,7 +41,9 @@ def _helps(name: str, command: click.Command, parent: click.Context | None) -> I
     above = parent
     while above is not None:
         depth, above = depth + 1, above.parent
-    with click.Context(command, info_name=name, parent=parent, terminal_width=_WIDTH, max_content_width=_WIDTH) as context:
+    with click.Context(
+        command, info_name=name, parent=parent, terminal_width=_WIDTH, max_content_width=_WIDTH
+    ) as context:
         yield context.command_path, command.get_help(context), depth
         if isinstance(command, click.Group):
             for below in command.list_commands(context):

@@ -4,8 +4,8 @@ from pathlib import Path
 
 _HEAD = """# Decisions
 
-A decision record says which question stood open, what was decided and what follows. A record is not
-rewritten: a later decision gets a record of its own.
+A decision record says which question stood open, what was decided and what follows. A later decision gets a
+record of its own.
 
 """
 

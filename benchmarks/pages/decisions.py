@@ -15,7 +15,8 @@ This page is made from the source of `advisor/gap`.
 {count} constants decide something. A constant is a name in capitals for numbers at the top of a module.
 Left out are indices of arrays, and the descriptions of effects, whose bounds stand in
 [the table of effects](effects.md). Units are SI, unless the meaning says otherwise. Neighbours without a
-docstring stand with the next one that has one. [The method](../explanation/gap.md) says how the folders work together.
+docstring stand with the next one that has one. [The method](../explanation/gap.md) says how the folders work
+together.
 """
 _FOLDERS = {
     "records": "what is usable of a log",

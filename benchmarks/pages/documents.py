@@ -32,9 +32,14 @@ def _read(path: Path) -> Schema:
 
 
 def _section(name: str, schema: Schema) -> str:
-    rows = [f"| `{path}` | {kind} | {meaning} |" for path, kind, meaning in _keys(schema, schema, "")]
+    rows = [f"| {_broken(path)} | {kind} | {meaning} |" for path, kind, meaning in _keys(schema, schema, "")]
     table = "\n".join(["| key | value | meaning |", "|---|---|---|", *rows])
     return f"## `{schema['title']}`\n\nSchema: [`{schema['$id']}`](schemas/{name}.json).\n\n{table}\n"
+
+
+def _broken(path: str) -> str:
+    """The path as code that may break behind each point."""
+    return f"<code>{path.replace('.', '.<wbr>')}</code>"
 
 
 def _keys(part: Schema, whole: Schema, path: str) -> Iterator[tuple[str, str, str]]:

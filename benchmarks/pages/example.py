@@ -62,7 +62,9 @@ EXAMPLES: Sequence[Example] = (
     Example(
         "doctor logs/arduplane-default-rates.tlog", {"doctor-refuses": [Part(until="  ! AOA_SSA arrives")]}
     ),
-    Example("doctor logs/arduplane-calm.tlog", {"doctor": [Part()], "doctor-short": [Part(until="vehicle ")]}),
+    Example(
+        "doctor logs/arduplane-calm.tlog", {"doctor": [Part()], "doctor-short": [Part(until="vehicle ")]}
+    ),
     Example(
         "analyze logs/arduplane-calm.tlog --aircraft aircraft.yaml",
         {
@@ -127,7 +129,9 @@ def _cut(lines: Sequence[str], part: Part) -> Sequence[str]:
     """
     places = [n for n, line in enumerate(lines) if line.startswith(part.begins)]
     if not places:
-        raise ValueError(f"no line begins with {part.begins!r}: name another one in benchmarks/pages/example.py")
+        raise ValueError(
+            f"no line begins with {part.begins!r}: name another one in benchmarks/pages/example.py"
+        )
     ends = [n for n, line in enumerate(lines) if n > places[0] and part.until and line.startswith(part.until)]
     return lines[places[0] : ends[0] if ends else len(lines)]
 

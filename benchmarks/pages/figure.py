@@ -69,14 +69,18 @@ def response(maneuver: Maneuver, estimate: Estimate) -> Drawing:
 
 def residuals(maneuver: Maneuver, estimate: Estimate) -> Drawing:
     """The residual of each output, and the band that holds 95 % of white noise."""
-    panels = [Panel(name, [(fit.t, fit.residual)], 1.96 * fit.noise) for name, fit in estimate.fits[0].items()]
+    panels = [
+        Panel(name, [(fit.t, fit.residual)], 1.96 * fit.noise) for name, fit in estimate.fits[0].items()
+    ]
     return Drawing(f"manoeuvre {maneuver.number}: residuals, and ±1.96 σ", (), panels, {})
 
 
 def stages(maneuver: Maneuver) -> Drawing:
     """The record of a manoeuvre: before the input, the input, the free response."""
     span = maneuver.span
-    panels = [Panel(name, [(maneuver.channels[name].t, maneuver.channels[name].y)]) for name in ("elevator", "q")]
+    panels = [
+        Panel(name, [(maneuver.channels[name].t, maneuver.channels[name].y)]) for name in ("elevator", "q")
+    ]
     marks = {"first step": span.start_s, "last step": span.last_step_s, "end": span.end_s}
     return Drawing(f"the record of manoeuvre {maneuver.number}", (), panels, marks)
 

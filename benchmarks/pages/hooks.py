@@ -16,6 +16,7 @@ from benchmarks.pages.fragments import filled
 from benchmarks.pages.generated import PAGES, SECTIONS
 
 _EQUATION = re.compile(r'<(div|span) class="arithmatex">(.*?)</\1>', re.DOTALL)
+_NUMBER = re.compile(r"\\tag\{(.*?)\}")
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
@@ -46,6 +47,11 @@ def on_page_content(content: str, page: Page, config: MkDocsConfig, files: Files
 
 
 def _mathml(source: str, is_block: bool) -> str:
+    """An equation; a block has its number, which LaTeX calls its tag, at the right."""
     latex = html.unescape(source).strip()[2:-2].strip()
-    return convert(latex, display="block" if is_block else "inline")
-
+    if not is_block:
+        return convert(latex, display="inline")
+    number = _NUMBER.search(latex)
+    shown = convert(_NUMBER.sub("", latex), display="block")
+    label = f'<span class="number">({number[1]})</span>' if number else ""
+    return f'<div class="equation">{shown}{label}</div>'

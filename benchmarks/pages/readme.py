@@ -19,15 +19,19 @@ def _example(name: str) -> Callable[[], str]:
 def _records() -> str:
     rows, measured = real.read(REAL)
     shown = [next(row for row in rows if row.log == log) for log in _RECORDS]
-    lines = [f"| {row.what} | {row.got} | {'yes' if row.holds else '**no**'} |" for row in shown]
+    lines = [
+        f"| {row.what} | {row.asked} | {row.got} | {'yes' if row.holds else '**no**'} |" for row in shown
+    ]
     held = sum(row.holds for row in rows)
     last = f"{held} of {len(rows)} records hold. Measured {measured}."
-    return "\n".join(["| record | result | holds |", "|---|---|---|", *lines, "", last])
+    return "\n".join(["| record | asked | result | holds |", "|---|---|---|---|", *lines, "", last])
 
 
 def _gap() -> str:
     table = results.figures_table(results.read(GAP_RESULTS)).splitlines()
-    return "\n".join([*table[:2], *(row for row in table if row.startswith(tuple(f"| {f} |" for f in _FIGURES)))])
+    return "\n".join(
+        [*table[:2], *(row for row in table if row.startswith(tuple(f"| {f} |" for f in _FIGURES)))]
+    )
 
 
 BLOCKS: Mapping[str, Callable[[], str]] = {

@@ -2,7 +2,7 @@
 
     python -m benchmarks.pages.words
 
-What is made: ``docs/data``, and blocks between the comments ``<!-- NAME: begin -->`` and ``<!-- NAME: end -->``.
+Made are ``docs/data``, and blocks between ``<!-- NAME: begin -->`` and ``<!-- NAME: end -->``.
 """
 
 import re
@@ -26,13 +26,15 @@ def pages(root: Path) -> Iterator[Path]:
 
 
 def words_in(text: str) -> int:
-    """Words between spaces, without those of made blocks."""
-    return len(_MADE.sub("", text).split())
+    """Words that have a letter or a digit, without those of made blocks."""
+    return sum(any(map(str.isalnum, word)) for word in _MADE.sub("", text).split())
 
 
 def main(root: Path = ROOT) -> int:
     """Print the words of each page and their sum; 1 where a limit is passed."""
-    counts = {path.relative_to(root).as_posix(): words_in(path.read_text(encoding="utf-8")) for path in pages(root)}
+    counts = {
+        path.relative_to(root).as_posix(): words_in(path.read_text(encoding="utf-8")) for path in pages(root)
+    }
     for name, count in counts.items():
         print(f"{count:6} {name}")
     total = sum(counts.values())

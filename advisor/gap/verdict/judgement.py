@@ -26,7 +26,7 @@ _FIRST, _OTHERS = 0.9, 0.05
 """... of the first of several of them, and of all the others together ..."""
 _KEPT, _BESIDE = 0.96, 0.03
 """... and beside what a fit has named: what that keeps of its own, and what they get. All these were held
-against how often such answers were right on development flights (calibration, ``docs/gap-results.md``)."""
+against how often such answers were right on development flights (calibration, page "Gap results")."""
 _REFUTED, _RIVAL = 0.05, 0.2
 """What an alternative keeps of its probability beside an answer that makes it needless, and beside a mere
 companion of what was named."""
