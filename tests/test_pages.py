@@ -72,7 +72,7 @@ def test_the_page_of_commands_has_the_help_of_every_command_and_of_the_simulator
 def test_the_page_of_the_aircraft_file_has_every_key_and_its_default():
     page = aircraft_file.page()
     assert [f.name for f in fields(Aircraft) if f"`{f.name}`" not in page] == []
-    assert "| `tolerance_percent` | number | % | `5.0` |" in page
+    assert "| `tolerance_percent` | number, % | `5.0` |" in page
     assert "## `elevator.outputs[]`" in page
     assert "lag_found_s" not in page
 

@@ -55,12 +55,8 @@ def _sections(path: str, kind: type) -> Iterator[str]:
 
 def _table(title: str, plain: list[Field[Any]], kind: type, lead: str) -> str:
     meanings = _meanings(kind)
-    rows = [
-        f"| `{f.name}` | {_type(_hint(f, kind))} | {_unit(f.name)} | {_default(f)} | {meaning} |"
-        for f in plain
-        for meaning in [meanings.get(f.name, "")]
-    ]
-    head = "| key | value | unit | default | meaning |\n|---|---|---|---|---|"
+    rows = [f"| `{f.name}` | {_value(f, kind)} | {_default(f)} | {meanings.get(f.name, '')} |" for f in plain]
+    head = "| key | value | default | meaning |\n|---|---|---|---|"
     return "\n".join([f"## {title}\n", f"{lead}{head}", *rows]) + "\n"
 
 
@@ -87,6 +83,11 @@ def _type(hint: Any) -> str:
     if origin is tuple:
         return "list of pairs" if typing.get_origin(inside[0]) is tuple else f"list of {_type(inside[0])}"
     return {int: "whole number", float: "number", str: "text"}[hint]
+
+
+def _value(field: Field[Any], kind: type) -> str:
+    """Type and unit of a key's value."""
+    return ", ".join(filter(None, (_type(_hint(field, kind)), _unit(field.name))))
 
 
 def _unit(name: str) -> str:

@@ -16,6 +16,8 @@ from benchmarks.pages.fragments import filled
 from benchmarks.pages.generated import PAGES, SECTIONS
 
 _EQUATION = re.compile(r'<(div|span) class="arithmatex">(.*?)</\1>', re.DOTALL)
+_ROLE = re.compile(r":(?:func|class|meth|attr|mod):(?=<code>)")
+"""Sphinx's word before a name in a docstring, as in ``:func:`read```."""
 _NUMBER = re.compile(r"\\tag\{(.*?)\}")
 
 
@@ -42,8 +44,9 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
 
 
 def on_page_content(content: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Write equations as MathML, which browsers show without a script."""
-    return _EQUATION.sub(lambda found: _mathml(found[2], found[1] == "div"), content)
+    """Write equations as MathML, which browsers show without a script, and names without their roles."""
+    plain = _ROLE.sub("", content)
+    return _EQUATION.sub(lambda found: _mathml(found[2], found[1] == "div"), plain)
 
 
 def _mathml(source: str, is_block: bool) -> str:
