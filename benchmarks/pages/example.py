@@ -65,6 +65,8 @@ EXAMPLES: Sequence[Example] = (
     Example(
         "doctor logs/arduplane-calm.tlog", {"doctor": [Part()], "doctor-short": [Part(until="vehicle ")]}
     ),
+    Example("aircraft new --from logs/arduplane-calm.tlog -o mine.yaml", {"aircraft-new": [Part()]}),
+    Example("aircraft check mine.yaml", {"aircraft-check": [Part(until="  accelerometer.arm_m")]}),
     Example(
         "analyze logs/arduplane-calm.tlog --aircraft aircraft.yaml",
         {
