@@ -38,7 +38,7 @@ run: setup ## the bundled aircraft flies, the advisor advises (HEADLESS=1: as te
 test: .venv/.developed ## run all tests (long studies have their own targets)
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
-check: .venv/.developed format-check lint types imports sizes words site test ## format, lint, types, import contracts, sizes, documentation, tests
+check: .venv/.developed format-check lint types imports sizes english words site test ## format, lint, types, import contracts, sizes, English, documentation, tests
 
 format: .venv/.developed ## format the code
 	$(BIN)/ruff format .
@@ -60,6 +60,10 @@ imports: .venv/.developed ## the walls of the house
 .PHONY: sizes
 sizes: .venv/.developed ## lines, constants and names of the gap diagnosis, which may only fall
 	$(BIN)/python -m benchmarks.gap_size
+
+.PHONY: english
+english: .venv/.developed ## docstrings, messages and pages against docs/developer/style.md
+	$(BIN)/python -m benchmarks.english
 
 bench: .venv/.developed ## every ratio of speed, each against its goal (about twelve minutes)
 	$(BIN)/python -m benchmarks.estimate

@@ -67,11 +67,11 @@ class Pilot(Protocol):
         ...
 
     def current(self, time_s: float) -> Planned | None:
-        """The manoeuvre being flown at ``time_s``, from the change to MANUAL to that back."""
+        """Return the manoeuvre being flown at ``time_s``, from the change to MANUAL to that back."""
         ...
 
     def mode(self, time_s: float) -> int:
-        """Flight mode at ``time_s``."""
+        """Return the flight mode at ``time_s``."""
         ...
 
 
@@ -100,21 +100,21 @@ class Autopilot:
         self._integral = self._power = 0.0
 
     def current(self, time_s: float) -> Planned | None:
-        """The manoeuvre being flown at ``time_s``, from the change to MANUAL to that back."""
+        """Return the manoeuvre being flown at ``time_s``, from the change to MANUAL to that back."""
         for planned in self._planned:
             if planned.manual_from_s <= time_s < planned.end_s:
                 return planned
         return None
 
     def mode(self, time_s: float) -> int:
-        """Flight mode at ``time_s``."""
+        """Return the flight mode at ``time_s``."""
         planned = self.current(time_s)
         if planned is None:
             return CRUISE
         return FBWA if planned.maneuver.mode == "FBWA" else MANUAL
 
     def _next(self, time_s: float) -> Maneuver | None:
-        """The manoeuvre whose speed, height and bank are to be reached."""
+        """Return the manoeuvre whose speed, height and bank are to be reached."""
         for planned in self._planned:
             if time_s < planned.end_s:
                 return planned.maneuver
@@ -151,7 +151,7 @@ class Autopilot:
         )
 
     def _augmented(self, motion: Motion) -> float:
-        """Elevator that the stability augmentation adds to the pilot's."""
+        """Return the elevator that the stability augmentation adds to the pilot's."""
         off = motion.alpha - self._start.alpha
         return self._augmentation.alpha * off + self._augmentation.pitch_rate * motion.q
 

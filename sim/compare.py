@@ -66,7 +66,7 @@ def distances(flight: Path, replay: Path) -> list[Distance]:
 
 
 def _maneuvers(mode: Stream) -> list[tuple[float, float]]:
-    """Stretches of MANUAL, without their first moments."""
+    """Return stretches of MANUAL, without their first moments."""
     stamps, modes = mode
     manual = np.concatenate([[False], modes == MANUAL, [False]])
     edges = np.flatnonzero(np.diff(manual.astype(int)))
@@ -78,7 +78,7 @@ def _maneuvers(mode: Stream) -> list[tuple[float, float]]:
 
 
 def _streams(path: Path) -> dict[str, Stream]:
-    """Channels of a log on vehicle time; heartbeats take the latest attitude's stamp."""
+    """Return channels of a log on vehicle time; heartbeats take the latest attitude's stamp."""
     rows: dict[str, list[tuple[float, float]]] = defaultdict(list)
     now = 0.0
     try:

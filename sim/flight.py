@@ -199,7 +199,7 @@ class Flight:
 def noise_sigma(
     scenario: Scenario, fresh: Callable[[Scenario], hangar.Aircraft] = hangar.build
 ) -> dict[str, float]:
-    """Standard deviation of each channel's noise, SI units.
+    """Return the standard deviation of each channel's noise, SI units.
 
     Percentages refer to the channel's deviation from trim while the scenario's first manoeuvre is
     flown without noise, effects and turbulence: its largest value or its standard deviation.

@@ -28,13 +28,13 @@ class ShortPeriod:
     M_delta_e: float
 
     def trim(self) -> tuple[float, float]:
-        """Angle of attack and elevator (rad) at which nothing moves."""
+        """Return the angle of attack and elevator (rad) at which nothing moves."""
         matrix = np.array([[self.Z_alpha, self.Z_delta_e], [self.M_alpha, self.M_delta_e]])
         alpha, elevator = np.linalg.solve(matrix, [-self.Z_0, -self.M_0])
         return float(alpha), float(elevator)
 
     def frequency(self) -> float:
-        """Undamped natural frequency in rad/s; 0 for an aircraft without one."""
+        """Return the undamped natural frequency in rad/s; 0 for an aircraft without one."""
         squared = self.Z_alpha * self.M_q - (1 + self.Z_q) * self.M_alpha
         return float(np.sqrt(max(squared, 0.0)))
 
@@ -48,7 +48,7 @@ RESEARCH_JET = ShortPeriod(-0.009, -0.483, 0.104, 0.676, 0.475, -4.93, -2.01, -7
 
 
 def linearise(record: NDArray[np.void], trim: Trim, width: float = 1e-5) -> ShortPeriod:
-    """Short-period parameters of the nonlinear aircraft about a trim, by central differences.
+    """Return the short-period parameters of the nonlinear aircraft about a trim, by central differences.
 
     Speed, attitude and height stay at their trimmed values, as the model has it; Z_0 and M_0 are
     what makes the linear model trim at the same angle of attack and elevator.

@@ -85,7 +85,8 @@ MODEL_RECORD = np.dtype(
 
 @kernel()
 def _bent(angle: float, trimmed: float, about: float, square: float, cube: float) -> float:
-    """Square and cube of an angle about another, less those at the trim, which are in Z_0 and M_0."""
+    """Return the square and cube of an angle about another, less those at the trim, which are in Z_0 and
+    M_0."""
     off, usual = angle - about, trimmed - about
     return square * (off**2 - usual**2) + cube * (off**3 - usual**3)
 

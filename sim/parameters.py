@@ -58,7 +58,7 @@ def parameter_table(rates: Mapping[str, float], system: int, calibration: Calibr
 
 
 def parameter_type(name: str) -> int:
-    """MAV_PARAM_TYPE that ArduPilot gives the parameter."""
+    """Return MAV_PARAM_TYPE that ArduPilot gives the parameter."""
     if name.endswith("_REVERSED"):
         return int(mavlink.MAV_PARAM_TYPE_INT8)
     return int(mavlink.MAV_PARAM_TYPE_INT16)

@@ -147,7 +147,7 @@ class RecordedPilot:
         return None
 
     def mode(self, time_s: float) -> int:
-        """Flight mode at ``time_s``."""
+        """Return the flight mode at ``time_s``."""
         return MANUAL if self._recording.manual(self._begin_s + time_s) else CRUISE
 
 

@@ -43,7 +43,8 @@ class SensorEffect(Protocol):
 
 
 def ideal(motion: Motion, accelerometer_arm_m: float = 0.0) -> Reading:
-    """Readings of perfect instruments; the accelerometer feels a_z − x·q̇ and a_x − x·q² at x ahead."""
+    """Return readings of perfect instruments; the accelerometer feels a_z − x·q̇ and a_x − x·q² at x
+    ahead."""
     turn = GRAVITY_M_S2 / motion.airspeed * math.sin(motion.phi) * math.cos(motion.theta)
     return Reading(
         motion.air_alpha,

@@ -42,12 +42,12 @@ class Calibration:
         return self.pulse(0.0)
 
     def pulse(self, deflection: float) -> int:
-        """Nearest whole pulse width in µs for a deflection in rad, within the stops."""
+        """Return the nearest whole pulse width in µs for a deflection in rad, within the stops."""
         pairs = sorted((math.radians(angle), pulse) for pulse, angle in self.points)
         return round(_between(pairs, deflection))
 
     def deflection(self, pulse_us: int) -> float:
-        """Deflection in rad that a pulse width commands."""
+        """Return the deflection in rad that a pulse width commands."""
         return math.radians(_between(self.points, pulse_us))
 
 

@@ -131,13 +131,13 @@ def analyze_shared(task: Task) -> Analyzed:
 
 
 def failed(task: Task, problems: Sequence[Problem]) -> Analyzed:
-    """The result of a log that could not be analyzed."""
+    """Return the result of a log that could not be analyzed."""
     document = analysis_document(None, [str(task.log)], task.aircraft, {0: problems})
     return Analyzed(str(task.log), task.aircraft_file, task.sha256, nan, document)
 
 
 def _finite(values: np.ndarray[Any, Any]) -> list[Any]:
-    """Nested lists of numbers that JSON can hold: None for what is not finite."""
+    """Return nested lists of numbers that JSON can hold: None for what is not finite."""
     if values.ndim > 1:
         return [_finite(row) for row in values]
     return [number(value) for value in values.tolist()]
@@ -156,7 +156,7 @@ def keep(result: Analyzed, path: Path) -> None:
 
 
 def kept(path: Path) -> Analyzed | None:
-    """A result that was kept before; None without a file, or with one that holds no result."""
+    """Return a result that was kept before; None without a file, or with one that holds no result."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         return Analyzed(**{**content, "began_s": nan if content["began_s"] is None else content["began_s"]})
@@ -165,7 +165,7 @@ def kept(path: Path) -> Analyzed | None:
 
 
 def sha256_of(log: Path) -> str:
-    """SHA-256 of a file.
+    """Return SHA-256 of a file.
 
     Raises
     ------

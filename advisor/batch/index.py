@@ -12,7 +12,7 @@ from advisor.batch.flight import Analyzed
 from advisor.batch.picture import Point, trend_svg
 from advisor.batch.tables import aircraft_of, changes_of, estimates_of
 from advisor.batch.trend import ChangeOverFlights
-from advisor.decision.pooling import DERIVATIVES, beliefs_at_one_speed, common_airspeed
+from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
 from advisor.exporting.found import PARAMETER_UNITS
 from advisor.log_series import SINCE_1970_S
 from advisor.oem.estimate import Estimate
@@ -53,16 +53,16 @@ def index_page(flights: Sequence[Analyzed]) -> str:
 
 
 def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights | None) -> str:
-    """The sentence of the change test for one aircraft, and a picture a derivative."""
+    """Return the sentence of the change test for one aircraft, and a picture a derivative."""
     estimates = [estimate for _, estimate in flights]
-    beliefs = beliefs_at_one_speed(estimates)
+    posteriors = posteriors_at_one_speed(estimates)
     speed = common_airspeed(estimates)
     moved = {one.parameter for one in change.change.moved} if change else set()
     pictures = []
     for k in DERIVATIVES:
         points = [
-            Point(number, float(belief.theta[k]), NORMAL_95 * float(belief.std[k]))
-            for (number, _), belief in zip(flights, beliefs, strict=True)
+            Point(number, float(posterior.theta[k]), NORMAL_95 * float(posterior.std[k]))
+            for (number, _), posterior in zip(flights, posteriors, strict=True)
         ]
         since = change.since if change and PARAMETERS[k] in moved else None
         picture = trend_svg(PARAMETERS[k], PARAMETER_UNITS[PARAMETERS[k]], points, since)
@@ -109,5 +109,5 @@ def _row(number: int, flight: Analyzed) -> str:
 
 
 def _shown(text: str) -> str:
-    """Text from outside, as a page shows it and never obeys it."""
+    """Return the text from outside, as a page shows it and never obeys it."""
     return escape(printable(text))

@@ -14,7 +14,7 @@ PACKED = (".gz", ".zip")
 
 
 def find_logs(places: Sequence[Path], without: Path) -> list[Path]:
-    """Logs in the order given, those of a folder in the order of their names, each once.
+    """Return logs in the order given, those of a folder in the order of their names, each once.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class AircraftMap:
     entries: tuple[tuple[str, Path], ...]
 
     def file_of(self, log: Path) -> Path | None:
-        """The aircraft file of a log; None where no pattern matches its path or its name."""
+        """Return the aircraft file of a log; None where no pattern matches its path or its name."""
         names = (log.as_posix(), log.name)
         return next((file for pattern, file in self.entries if any(fnmatch(n, pattern) for n in names)), None)
 

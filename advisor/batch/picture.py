@@ -66,7 +66,7 @@ def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) 
 
 
 def _ticks(low: float, high: float) -> tuple[list[float], int]:
-    """Two to six round numbers that enclose an interval, and their decimals."""
+    """Return two to six round numbers that enclose an interval, and their decimals."""
     span = max(high - low, 1e-6 * max(abs(low), abs(high)), 1e-12)
     power = floor(log10(span))
     size = span / 10.0**power

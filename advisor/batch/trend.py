@@ -20,7 +20,7 @@ class ChangeOverFlights:
 
 
 def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFlights | None:
-    """The most telling change over the flights of one aircraft; None when noise explains everything.
+    """Return the most telling change over the flights of one aircraft; None when noise explains everything.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ def command(
     marks: "tuple[Mark, ...]",
     no_marks: bool,
 ) -> None:
-    """The same screens on logs: pause, step, speed, jump to a manoeuvre.
+    """Play logs on the screens of a live flight: pause, step, speed, jump to a manoeuvre.
 
     Several logs are one campaign of several flights, played one after the other. Without a terminal, or with
     HEADLESS=1, the verdicts come as text.

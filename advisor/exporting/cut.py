@@ -19,7 +19,8 @@ name."""
 
 
 def cut_tlog(log: Path, first: int, last: int) -> bytes:
-    """The packets of a tlog from one to another, after the newest heartbeats and parameters before them.
+    """Return the packets of a tlog from one to another, after the newest heartbeats and parameters before
+    them.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ def cut_tlog(log: Path, first: int, last: int) -> bytes:
 
 
 def _messages(log: Path) -> Iterator[Columns]:
-    """The messages of a tlog that may be needed before a stretch, all batches of one sender joined."""
+    """Yield the messages of a tlog that may be needed before a stretch, all batches of one sender joined."""
     heard: dict[tuple[str, int, int], list[Columns]] = {}
     for batch in read_tlog(log, BEFORE):
         for columns in batch:
@@ -66,7 +67,8 @@ def _messages(log: Path) -> Iterator[Columns]:
 
 
 def _newest(columns: Columns, first: int) -> IntArray:
-    """Where the newest of these messages before ``first`` begin, one for each value of the key fields."""
+    """Return where the newest of these messages before ``first`` begin, one for each value of the key
+    fields."""
     before = columns.order < first
     order = columns.order[before]
     newest: dict[object, int] = {}
@@ -81,5 +83,5 @@ def _record(data: bytes, at: int) -> bytes:
 
 
 def _length(data: bytes, at: int) -> int:
-    """Bytes of the frame that begins at ``at``."""
+    """Return bytes of the frame that begins at ``at``."""
     return len(FrameCutter(CRC_EXTRA).feed(data[at : at + LONGEST_FRAME])[0].raw)

@@ -28,7 +28,7 @@ _MEASURES = {
 
 
 def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> Table:
-    """One row a manoeuvre, with its verdict, reasons and fit.
+    """Return one row a manoeuvre, with its verdict, reasons and fit.
 
     Parameters
     ----------
@@ -82,14 +82,15 @@ def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
 
 
 def estimates(state: CampaignState) -> Table:
-    """One row a parameter of each manoeuvre and of the joint estimate, with its row of the covariance."""
+    """Return one row a parameter of each manoeuvre and of the joint estimate, with its row of the
+    covariance."""
     found = [(one.maneuver.number, e) for one in state.maneuvers if (e := _estimate(one))]
     if state.model is not None:
         found.append((JOINT, state.model))
     rows = [(number, e, name) for number, e in found for name in PARAMETERS]
 
     def told(values: str, *of: int) -> NDArray[np.float64]:
-        """(n,) an attribute of the estimates, by row; NaN where the parameter is not identifiable."""
+        """Return (n,) an attribute of the estimates, by row; NaN where the parameter is not identifiable."""
         return numbers(
             [
                 None if name in e.not_identifiable else getattr(e, values)[(PARAMETERS.index(name), *of)]
@@ -118,7 +119,8 @@ def estimates(state: CampaignState) -> Table:
 
 
 def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> tuple[Table, ...]:
-    """A table an output: measured, fitted and residual of every accepted manoeuvre, at their own stamps."""
+    """Return a table an output: measured, fitted and residual of every accepted manoeuvre, at their own
+    stamps."""
     accepted = [
         (one.maneuver, e) for one in state.maneuvers if one.verdict.accepted and (e := _estimate(one))
     ]
@@ -160,7 +162,7 @@ def _records(
 
 
 def _measures(output: str, fits: Sequence[ChannelFit | None]) -> list[Column]:
-    """The columns that say how well the model explains an output."""
+    """Return the columns that say how well the model explains an output."""
     return [
         Column(
             f"{measure}_{output}",

@@ -18,7 +18,7 @@ GRID = (
 
 
 def on_one_grid(channels: Mapping[str, Channel]) -> Table:
-    """All channels at the times of ``GRID``; a table without rows where no channel has two samples."""
+    """Return all channels at the times of ``GRID``; a table without rows where no channel has two samples."""
     t = grid_times(channels)
     columns = [
         Column(name, on_grid(c, t), ALL_UNITS[name], f"{name} from {c.source}")
@@ -29,7 +29,7 @@ def on_one_grid(channels: Mapping[str, Channel]) -> Table:
 
 
 def grid_times(channels: Mapping[str, Channel]) -> FloatArray:
-    """(n,) times of the grid, s since boot."""
+    """Return (n,) times of the grid, s since boot."""
     paced = {name: c for name, c in channels.items() if len(c) > 1}
     if not paced:
         return np.empty(0)
@@ -40,7 +40,8 @@ def grid_times(channels: Mapping[str, Channel]) -> FloatArray:
 
 
 def on_grid(channel: Channel, t: FloatArray) -> FloatArray:
-    """(n,) a channel at the times ``t``: linear between its stamps, NaN outside them and in its gaps."""
+    """Return (n,) a channel at the times ``t``: linear between its stamps, NaN outside them and in its
+    gaps."""
     if len(channel) == 0 or len(t) == 0:
         return np.full(len(t), np.nan)
     y = np.interp(t, channel.t, channel.y, left=np.nan, right=np.nan)

@@ -32,7 +32,7 @@ def write_layouts(data: Dataset, folder: Path, ending: str) -> None:
 
 
 def layout(recording: Recording, ending: str) -> Xml.Element:
-    """One tab of plots, one above the other, of those channels that the record has."""
+    """Return one tab of plots, one above the other, of those channels that the record has."""
     there = {column.name for column in recording.grid.columns}
     plots = [names for plot in _PLOTS if (names := [name for name in plot if name in there])]
     root = Xml.Element("root")

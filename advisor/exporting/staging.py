@@ -77,7 +77,7 @@ def refuse_inputs(targets: Sequence[Path], inputs: Sequence[Path]) -> None:
 
 
 def _missing(folder: Path) -> list[Path]:
-    """Folders that must be made, the innermost first."""
+    """Return folders that must be made, the innermost first."""
     return [path for path in (folder, *folder.parents) if not path.exists()]
 
 

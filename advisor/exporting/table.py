@@ -36,7 +36,7 @@ class Table:
         return len(self.columns[0].values)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        """Values of a column by name, shape (n,)."""
+        """Return values of a column by name, shape (n,)."""
         return next(column.values for column in self.columns if column.name == name)
 
 
@@ -63,15 +63,15 @@ class Dataset:
     """Where the numbers come from: version, logs with their SHA-256, grid, notes; JSON can hold it."""
 
     def table(self, name: str) -> Table:
-        """One of ``tables`` by name."""
+        """Return one of ``tables`` by name."""
         return next(table for table in self.tables if table.name == name)
 
 
 def texts(values: Sequence[str]) -> NDArray[np.str_]:
-    """Texts as the values of a column, shape (n,)."""
+    """Return texts as the values of a column, shape (n,)."""
     return np.array(list(values), dtype=np.str_)
 
 
 def numbers(values: Sequence[float | None]) -> NDArray[np.float64]:
-    """Numbers as the values of a column, shape (n,); NaN for None."""
+    """Return numbers as the values of a column, shape (n,); NaN for None."""
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Which way each of several elevator outputs counts in pitch, as the aircraft answers to them together."""
+"""Signs of several elevator outputs in pitch, from the aircraft's answer to all of them together."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -10,17 +10,17 @@ from advisor.flight.motion import integrated
 from advisor.flight.record import Channel
 
 _SURELY = 9.0
-"""An output's sense is known where twice the logarithm of the likelihood ratio of both senses exceeds this.
-For one parameter that is three standard errors. Samples count as many as are independent, by the residual's
-correlation from sample to sample. Set on the records of eight aircraft, their elevators wired to two outputs
-that roll, too: manoeuvres reach 10 to 120, a wrong sense never more than 8."""
+"""Least value of twice the log-likelihood ratio of both signs at which an output's sign is known: three
+standard errors for one parameter. Samples are counted as independent ones, by the residual's correlation
+between neighbours. On the records of eight aircraft, with elevators wired to two outputs that also roll,
+manoeuvres reach 10 to 120. A wrong sign never exceeded 8."""
 _LEAST_S = 4.0
-"""Shortest flight that is asked, s. Within one to three seconds slow movements pass for each other: there a
-wrong sense reached 22 on the same records."""
+"""Shortest flight from which signs are taken, s. In one to three seconds slow movements look alike: there a
+wrong sign reached 22 on these records."""
 _EXPLAINED = 0.7
-"""Share of the pitch rate that the regression must explain, as in ``sense.py``."""
+"""Least share of the pitch rate that the regression must explain, as in ``sense.py``."""
 _MOST = 8
-"""Outputs whose senses are all tried together: 256 combinations."""
+"""Most outputs whose signs are tried together, in 256 combinations."""
 
 
 def answers(
@@ -31,11 +31,12 @@ def answers(
     alpha: Channel | None,
     singly: bool = False,
 ) -> list[bool | None]:
-    """Whether a positive deflection of each output lifts the nose; None where it rests or is not sure.
+    """Return whether a positive deflection of each output lifts the nose; None for an output that rests or is
+    unsure.
 
     Least squares of the pitch rate on the integrals of the elevator, the pitch rate and the angle of attack.
-    The elevator is the sum of all outputs, each with either sign; signs that let the roll part of elevons
-    cancel and their pitch part add up explain the pitch rate best.
+    The elevator is the sum of all outputs, each with either sign. The right signs let the roll part of
+    elevons cancel and their pitch parts add up, and so explain the pitch rate best.
 
     Parameters
     ----------
@@ -48,8 +49,8 @@ def answers(
     q, alpha
         Pitch rate, and angle of attack where there is one, over the same time.
     singly
-        Whether an output of which the sum tells nothing is asked by itself. Outputs that only move in
-        proportion explain the pitch rate with either sign; taken one by one, they add up.
+        Whether an output that the sum leaves unsure is regressed alone. Outputs that move in proportion
+        explain the pitch rate with either sign; taken one by one, they add up.
     """
     n, k = len(q), angles.shape[1]
     unknown: list[bool | None] = [None] * k
@@ -59,7 +60,7 @@ def answers(
     outputs = np.column_stack([_integral(q.t, t, share * angles[:, i]) for i, share in enumerate(shares)])
     motion = [_integral(q.t, c.t, c.y) for c in (q, alpha) if c is not None]
     others, _ = np.linalg.qr(np.column_stack([*motion, q.t - q.t[0], np.ones(n)]))
-    # What the aircraft's own motion and drifts leave of the outputs and of the pitch rate.
+    # The parts of the outputs and of the pitch rate that the aircraft's own motion and drifts leave.
     free = outputs - others @ (others.T @ outputs)
     left = q.y - others @ (others.T @ q.y)
     signs = np.array(list(product((1.0, -1.0), repeat=k)))
@@ -77,12 +78,12 @@ def answers(
 
 
 def _fitted(signs: FloatArray, free: FloatArray, left: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Sum of squares that each combination of signs leaves, and the residual of the best.
+    """Return the residual sum of squares of each combination of signs, and the residual of the best.
 
     Parameters
     ----------
     signs
-        Shape (s, k), combinations tried; the sum that they make counts with a positive effect only.
+        Shape (s, k), combinations tried. A combination counts only with a positive effect of its sum.
     free, left
         Shapes (n, k) and (n,): the integrals of the outputs, and the pitch rate.
     """
@@ -95,7 +96,8 @@ def _fitted(signs: FloatArray, free: FloatArray, left: FloatArray) -> tuple[Floa
 
 
 def _independent(residual: FloatArray) -> float:
-    """How many independent samples say as much about a mean as these, by their correlation at lag one."""
+    """Return the number of independent samples with equal information about a mean, by the correlation at lag
+    one."""
     power = float(residual @ residual)
     correlation = float(residual[1:] @ residual[:-1]) / power if power > 0.0 else 0.0
     correlation = min(max(correlation, 0.0), 1.0)
@@ -103,6 +105,6 @@ def _independent(residual: FloatArray) -> float:
 
 
 def _integral(at: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
-    """Integral over ``at`` of what has samples ``y`` at ``t``, from its first value."""
+    """Return the integral over ``at``, from its first value, of a signal with samples ``y`` at ``t``."""
     on = np.interp(at, t, y)
     return integrated(at, on - on[0])

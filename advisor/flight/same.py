@@ -1,7 +1,7 @@
-"""Whether two records are of one manoeuvre, as from two copies, two stations, or a link and a .bin.
+"""Recognition of two records of one manoeuvre, as from two copies, two stations, or a link and a .bin.
 
-Vehicle time and attitude tell: the same clock shows the same pitch angle. Two flights of one schedule, even
-simulated ones, differ by more than a log's resolution.
+Vehicle time and attitude decide: in both records the clock shows one pitch angle. Two flights of one
+schedule, even simulated ones, differ by more than a log's resolution.
 """
 
 import numpy as np
@@ -9,18 +9,19 @@ import numpy as np
 from advisor.flight.maneuver import Maneuver
 
 _AGREE_RAD = 3e-4
-"""Median difference of pitch angle, rad, up to which two records are of one motion. A log in steps of
-0.01 deg is 1e-4 rad off. Two simulated flights of one schedule with 1 % of noise differ by 1.4e-3 rad."""
+"""Largest median difference of pitch angle, rad, between two records of one motion. A log in steps of 0.01
+deg is 1e-4 rad off. Two simulated flights of one schedule with 1 % of noise differ by 1.4e-3 rad."""
 _SKEW_S = 0.01
-"""Logs stamp one attitude at most so much apart, s: where it is computed, sent or written."""
+"""Largest difference between the stamps of one attitude in two logs, s: the time of computing, sending or
+writing."""
 _COMMON = 0.5
-"""Two records of one manoeuvre share more than this share of the shorter one's time."""
+"""Least shared time of two records of one manoeuvre, as a share of the shorter record."""
 _FEWEST = 10
-"""Samples that are compared at least."""
+"""Fewest samples that are compared."""
 
 
 def are_one(a: Maneuver, b: Maneuver) -> bool:
-    """Whether two records, each from a power-on of its own, are of one manoeuvre."""
+    """Return whether two records from different power-ons show one manoeuvre."""
     from_s = max(a.span.start_s, b.span.start_s)
     to_s = min(a.span.end_s, b.span.end_s)
     shorter_s = min(m.span.end_s - m.span.start_s for m in (a, b))
@@ -40,7 +41,8 @@ def are_one(a: Maneuver, b: Maneuver) -> bool:
 
 
 def is_fuller(a: Maneuver, b: Maneuver) -> bool:
-    """Whether ``a`` is the better record of one manoeuvre: marked, or with more samples of elevator and q."""
+    """Return whether ``a`` is the better record of one manoeuvre: marked, or with more samples of elevator
+    and q."""
     return _fullness(a) > _fullness(b)
 
 

@@ -1,4 +1,4 @@
-"""Which way the elevator moves, where no calibration says so: as the aircraft answered."""
+"""Sign of an elevator without calibration, from the aircraft's answer."""
 
 from dataclasses import replace
 
@@ -10,9 +10,9 @@ from advisor.flight.messages import FloatArray
 from advisor.flight.motion import integrated
 
 _SURELY = 10.0
-"""Standard errors of M_δe, as if the noise were white, from which on its sign is beyond doubt ..."""
+"""Least absolute value of M_δe, in standard errors under white noise, at which its sign is certain."""
 _EXPLAINED = 0.7
-"""... if the regression explains that much of the pitch rate."""
+"""Least share of the pitch rate that the regression must explain, in addition."""
 _OTHER: dict[InputKind, InputKind] = {"3-2-1-1": "reverse 3-2-1-1", "reverse 3-2-1-1": "3-2-1-1"}
 
 SAID = (
@@ -22,18 +22,19 @@ SAID = (
 
 
 class Sense:
-    """Turns an elevator of assumed scale the right way round: trailing edge down pitches down.
+    """Gives an elevator of assumed scale its sign: trailing edge down pitches down.
 
-    Parameters of an autopilot say which way an output moves, not which way the surface is linked to it.
-    The first manoeuvre that tells decides for all that follow.
+    An autopilot's parameters give the direction of an output, not of the surface linked to it. The first
+    conclusive manoeuvre decides for all later ones.
     """
 
     def __init__(self) -> None:
         self.backwards: bool | None = None
-        """What was found; None before a manoeuvre has told."""
+        """Whether the sign is reversed. None before the first conclusive manoeuvre."""
 
     def right(self, maneuver: Maneuver) -> tuple[Maneuver, list[Notice]]:
-        """The manoeuvre with the elevator the right way round; a notice where that is found out."""
+        """Return the manoeuvre with the elevator's sign corrected, and a notice when a reversed sign is
+        found."""
         found = []
         if self.backwards is None:
             self.backwards = answers_backwards(maneuver)
@@ -43,7 +44,7 @@ class Sense:
 
 
 def turned(maneuver: Maneuver) -> Maneuver:
-    """The manoeuvre with the elevator's deflections the other way round."""
+    """Return the manoeuvre with the elevator's deflections reversed."""
     elevator = maneuver.channels["elevator"]
     span = replace(
         maneuver.span,
@@ -56,7 +57,7 @@ def turned(maneuver: Maneuver) -> Maneuver:
 
 
 def answers_backwards(maneuver: Maneuver) -> bool | None:
-    """Whether a trailing edge that goes down lifts the nose, M_δe > 0; None where that is not sure.
+    """Return whether a trailing edge that goes down lifts the nose, M_δe > 0; None where uncertain.
 
     Least squares of the pitch rate on the integrals of elevator, pitch rate and angle of attack.
     """

@@ -1,4 +1,4 @@
-"""Speaking to another program than the vehicle: over a connection of its own, under the vehicle's ids."""
+"""Announcements over a separate connection to a ground station, under the vehicle's ids."""
 
 from typing import Any
 
@@ -11,23 +11,23 @@ REOPEN_EVERY_S = 1.0
 
 
 class Aside(Talker):
-    """Says to a ground station what a talker would say on the link.
+    """Sends to a ground station the messages that a talker would send on the link.
 
-    MAVProxy passes on to the vehicle what comes in by its ``--out``, and shows none of it. What comes in by
-    its ``--master`` it shows when the text carries the system and component of its vehicle
-    (MAVProxy, ``mavproxy_link.py``, ``message_is_from_primary_vehicle``).
+    MAVProxy forwards messages from its ``--out`` to the vehicle, and shows none of them. MAVProxy shows a
+    message from its ``--master`` when the text carries the system and component of its vehicle (MAVProxy,
+    ``mavproxy_link.py``, ``message_is_from_primary_vehicle``).
 
     Parameters
     ----------
     talker
-        Who speaks.
+        Source of the messages.
     connection
-        Where to, see ``parse_connection``.
+        Connection string, see ``parse_connection``.
 
     Raises
     ------
     ConfigurationError
-        When the connection string names no connection.
+        The connection string names no connection.
     """
 
     def __init__(self, talker: Talker, connection: str) -> None:
@@ -40,20 +40,20 @@ class Aside(Talker):
         self._failed = False
 
     def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
-        """Nothing on the link; on the other connection, what is due."""
+        """Send the due messages on the other connection; return nothing for the link."""
         if vehicle is not None and self._is_open(now_s):
             for message in self._talker.speak(vehicle, now_s):
                 self._send(self._packer.pack(message, vehicle, 0))
         return []
 
     def leave(self, now_s: float) -> None:
-        """Let go of the connection."""
+        """Close the connection."""
         if self._transport is not None:
             self._transport.close()
             self._transport = None
 
     def report(self) -> list[str]:
-        """Whether the connection could be opened, once."""
+        """Return, once, a sentence where the connection could not be opened."""
         said, self._said = self._said, []
         return said
 

@@ -1,4 +1,4 @@
-"""Other ground stations on the link: who they are, and how each lets the stream rates alone."""
+"""Other ground stations on the link, and how each can leave the stream rates alone."""
 
 from collections.abc import Collection
 
@@ -13,7 +13,7 @@ CURE = (
 
 
 def is_ground_station(frame: Frame) -> bool:
-    """Whether a frame is the heartbeat of a ground station."""
+    """Return whether a frame is the heartbeat of a ground station."""
     if frame.message_id != dialect.MAVLINK_MSG_ID_HEARTBEAT:
         return False
     payload = frame.payload.ljust(9, b"\0")
@@ -21,7 +21,7 @@ def is_ground_station(frame: Frame) -> bool:
 
 
 def who_sets_rates(stations: Collection[int]) -> str:
-    """Who may have changed the rates, and what keeps that from happening.
+    """Return a clause on who may have changed the rates, and on the remedy.
 
     Parameters
     ----------

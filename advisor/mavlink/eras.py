@@ -1,7 +1,7 @@
 """Records of every firmware since 2013 under today's names, each with its time since boot.
 
-Firmware of 2013 to 2015 stamped records in milliseconds, numbered channels ``Chan1`` or ``Ch1``, gave a
-second sensor a record of its own and some records no time at all (ArduPilot, DataFlash.h and
+Firmware of 2013 to 2015 stamped records in milliseconds and numbered channels ``Chan1`` or ``Ch1``. A second
+sensor had a record of its own, and some records had no time at all (ArduPilot, DataFlash.h and
 ArduPlane/Log.cpp of those years).
 """
 
@@ -20,7 +20,7 @@ SENSORS_APART = {
     "GYR": ("GYR1", "GYR2", "GYR3"),
     "ACC": ("ACC1", "ACC2", "ACC3"),
 }
-"""Today's record with a sensor's number in the field I, and the records of the further sensors before."""
+"""Today's record, with a sensor's number in the field I, to the former records of the further sensors."""
 _RENAMED = {
     "CTUN": {"ThrOut": "ThO"},
     "GPS": {"Week": "GWk", "TimeMS": "GMS"},
@@ -28,7 +28,7 @@ _RENAMED = {
 }
 _CHANNEL = re.compile(r"(?:Chan|Ch)(\d+)")
 _1970_US = 10**15
-"""A stamp beyond this, 31 years, counts from 1970 and not from boot."""
+"""Least stamp, us, that counts from 1970 and not from boot: 31 years."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,13 +36,14 @@ class Clocked:
     """The records of a log on one clock."""
 
     tables: Mapping[str, Table]
-    """By today's names; every table has TimeUS, int64."""
+    """Tables by today's names. Every table has TimeUS, int64."""
     epoch_s: int
-    """Seconds since 1970 at TimeUS 0 of a log that counted from there; 0 of one that counts from boot."""
+    """Seconds since 1970 at TimeUS 0 for a log that counted from 1970; 0 for a log that counts from boot."""
 
 
 def in_todays_names(tables: Mapping[str, Table]) -> Clocked:
-    """All records of a log, renamed, several records of like sensors joined, and clocked."""
+    """Return all records of a log, renamed, on one clock, with several records of one kind of sensor
+    joined."""
     named = {name: _renamed(name, table) for name, table in tables.items()}
     timed = _timed(named)
     stamps = np.concatenate([table.time_us for table in timed.values()]) if timed else np.zeros(0, np.int64)
@@ -54,7 +55,8 @@ def in_todays_names(tables: Mapping[str, Table]) -> Clocked:
 
 
 def _renamed(name: str, table: Table) -> Table:
-    """Fields under today's names; TimeUS where the record states its time since boot in any unit."""
+    """Return the fields under today's names, with TimeUS where the record states its time since boot in any
+    unit."""
     fields = dict(table.fields)
     if "TimeUS" in fields:
         fields["TimeUS"] = fields["TimeUS"].astype(np.int64)
@@ -73,7 +75,8 @@ def _renamed(name: str, table: Table) -> Table:
 
 
 def _timed(tables: Mapping[str, Table]) -> dict[str, Table]:
-    """The tables, where a record states no time with that of the stamped record before it in the file."""
+    """Return the tables with a time for each record. A record without time takes that of the stamped record
+    before it."""
     stamped = [table for table in tables.values() if "TimeUS" in table.fields]
     if not stamped:
         return {}
@@ -95,7 +98,8 @@ def _at(table: Table, time_us: IntArray) -> Table:
 
 
 def _joined(tables: Mapping[str, Table]) -> dict[str, Table]:
-    """Further sensors that have records of their own as further numbers in the field I of the first."""
+    """Return the tables with former records of further sensors as further numbers in the field I of the
+    first."""
     found = dict(tables)
     for name, apart in SENSORS_APART.items():
         further = [found.pop(other) for other in apart if other in found]

@@ -1,4 +1,4 @@
-"""The links that run on this computer, so that an advisor finds the link of one whose screen is gone."""
+"""Links that run on this computer, so that an advisor finds the link of an advisor that ended."""
 
 import contextlib
 import json
@@ -21,11 +21,11 @@ class RunningLink:
     recording: Path | None
     door: Door
     alone: bool
-    """Nobody looks after the process: its advisor ended without a word."""
+    """Whether nobody looks after the process, because its advisor ended unasked."""
 
 
 def note(link: RunningLink) -> None:
-    """Write down a link that runs, or how it runs now; only the user can read it."""
+    """Write down a running link and its state, readable by the user only."""
     path = _path(link.pid)
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     content = {
@@ -39,12 +39,12 @@ def note(link: RunningLink) -> None:
 
 
 def forget(pid: int) -> None:
-    """Strike out a link that has ended."""
+    """Remove the note of a link that has ended."""
     _path(pid).unlink(missing_ok=True)
 
 
 def running_alone() -> Iterator[RunningLink]:
-    """Links that run though their advisor is gone; notes of processes that are gone too are struck out."""
+    """Yield links that run without their advisor. Notes of processes that are gone are removed."""
     for path in sorted(_folder().glob("*.json")):
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
             link = _read(path)

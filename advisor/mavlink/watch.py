@@ -1,4 +1,4 @@
-"""What a crew is told about its link: silence, cuts, coming back, a second vehicle."""
+"""Sentences for the crew about its link: silence, cuts, recovery, a second vehicle."""
 
 from advisor.mavlink.framing import Frame
 from advisor.mavlink.intake import Intake
@@ -15,7 +15,7 @@ _REFUSED = {
 
 
 class LinkWatch:
-    """Turns what arrives, and what does not, into sentences; times are the reader's monotonic seconds."""
+    """Turns arriving frames, and their absence, into sentences. Times are the reader's monotonic seconds."""
 
     def __init__(self, connection: str) -> None:
         self._connection = connection
@@ -29,26 +29,26 @@ class LinkWatch:
         self.reconnects = 0
 
     def begin(self, now_s: float) -> None:
-        """The connection is open; silence counts from here."""
+        """Take the opening of the connection, at which silence begins to count."""
         self._heard_s = now_s
 
     def start_again(self) -> None:
-        """Another vehicle is followed: nothing is known of its rates."""
+        """Forget the rates after another vehicle was chosen."""
         self._rates.restart()
         self._reboots = RebootWatch()
 
     def silent_s(self, now_s: float) -> float:
-        """Time since the vehicle, or before it is known anything, was last heard."""
+        """Return the time since the vehicle was last heard; without a vehicle, since any sender was."""
         return max(0.0, now_s - self._heard_s)
 
     def cut(self, why: str, now_s: float) -> str:
-        """The connection was cut."""
+        """Take a cut of the connection; return the sentence on it."""
         if self._cut_s is None:
             self._cut_s = now_s
         return f"{self._connection}: connection lost ({why}), trying again"
 
     def look(self, intake: Intake, frames: list[Frame], now_s: float) -> list[str]:
-        """Sentences for what these frames, or their absence, mean."""
+        """Return sentences on these frames, or on their absence."""
         said = []
         vehicle = intake.vehicle
         relevant = [frame for frame in frames if vehicle is None or frame.system == vehicle[0]]
@@ -84,7 +84,7 @@ class LinkWatch:
 
 
 def _instead(intake: Intake) -> str:
-    """How to follow another vehicle that is heard."""
+    """Return a clause on following another vehicle that is heard."""
     others = sorted(intake.other_vehicles)
     if intake.vehicle is None or not others:
         return ""

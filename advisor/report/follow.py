@@ -12,12 +12,12 @@ from advisor.report.text import maneuver_line, next_line, stop_line
 def follow(
     batches: Iterator[Sequence[Columns]], campaign: Campaign, say: Callable[[str], object]
 ) -> CampaignState:
-    """Feed a campaign to the end of a stream and say every verdict.
+    """Feed a campaign to the end of a stream and print every verdict.
 
     Parameters
     ----------
     batches
-        What arrives, in order; empty batches are pauses.
+        Messages in order of arrival. Empty batches are pauses.
     say
         Takes one line of text.
     """

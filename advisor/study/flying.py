@@ -70,7 +70,7 @@ def fly(scene: Scene, steps: Steps) -> Flight:
 
 
 def follow(scene: Scene, t: FloatArray, elevator: FloatArray) -> Flight:
-    """The response from trim to an elevator sampled at ``t``."""
+    """Return the response from trim to an elevator sampled at ``t``."""
     alpha, _ = scene.aircraft.trim()
     trim = np.array([alpha, 0.0])
     return Flight(t, elevator, respond(scene.aircraft, elevator, trim, 1.0 / scene.rate_hz), trim)
@@ -98,7 +98,7 @@ def as_maneuver(flight: Flight) -> Maneuver:
 
 
 def respond(aircraft: ShortPeriod, elevator: FloatArray, state: FloatArray, step_s: float) -> FloatArray:
-    """Exact solution of Eqs. (1)-(2) for an elevator that is linear between its samples.
+    """Return the exact solution of Eqs. (1)-(2) for an elevator that is linear between its samples.
 
     The matrix exponential of the system augmented by the input and its slope (Van Loan, 1978).
 

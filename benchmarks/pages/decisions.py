@@ -24,7 +24,7 @@ _FOLDERS = {
     "fitting": "the fit, the hold-out, the prior of the aircraft file",
     "noise": "the noise of the flight",
     "search": "which effects are added",
-    "unnamed": "what is left over",
+    "uncatalogued": "what no effect of the catalogue explains",
     "verdict": "the answer and its probabilities",
     "foresight": "what a planned flight could show",
     "simulator": "the simulator under diagnosis",

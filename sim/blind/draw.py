@@ -153,7 +153,7 @@ def scenario_of(
 
 
 def _noise(generator: np.random.Generator, colour: float) -> Noise:
-    """White noise of good flight-test instruments up to that of a hobby autopilot."""
+    """Return white noise of good flight-test instruments up to that of a hobby autopilot."""
     level = float(np.exp(generator.uniform(np.log(0.4), np.log(2.0))))
 
     def about(value: float) -> float:
@@ -171,7 +171,7 @@ def _noise(generator: np.random.Generator, colour: float) -> Noise:
 
 
 def _airframe(aircraft: str, generator: np.random.Generator) -> dict[str, float]:
-    """Another aircraft of the same class: its main figures moved by up to a fifth."""
+    """Return another aircraft of the same class: its main figures moved by up to a fifth."""
     base = hangar.AIRFRAMES[aircraft][0]
     names = ("mass", "iyy", "cl_alpha", "cl_q", "cl_delta_e", "cm_alpha", "cm_q", "cm_delta_e")
     return {name: getattr(base, name) * float(generator.uniform(0.82, 1.2)) for name in names}
@@ -245,7 +245,7 @@ def _scale(scenario: Scenario, plain: list[Sample]) -> Scale:
 
 
 def _believed(truth: ShortPeriod, generator: np.random.Generator) -> ShortPeriod:
-    """A simulator whose structure is right and whose derivatives are off by 10 to 30 percent."""
+    """Return a simulator whose structure is right and whose derivatives are off by 10 to 30 percent."""
     values = truth.as_dict()
     for name in ("Z_alpha", "M_alpha", "M_q", "M_delta_e"):
         values[name] *= 1.0 + float(generator.choice([-1, 1]) * generator.uniform(0.1, 0.3))

@@ -21,7 +21,7 @@ MADE_AT = 1_790_000_000
 
 
 def key_beside(folder: Path) -> Path:
-    """Where the key of a folder of cases is kept: beside it, not in it."""
+    """Return where the key of a folder of cases is kept: beside it, not in it."""
     return folder.with_name(folder.name + ".key.json")
 
 

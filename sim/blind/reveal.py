@@ -61,7 +61,7 @@ def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -
 
 
 def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
-    """The score table as one JSON document, with the hash of the answers.
+    """Return the score table as one JSON document, with the hash of the answers.
 
     Each figure has ``trials``, and ``hits`` where it is a share, else ``value`` in percent.
 
@@ -91,6 +91,6 @@ def _figure(rate: Rate) -> dict[str, Any]:
 
 
 def _seconds_of(answers: Path) -> list[float]:
-    """Processor time of each answer that says it."""
+    """Return the processor time of each answer that says it."""
     lines = (json.loads(line) for line in answers.read_text(encoding="utf-8").splitlines() if line.strip())
     return [float(line["cpu_s"]) for line in lines if line.get("cpu_s") is not None]

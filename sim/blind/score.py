@@ -32,7 +32,7 @@ class Rate:
     """Cases of a share that are right; None of a median or an error."""
 
     def line(self) -> str:
-        """One row of the table; values in percent unless the goal speaks otherwise."""
+        """Return one row of the table; values in percent unless the goal speaks otherwise."""
         if not self.count:
             return f"{self.name:52s}       no case              goal {self.goal}"
         figures = f"{self.value:7.1f} [{self.low:5.1f}, {self.high:5.1f}]  n={self.count:<5d}"
@@ -161,7 +161,7 @@ def score(judged: Sequence[Judged]) -> list[Rate]:
 
 
 def _own_simulator(judged: Sequence[Judged]) -> list[Rate]:
-    """Figures of the cases that name a simulator of the user's own."""
+    """Return figures of the cases that name a simulator of the user's own."""
     withheld, none = [j for j in judged if j.truth], [j for j in judged if not j.truth]
     shrunk = [replace(j, shrink_percent=j.simulator_percent) for j in withheld if j.right and _adds(j)]
     return [
@@ -172,12 +172,12 @@ def _own_simulator(judged: Sequence[Judged]) -> list[Rate]:
 
 
 def _adds(j: Judged) -> bool:
-    """Whether the truth adds to the simulator, and does not take a servo away from it."""
+    """Return whether the truth adds to the simulator, and does not take a servo away from it."""
     return all(value >= 0.0 for name, value in j.sizes[j.truth[0]].items() if name in ("lag_s", "delay_s"))
 
 
 def by_effect(judged: Sequence[Judged]) -> list[Rate]:
-    """Right cause first, effect by effect, over clean, hard and JSBSim cases."""
+    """Return right cause first, effect by effect, over clean, hard and JSBSim cases."""
     single = [j for j in judged if j.group in ("clean", "hard", "jsbsim")]
     return [
         _share(f"  {name}", [j.right for j in single if j.truth[0] == name], "")
@@ -186,12 +186,12 @@ def by_effect(judged: Sequence[Judged]) -> list[Rate]:
 
 
 def in_time(seconds: Sequence[float]) -> Rate:
-    """How many answers took no more processor time than they may."""
+    """Return how many answers took no more processor time than they may."""
     return _share(f"CPU seconds at most {FAST_S:g}", [s <= FAST_S for s in seconds], "all")
 
 
 def is_right(j: Judged) -> bool:
-    """Whether an answer is what its group asks for: a cause, both, the block, numbers, or nothing."""
+    """Return whether an answer is what its group asks for: a cause, both, the block, numbers, or nothing."""
     if j.group == "none":
         return not _alarm(j)
     if j.group == "parameters":
@@ -202,7 +202,8 @@ def is_right(j: Judged) -> bool:
 
 
 def _alarm(j: Judged) -> bool:
-    """An effect, a change or an unknown claimed where nothing was; background turbulence may be named."""
+    """Return an effect, a change or an unknown claimed where nothing was; background turbulence may be
+    named."""
     return j.verdict != "none" and not j.is_there
 
 
@@ -241,7 +242,7 @@ def _median(name: str, judged: Sequence[Judged], goal: str) -> Rate:
 
 
 def _calibration_error(judged: Sequence[Judged]) -> Rate:
-    """Expected calibration error of the first cause's probability, in percent, ten equal bins."""
+    """Return the expected calibration error of the first cause's probability, in percent, ten equal bins."""
     name, goal = "expected calibration error of probabilities", "<= 5"
     if not judged:
         return Rate(name, math.nan, math.nan, math.nan, 0, goal)
@@ -265,7 +266,7 @@ def _calibration_error(judged: Sequence[Judged]) -> Rate:
 
 
 def _shuffled(judged: Sequence[Judged]) -> Rate:
-    """Right cause first with the labels shuffled: what chance gives."""
+    """Return right cause first with the labels shuffled: what chance gives."""
     generator = np.random.default_rng(0)
     hits: list[bool] = []
     for _ in range(20 if judged else 0):

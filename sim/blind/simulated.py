@@ -75,7 +75,8 @@ def draw_simulated(generator: np.random.Generator) -> SimulatedCase:
 
 
 def _named(case: Case, mirrored: bool) -> SimulatedCase:
-    """The case with its simulator; mirrored, the effect goes from the aircraft into the simulator's servo."""
+    """Return the case with its simulator; mirrored, the effect goes from the aircraft into the simulator's
+    servo."""
     scenario, effects, servo = case.scenario, case.effects, []
     if mirrored:
         scenario = replace(scenario, effects={})

@@ -28,7 +28,7 @@ def structural_gap(
     sigma: dict[str, float],
     tick_s: float,
 ) -> float:
-    """Mean over the channels of (remaining difference)² / (noise)², over all manoeuvres.
+    """Return the mean over the channels of (remaining difference)² / (noise)², over all manoeuvres.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def structural_gap(
 
 
 def _maneuvers(samples: Sequence[Sample]) -> list[list[int]]:
-    """Indices of the samples of each manoeuvre, from shortly before its first step on."""
+    """Return indices of the samples of each manoeuvre, from shortly before its first step on."""
     found: dict[float, list[int]] = {}
     for i, sample in enumerate(samples):
         if sample.flying and sample.time_s >= sample.flying.start_s - LEAD_IN_S:
@@ -82,8 +82,8 @@ def _maneuvers(samples: Sequence[Sample]) -> list[list[int]]:
 def _sensitivities(
     flown: Sequence[Sample], changed: Sequence[Sample], model: ShortPeriod, tick_s: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Responses of (α, q, a_z, θ), stacked: to the six derivatives, to a manoeuvre's own eight unknowns,
-    and to what the second flight's command differs by.
+    """Return responses of (α, q, a_z, θ), stacked: to the six derivatives, to a manoeuvre's own eight
+    unknowns, and to what the second flight's command differs by.
 
     Each is the same second-order system driven by another input: α, q or δe into one of the equations
     (derivatives), a constant (trim), an initial state, or a plain offset of a channel.

@@ -39,7 +39,7 @@ class MoreMass:
 
 
 def _weight(engine: Any) -> float:
-    """The weight's part of Z_0, 1/s: the rest of it is aerodynamic."""
+    """Return the weight's part of Z_0, 1/s: the rest of it is aerodynamic."""
     return GRAVITY_M_S2 / float(engine.record["speed_ref"][0])
 
 
@@ -49,7 +49,7 @@ def _onset(kit: Kit, sizes: Sizes, boot_s: float) -> Onset:
 
 
 def _fields(none_at: str = "", **names: str) -> Term:
-    """A term whose parameters (keys) are fields of the linear aircraft's record (values).
+    """Return a term whose parameters (keys) are fields of the linear aircraft's record (values).
 
     ``none_at`` is one of them at whose zero there is no term: a lag, a length.
     """

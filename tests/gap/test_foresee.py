@@ -16,8 +16,8 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.foresight.needs import need_of
 from advisor.gap.foresight.plan import foresee_flights, foresee_plan
 from advisor.gap.records.prepare import prepare
-from advisor.gap.search.baseline import believed_derivatives
-from advisor.gap.search.merit import LEAST_OFFSET_RAD
+from advisor.gap.search.acceptance import LEAST_OFFSET_RAD
+from advisor.gap.search.baseline import prior_derivatives
 from advisor.problems import ConfigurationError
 from advisor.report.gap_plan import ForesightScreen, size_of
 from tests.gap.generator import UAV, Setup, fly
@@ -240,7 +240,7 @@ def test_an_elevator_that_pitches_up_when_it_goes_down_is_foreseen_with_a_note(t
 )
 def test_flown_by_another_generator_twice_the_foreseen_size_is_named_and_a_third_is_not(effect, changes):
     flown = prepare(fly(Setup(maneuvers=7, seed=21)), PLANE)
-    found = foresee_flights(PLANE, believed_derivatives(PLANE), flown, flown.white, UAV.unit_s)
+    found = foresee_flights(PLANE, prior_derivatives(PLANE), flown, flown.white, UAV.unit_s)
     smallest = {f.effect: f.smallest for f in found}[effect]
     twice, third = (
         diagnose(fly(Setup(maneuvers=7, seed=22, **changes(share * smallest))), Aircraft())

@@ -101,7 +101,7 @@ def test_a_changed_aircraft_is_noticed_within_two_manoeuvres() -> None:
     ("options", "rule", "said"),
     [
         ([], "continuous", "rule continuous decides: the paper's rule of continuous improvement"),
-        (["--rule", "information"], "information", "rule information decides: the rule of real flights"),
+        (["--rule", "information"], "information", "rule information decides: the rule for real flights"),
     ],
 )
 def test_the_demonstration_decides_by_the_papers_rule_unless_told_otherwise_and_says_so(
