@@ -119,8 +119,8 @@ def _airspeed(prepared: Prepared) -> str:
     if prepared.airspeed_lag_s < NOTED_LAG_S:
         return ""
     return (
-        f"The air speed reads {prepared.airspeed_lag_s:.1f} s late relative to the accelerometers. Its"
-        " changes within a manoeuvre are taken from them."
+        f"The measured air speed lags the accelerometers by {prepared.airspeed_lag_s:.1f} s. Its changes"
+        " within a manoeuvre are computed from the accelerometers."
     )
 
 
@@ -130,9 +130,9 @@ def _scale(solution: Solution) -> str:
         return ""
     return (
         "Accelerations agree with the angle of attack if the true air speed differs by"
-        f" {100.0 * scale:+.1f} % from the measured one. An angle of attack that is wrong by as much, the"
-        " other way, looks the same. The fit of a_z allows for that; the speed of the derivatives stays as"
-        " measured."
+        f" {100.0 * scale:+.1f} % from the measured one. An angle of attack with a scale error of"
+        f" {-100.0 * scale:+.1f} % would look the same. The fit of a_z allows for either; the derivatives"
+        " refer to the measured air speed."
     )
 
 
@@ -140,8 +140,8 @@ def _held(prepared: Prepared) -> str:
     if not prepared.alpha_held:
         return ""
     return (
-        f"Angle of attack is renewed at {prepared.renewed_hz:.0f} Hz only, and repeated under fresh stamps"
-        " in between. The fit uses it at that rate."
+        f"The angle of attack has new values at {prepared.renewed_hz:.0f} Hz only; messages in between"
+        " repeat the last one. The fit uses each value once."
     )
 
 
