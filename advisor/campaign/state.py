@@ -66,9 +66,7 @@ class CampaignState:
     mark_notes: tuple[str, ...] = ()
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()
-    """Sentences for the event log, the newest of them, oldest first."""
-    notices_before: int = 0
-    """How many sentences came before ``notices`` and are kept no longer."""
+    """Sentences for the event log with the vehicle's time, the newest of them, oldest first."""
     flight: int = 0
     """Which log or link is being heard, 0 for the first."""
     boot: int = 0

@@ -25,21 +25,23 @@ PASSING = {"separate": 0.5}
 def next_input(
     history: Sequence[Flown], aircraft: Aircraft, stopped: bool, course: Course | None = None
 ) -> NextInput:
-    """What to fly next, as of the last manoeuvre of ``history``; ``course`` as in ``flight_test``."""
+    """What to fly next, as of the last manoeuvre of ``history``; ``course`` as in ``flight_test``.
+
+    How many more are expected is told once a manoeuvre was usable. Before, nothing foretells it.
+    """
     plan = aircraft.campaign
     if stopped:
         return NextInput("no further manoeuvre needed", Remaining(0, 0))
     course = course or Course(plan)
     conditions = find_conditions(history, aircraft, course)
-    if history and (mend := _mend(history[-1])):
-        return NextInput(f"next: {mend}", _without_a_model(history, plan))
+    mend = _mend(history[-1]) if history else ""
     if conditions is None:
-        spoken = _same_but_better(history[-1]) if history else _first_input(aircraft)
-        return NextInput(f"next: {spoken}", _without_a_model(history, plan))
+        spoken = mend or (_same_but_better(history[-1]) if history else _first_input(aircraft))
+        return NextInput(f"next: {spoken}", None)
     known = course.known(usable_ones(history))
-    choice = _choose(conditions, known, plan)
+    choice = None if mend else _choose(conditions, known, plan)
     if choice is None:
-        spoken, errors = "the same again", conditions.last_covariance
+        spoken, errors = mend or "the same again", conditions.last_covariance
     else:
         spoken, errors = choice[0].spoken(conditions.travel_rad), choice[1]
     remaining = _remaining(history, plan, known, errors)
@@ -117,9 +119,3 @@ def _mend(flown: Flown) -> str:
 def _remedy(flown: Flown) -> str:
     """What the first reason says to do; nothing without a reason."""
     return flown.reasons[0].text.partition("; ")[2] if flown.reasons else ""
-
-
-def _without_a_model(history: Sequence[Flown], plan: CampaignPlan) -> Remaining:
-    """At least as many as the rule needs at best."""
-    least = 2 if plan.rule == "information" else plan.window
-    return Remaining(least, int(np.ceil(least / usable_share(history))) + 1)

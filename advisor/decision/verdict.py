@@ -96,9 +96,15 @@ class NextInput:
 
     advice: str
     """As a pilot hears it: ``next: reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
-    remaining: Remaining
+    remaining: Remaining | None
+    """None while no manoeuvre was usable: nothing foretells it."""
     holding_back: str | None = None
     """The parameter, or the output whose prediction, keeps the stop away."""
+
+    @property
+    def foretold(self) -> str:
+        """How many more are expected, as a pilot hears it; empty while nothing foretells it."""
+        return self.remaining.spoken if self.remaining is not None else ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from advisor.flight.channels import stamps
 from advisor.flight.clocks import BootClock
 from advisor.flight.messages import Columns, FloatArray, cut
 from advisor.flight.vehicle import Vehicle
+from advisor.vehicle_time import between
 
 # The field whose change shows that a message brings news and not the last value again.
 _TELLING = {
@@ -187,7 +188,7 @@ class Survey:
         """When the autopilot wrote nothing into a log of its own, one sentence each."""
         because = " (LOG_DISARMED 0)" if self._carrier == "dataflash" else ""
         return [
-            f"The autopilot logged nothing from {p.start_s:.1f} to {p.end_s:.1f} s, as it may while "
+            f"The autopilot logged nothing from {between(p.start_s, p.end_s)}, as it may while "
             f"disarmed{because}: no link was lost."
             for p in self._pauses()
         ]

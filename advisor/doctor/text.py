@@ -10,6 +10,8 @@ from advisor.aircraft import PARAMETERS
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import frequency
 from advisor.doctor.instruments import STRAYED_SHARE
+from advisor.report.document import NORMAL_95
+from advisor.report.text import UNITS, shown
 
 _SIGNS = {"ready": "✓", "usable with limits": "!", "not usable": "✗"}
 _STYLES = {"ready": "bold green", "usable with limits": "bold yellow", "not usable": "bold red"}
@@ -40,10 +42,14 @@ class ExaminationText:
             yield Text(
                 f"Expected errors of one 3-2-1-1, steps of {found.expectation.unit_s:.2f} s and "
                 f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.belief.source}, "
-                f"natural frequency {frequency(found.belief.model):.1f} rad/s:"
+                f"natural frequency {frequency(found.belief.model):.1f} rad/s. "
+                "Half of the 95 % interval (1.96 standard deviations):"
             )
             for name in PARAMETERS:
-                yield Text(f"  {name:<10} ±{found.expectation.std[name]:.3g}")
+                half = shown(name, NORMAL_95 * found.expectation.std[name])
+                unit = UNITS[name].removeprefix("1") if UNITS[name] == "1" else UNITS[name]
+                said = f"± {half:.2g} {unit}" if math.isfinite(half) else "not told by these rates"
+                yield Text(f"  {name:<10} {said}".rstrip())
 
     def _who(self) -> str:
         vehicle = self._findings.vehicle

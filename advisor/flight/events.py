@@ -1,6 +1,7 @@
 """What the stream of messages tells the flight test, in the order in which it became known."""
 
 from dataclasses import dataclass, replace
+from math import nan
 
 from advisor.flight.maneuver import InputKind, Maneuver
 from advisor.flight.vehicle import Vehicle
@@ -112,16 +113,35 @@ class Notice:
 
 
 @dataclass(frozen=True, slots=True)
+class VehicleSaid:
+    """A vehicle, or another sender on the link, said something in words (STATUSTEXT)."""
+
+    text: str
+    """Printable, on one line, of bounded length."""
+    severity: str
+    """Name of MAV_SEVERITY; empty where a log does not keep the severity."""
+    system: int
+    component: int
+    at_s: float
+    """Vehicle time, s since boot; NaN before the first stamped message."""
+
+
+@dataclass(frozen=True, slots=True)
 class NoData:
     """What arrives at present cannot serve."""
 
     problems: tuple[Problem, ...]
     """Everything that is missing or too slow, the most fundamental first; at least one."""
+    at_s: float = nan
+    """Vehicle time, s since boot; NaN before the first stamped message."""
 
 
 @dataclass(frozen=True, slots=True)
 class DataAgain:
     """What arrives can serve again."""
+
+    at_s: float = nan
+    """Vehicle time, s since boot."""
 
 
 FlightEvent = (
@@ -134,6 +154,7 @@ FlightEvent = (
     | ManeuverAgain
     | Activity
     | Notice
+    | VehicleSaid
     | NoData
     | DataAgain
 )

@@ -45,3 +45,5 @@ class Chart:
     """Shown when there is no series."""
     whole_x: bool = False
     """Ticks only at whole numbers (counts)."""
+    log_y: bool = False
+    """Equal ratios of y take equal room: 25 and 2,500 both read. Only positive values are drawn."""

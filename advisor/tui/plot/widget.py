@@ -10,13 +10,15 @@ from rich.style import Style
 from textual.strip import Strip
 from textual.widget import Widget
 
-from advisor.tui.plot.axis import round_axis
+from advisor.flight.messages import FloatArray
+from advisor.tui.plot.axis import Axis, LogAxis, log_axis, round_axis
 from advisor.tui.plot.canvas import Canvas
 from advisor.tui.plot.chart import INKS, Chart, Ink
 from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
 from advisor.tui.plot.legend import legend
 
 _ROWS_PER_TICK = 3
+_ROWS_PER_LOG_TICK = 2
 _COLUMNS_PER_TICK = 12
 _BOLD: frozenset[Ink] = frozenset({"fitted", "limit"})
 
@@ -69,8 +71,7 @@ class Plot(Widget):
             return _sentence(f"{chart.y_label}: too little room for a plot.", width, base)
         inks = self._inks(base)
         rows = height - 2
-        heights = [s.y for s in chart.series] + [np.array([level.y]) for level in chart.levels]
-        y_axis = round_axis(heights, max(1, rows // _ROWS_PER_TICK))
+        y_axis = _y_axis(chart, rows)
         gutter = max(len(label) for label in y_axis.labels) + 1
         columns = max(2, width - gutter)
         x_axis = round_axis([s.x for s in chart.series], max(1, columns // _COLUMNS_PER_TICK))
@@ -78,10 +79,10 @@ class Plot(Widget):
             x_axis = whole(x_axis)
         canvas = Canvas(columns, rows, (x_axis.low, x_axis.high), (y_axis.low, y_axis.high))
         for level in chart.levels:
-            canvas.level(level.y, INKS.index(level.ink))
+            canvas.level(float(_scaled(chart, np.array([level.y]))[0]), INKS.index(level.ink))
         for series in chart.series:
             draw = canvas.line if series.mark == "line" else canvas.points
-            draw(series.x, series.y, INKS.index(series.ink))
+            draw(series.x, _scaled(chart, series.y), INKS.index(series.ink))
         side = down_the_side(y_axis, rows, gutter)
         foot = along_the_foot(x_axis, chart.x_label, gutter, width)
         return [
@@ -92,6 +93,20 @@ class Plot(Widget):
             ),
             Strip([Segment(foot, base)], width),
         ]
+
+
+def _y_axis(chart: Chart, rows: int) -> Axis | LogAxis:
+    heights = [s.y for s in chart.series] + [np.array([level.y]) for level in chart.levels]
+    if chart.log_y:
+        return log_axis(heights, max(2, rows // _ROWS_PER_LOG_TICK))
+    return round_axis(heights, max(1, rows // _ROWS_PER_TICK))
+
+
+def _scaled(chart: Chart, y: FloatArray) -> FloatArray:
+    """Heights as the axis counts them."""
+    if not chart.log_y:
+        return y
+    return np.log10(np.where(y > 0.0, y, np.nan))
 
 
 def _runs(text: str, ink: NDArray[np.int8], inks: list[Style], base: Style) -> list[Segment]:
