@@ -38,8 +38,8 @@ def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
             f'white noise on angle of attack and pitch rate; "noise 1 %" is 1 % {NOISE_READINGS[reading]}.'
         ),
         *_wrapped(
-            "The paper's rules are continuous (Eqs. 10 and 12) and separate (Eqs. 11 and 12); on real flights "
-            "information decides."
+            "The paper's rules are continuous (Eqs. 10 and 12) and separate (Eqs. 11 and 12); "
+            "on real flights information decides."
         ),
         "",
     ]
@@ -57,10 +57,10 @@ def table(rows: Sequence[Row]) -> list[str]:
     ]
     for row in rows:
         low, middle, high = np.quantile(row.error_percent, [0.1, 0.5, 0.9], axis=0)
-        paper = "" if row.paper is None else f"; the paper needed {_count(row.paper.needed)}"
+        paper = "" if row.paper is None else f"; paper {_count(row.paper.needed)}"
         lines.append(
             f"{row.rule}, noise {row.noise_percent:g} %: needed {_count(row.needed_quantile(0.5))} (9 in 10: "
-            f"{_count(row.needed_quantile(0.9))}), {row.never_percent:.0f} % never{paper}"
+            f"{_count(row.needed_quantile(0.9))}), never {row.never_percent:.0f} %{paper}"
         )
         lines += [_numbers("median", middle), _numbers("10 %", low), _numbers("90 %", high)]
         if row.paper is not None:
@@ -116,13 +116,13 @@ def flaws(found: Flaws) -> list[str]:
     return [
         "Two flaws of the paper's rules:",
         *_wrapped(
-            f"  separate computation rejects {found.thrown_away_percent:.0f} % of equally good manoeuvres: a new "
-            "cost is as likely above the median of the earlier ones as below."
+            f"  separate computation rejects {found.thrown_away_percent:.0f} % of equally good manoeuvres: "
+            "a new cost is as likely above the median of the earlier ones as below."
         ),
         *_wrapped(
-            f"  a parameter near zero keeps Eq. (12) from falling: with Z_q = 0 and {NOISE_PERCENT:g} % noise, "
-            f"{found.near_zero_never_percent:.0f} % of {found.near_zero_campaigns} campaigns never end; the rule "
-            f"information ends them after {_count(found.near_zero_information)} (median)."
+            f"  a parameter near zero keeps Eq. (12) from falling: with Z_q = 0 and {NOISE_PERCENT:g} % "
+            f"noise, {found.near_zero_never_percent:.0f} % of {found.near_zero_campaigns} campaigns never "
+            f"end; the rule information ends them after {_count(found.near_zero_information)} (median)."
         ),
         "",
     ]
@@ -135,8 +135,8 @@ def readings(results: Iterable[ReadingResult]) -> list[str]:
         "paper's did"
     )
     lines += [
-        f"  {r.reading:<23}{r.rule:<11}{r.noise_percent:>4g} % {_count(r.median):>6}  never "
-        f"{r.never_percent:3.0f} %  as the paper {r.as_paper_percent:3.0f} %"
+        f"  {r.reading:<25}{r.rule:<11}{r.noise_percent:>4g} %{_count(r.median):>6}  never "
+        f"{r.never_percent:3.0f} %  as paper {r.as_paper_percent:3.0f} %"
         for r in results
     ]
     return [*lines, ""]
@@ -182,16 +182,13 @@ def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
 def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
     """False stops of the rule ``information``, and manoeuvres needed beside those of the paper's rules."""
     lines = _wrapped(
-        "Stops of the rule information. False: the predicted response is wrong by more than the tolerance. "
+        "Stops of the rule information. False: the predicted response is wrong by more than the tolerance; "
+        "error: how wrong it is in 95 % of the stops at most. "
         f"Needed by {campaigns} campaigns of seven manoeuvres: median (share without stop)."
     )
     for one in found:
         case, error = one.case, one.error_quantile(0.95)
-        wrong = (
-            "no stop"
-            if error is None
-            else f"false {one.false_percent:.1f} %, error {error:.2f} % (95 % of them)"
-        )
+        wrong = "no stop" if error is None else f"false {one.false_percent:.1f} %, error {error:.2f} %"
         needed = ", ".join(
             f"{rule} {_count(one.median_needed(rule))} ({one.never_percent(rule):.0f} %)"
             for rule in ("information", "continuous", "separate")
@@ -204,10 +201,11 @@ def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
 
 
 def _wrapped(text: str) -> list[str]:
-    """A sentence in lines of 80 columns, those after the first indented."""
-    return wrap(
-        text, _COLUMNS, initial_indent=" " * (len(text) - len(text.lstrip())), subsequent_indent="    "
-    )
+    """A sentence in lines of 80 columns, those after the first indented; no number without its %."""
+    told = text.lstrip().replace(" %", "\N{NO-BREAK SPACE}%")
+    begins = " " * (len(text) - len(text.lstrip()))
+    lines = wrap(told, _COLUMNS, initial_indent=begins, subsequent_indent="    ")
+    return [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
 
 
 def _count(number: int | None) -> str:

@@ -60,7 +60,7 @@ def log_axis(values: list[FloatArray], most: int) -> LogAxis:
     Parameters
     ----------
     values : list of ndarray
-        Data of any lengths; what is not positive and finite is left out, and without any the range is 1 to 10.
+        Data of any lengths; what is not positive and finite is left out, without any the range is 1 to 10.
     most : int
         Wanted number of ticks, at least 2.
     """
