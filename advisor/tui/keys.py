@@ -36,13 +36,24 @@ SELDOM: list[BindingType] = [
     _key("g", "take_guess", "Take the guessed output", id="guess"),
 ]
 
-PANES = ("manoeuvres", "verdict", "parameters", "fit", "live", "criterion", "channels and link", "log")
+PANES = (
+    ("1", "manoeuvres"),
+    ("2", "verdict"),
+    ("3", "parameters"),
+    ("4", "fit"),
+    ("5", "live"),
+    ("6", "criterion"),
+    ("7", "channels and link"),
+    ("8", "log"),
+    ("u", "flying qualities"),
+)
+"""Key and name of each pane, in the order of their numbers."""
 
 ENGINEER: list[BindingType] = [
     _key("x", "exclude", "Exclude", id="exclude", show=True),
     _key("n", "note", "Note", id="note", show=True),
     _key("o", "next_output", "Next output", id="next_output"),
-    *(_key(str(k), f"choose({k})", f"Pane: {name}", id=f"pane_{k}") for k, name in enumerate(PANES, 1)),
+    *(_key(key, f"choose({k})", f"Pane: {name}", id=f"pane_{k}") for k, (key, name) in enumerate(PANES, 1)),
 ]
 
 ACTIONS = frozenset(

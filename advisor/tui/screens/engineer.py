@@ -20,6 +20,7 @@ from advisor.tui.panes.maneuvers import Maneuvers
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.pane_tabs import PaneTabs
 from advisor.tui.panes.parameters import Parameters
+from advisor.tui.panes.qualities import Qualities
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.panes.verdict import Verdict
@@ -27,10 +28,12 @@ from advisor.tui.screens.face import Face
 from advisor.tui.view import View
 
 # In the order of their numbers.
-PANES: tuple[type[Pane], ...] = (Maneuvers, Verdict, Parameters, Fit, Live, Criterion, Channels, EventLog)
+PANES: tuple[type[Pane], ...] = (
+    Maneuvers, Verdict, Parameters, Fit, Live, Criterion, Channels, EventLog, Qualities
+)  # fmt: skip
 _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "left": (Maneuvers, Verdict, Parameters),
-    "middle": (Fit,),
+    "middle": (Fit, Qualities),
     "right": (Live, Criterion, Channels, EventLog),
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)
