@@ -20,6 +20,7 @@ class Criterion(Pane):
     """One curve a rule against the limit, and what each rule says."""
 
     TITLE = "6 Criterion"
+    SHORT = "6 Crit"
     HELP = """\
 # Criterion
 

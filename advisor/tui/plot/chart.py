@@ -19,7 +19,10 @@ class Series:
     y: FloatArray
     """Shape (n,), in the unit of the chart's y axis; NaN breaks a line."""
     ink: Ink
-    mark: Literal["line", "points"] = "line"
+    mark: Literal["line", "points", "stems", "intervals"] = "line"
+    """A stem goes from 0 to the value; an interval is a value with a vertical bar of half-length ``half``."""
+    half: FloatArray | None = None
+    """Shape (n,), half of each interval in the unit of the y axis; only for intervals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +32,7 @@ class Level:
     name: str
     y: float
     ink: Ink = "limit"
+    dashed: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,3 +49,11 @@ class Chart:
     """Shown when there is no series."""
     whole_x: bool = False
     """Ticks only at whole numbers (counts)."""
+    x_range: tuple[float, float] | None = None
+    """The ends of the x axis; None: rounded ends that hold all data. Only the former lets a mouse point."""
+    cursor: float | None = None
+    """Value of x at which a vertical line stands and the legend reads each series."""
+    foot: bool = True
+    """Whether the x axis has labels; of plots above one another over one axis only the lowest needs them."""
+    gutter: int = 0
+    """The least width of the labels of the y axis, so that plots above one another begin in one column."""
