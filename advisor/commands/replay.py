@@ -87,5 +87,13 @@ def command(
     )
     tempo = Tempo(speed=speed)
     advise(
-        player, title, aircraft, target_system, tempo=tempo, by_hand=by_hand, marks=marks, names=series.names
+        player,
+        title,
+        aircraft,
+        target_system,
+        tempo=tempo,
+        by_hand=by_hand,
+        marks=marks,
+        names=series.names,
+        logs=series.logs,
     )

@@ -14,6 +14,8 @@ from advisor.problems import UnusableInputError
 from advisor.tui.source import Source, Tempo
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.hand_decisions import ByHand
     from advisor.flight.marks import Mark
@@ -38,6 +40,7 @@ def advise(
     marks: "Sequence[Mark]" = (),
     kept: "Callable[[], ByHand] | None" = None,
     names: Sequence[str] = (),
+    logs: "Sequence[Path]" = (),
 ) -> None:
     """Run a campaign on a source: in the terminal application, or as lines of text.
 
@@ -60,6 +63,8 @@ def advise(
         beginning again: the death of the estimating process then ends nothing.
     names
         What the logs of the campaign are called, in their order.
+    logs
+        Logs and recordings, flight by flight, beside which panes are saved.
 
     Raises
     ------
@@ -74,7 +79,7 @@ def advise(
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
     if not headless():
         task = Task(open_source, partial(make_campaign, True), before, kept)
-        _show(task, aircraft, title, tempo)
+        _show(task, aircraft, title, tempo, logs)
     elif kept is not None:
         task = Task(open_source, partial(make_campaign, False), before, kept)
         narrate(task, click.echo, partial(click.echo, err=True))
@@ -96,12 +101,12 @@ def _campaign(
     return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
 
 
-def _show(task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:
+def _show(task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None, logs: "Sequence[Path]") -> None:
     from advisor.tui.app import AdvisorApp
     from advisor.tui.remote import RemoteConductor
     from advisor.tui.settings import load_settings
 
-    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings())
+    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings(), logs)
     with in_order():
         app.run()
     if app.failure is not None:

@@ -5,7 +5,6 @@ from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.flight.messages import FloatArray
 from advisor.rounding import distinct_texts
 from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.pane import Pane
@@ -16,8 +15,6 @@ from advisor.tui.view import View
 RULE_INKS: dict[str, Ink] = {"continuous": "measured", "separate": "residual", "information": "input"}
 
 _Y, _X = "[% of limit]", "manoeuvre"
-_STROKE = 0.12
-"""Half the length of the stroke at a value, in manoeuvres."""
 
 
 class Criterion(Pane):
@@ -25,6 +22,7 @@ class Criterion(Pane):
 
     TITLE = "6 Criterion"
     can_focus = False
+    SHORT = "6 Crit"
     HELP = """\
 # Criterion
 
@@ -79,15 +77,7 @@ def _chart(verdict: FlightTestVerdict | None) -> Chart:
             numbers = np.arange(1.0, len(history) + 1.0)
             share = history / progress.limit_percent * 100.0
             ink = RULE_INKS.get(rule, "prior")
-            series.append(Series(rule, numbers, share, ink))
-            series.append(_values(numbers, share, ink))
+            series.append(Series(rule, numbers, share, ink, "joined"))
     if verdict is None or not series:
         return Chart(_Y, _X, why_empty="too few accepted manoeuvres for any rule yet.")
     return Chart(_Y, _X, series=tuple(series), levels=(Level("limit", 100.0),), whole_x=True, log_y=True)
-
-
-def _values(numbers: FloatArray, share: FloatArray, ink: Ink) -> Series:
-    """A short stroke at each value: one alone would be a single dot."""
-    gap = np.full(len(numbers), np.nan)
-    x = np.column_stack([numbers - _STROKE, numbers + _STROKE, gap]).ravel()
-    return Series("", x, np.column_stack([share, share, gap]).ravel(), ink)

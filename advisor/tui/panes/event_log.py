@@ -17,6 +17,7 @@ class EventLog(Pane):
     """The newest notices, the last one at the bottom."""
 
     TITLE = "8 Log"
+    SHORT = "8 Log"
     can_focus = False
     HELP = """\
 # Log

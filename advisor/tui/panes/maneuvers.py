@@ -34,6 +34,7 @@ class Maneuvers(Pane):
     """The table of manoeuvres; the row under the cursor is what the other panes show."""
 
     TITLE = "1 Manoeuvres"
+    SHORT = "1 Man"
     can_focus = False
     HELP = """\
 # Manoeuvres

@@ -21,6 +21,7 @@ class Parameters(Pane):
     """Table of the joint estimate, and the history of the parameter under the cursor."""
 
     TITLE = "3 Parameters"
+    SHORT = "3 Param"
     can_focus = False
     HELP = """\
 # Parameters

@@ -16,6 +16,7 @@ class Qualities(Pane):
     """Natural frequency, damping, n/α, CAP, T_θ2 and level, each with its 95 % interval."""
 
     TITLE = "u Flying qualities"
+    SHORT = "u FlyQ"
     can_focus = False
     HELP = """\
 # Flying qualities

@@ -20,6 +20,8 @@ class Verdict(Pane):
     """Sentence, reasons with number beside limit, quality of the fit, cautions."""
 
     TITLE = "2 Verdict"
+    SHORT = "2 Verd"
+    OF_SELECTED = True
     can_focus = False
     HELP = """\
 # Verdict

@@ -105,6 +105,22 @@ def round_axis(values: list[FloatArray], intervals: int) -> Axis:
     return axis
 
 
+def exact_axis(low: float, high: float, intervals: int) -> Axis:
+    """Choose ticks for a range that keeps its ends, about ``intervals`` steps, at least one tick.
+
+    Parameters
+    ----------
+    low, high
+        Ends of the range, low below high.
+    intervals
+        Wanted number of steps of 1, 2 or 5 times a power of ten, at least 1.
+    """
+    axis = Axis(low, high, _round_up((high - low) / max(intervals, 1)))
+    while not axis.ticks:
+        axis = Axis(low, high, _round_up(axis.step * 0.4))
+    return axis
+
+
 def _round_up(step: float) -> float:
     """The next of 1, 2 and 5 times a power of ten."""
     magnitude = 10.0 ** floor(log10(step))

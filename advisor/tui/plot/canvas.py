@@ -50,10 +50,26 @@ class Canvas:
         share = along / np.maximum(count[segment] - 1, 1)
         self._set(start_x[segment] + share * dx[segment], start_y[segment] + share * dy[segment], ink)
 
-    def level(self, y: float, ink: int) -> None:
-        """A dashed horizontal line."""
-        px = np.flatnonzero(np.arange(self._width) % 4 < 2).astype(np.float64)
+    def bars(self, x: FloatArray, low: FloatArray, high: FloatArray, ink: int) -> None:
+        """A vertical line at each x from one value to another."""
+        gap = np.full(len(x), np.nan)
+        self.line(np.column_stack([x, x, gap]).ravel(), np.column_stack([low, high, gap]).ravel(), ink)
+
+    def dashes(self, x: FloatArray, y: FloatArray, ink: int) -> None:
+        """A horizontal line of three dots through each point."""
+        px, py = self._place(x, y)
+        for dot in (-1.0, 0.0, 1.0):
+            self._set(px + dot, py, ink)
+
+    def level(self, y: float, ink: int, dashed: bool = True) -> None:
+        """A horizontal line."""
+        px = np.flatnonzero(np.arange(self._width) % 4 < (2 if dashed else 4)).astype(np.float64)
         self._set(px, np.full(len(px), (self._y1 - y) * self._y_scale), ink)
+
+    def upright(self, x: float, ink: int) -> None:
+        """A dotted vertical line."""
+        py = np.arange(0.0, self._height, 2.0)
+        self._set(np.full(len(py), (x - self._x0) * self._x_scale), py, ink)
 
     def text(self) -> list[str]:
         """The rows as strings, blanks where nothing was drawn."""

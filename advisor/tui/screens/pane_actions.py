@@ -1,0 +1,94 @@
+"""What keys do to the pane in front: copy it, save it, lay a manoeuvre over its plots."""
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from advisor.tui.panes.fit import Fit
+from advisor.tui.panes.pane import Pane
+from advisor.tui.taking import beside_which, pane_name, save
+from advisor.tui.view import View
+
+if TYPE_CHECKING:
+    from textual.screen import Screen
+
+    Base = Screen[None]
+else:
+    Base = object
+
+_SAY_S = 8.0
+"""A path needs longer to be read than a word."""
+
+
+class PaneActions(Base):
+    """Actions of the engineer's screen that concern one pane."""
+
+    _view: View | None
+
+    @abstractmethod
+    def pane_in_front(self) -> Pane:
+        """Return the pane that has the focus, else the one chosen last."""
+
+    @abstractmethod
+    def ask(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
+        """Ask for one line at the foot of the screen."""
+
+    @abstractmethod
+    def show(self, view: View) -> None:
+        """Update what is visible."""
+
+    @abstractmethod
+    def logs(self) -> Sequence[Path]:
+        """Return the logs and recordings, flight by flight, beside which files are written."""
+
+    @abstractmethod
+    def say(self, text: str, seconds: float = 3.0) -> None:
+        """Tell something for a while."""
+
+    def action_copy(self) -> None:
+        """Copy the pane to the clipboard of the terminal."""
+        if self._view is None:
+            return
+        pane = self.pane_in_front()
+        text = pane.text()
+        self.app.copy_to_clipboard(text)
+        lines = text.count("\n")
+        self.say(
+            f"{pane_name(pane, self._view)} copied, {lines} lines; a terminal without OSC 52: key s", 5.0
+        )
+
+    def action_save(self) -> None:
+        """Write the pane into files beside the log."""
+        if self._view is None:
+            return
+        pane = self.pane_in_front()
+        log = beside_which(self.logs(), pane, self._view)
+        self.say(save(pane, log, pane_name(pane, self._view)), _SAY_S)
+
+    def action_next_output(self) -> None:
+        """Bring the next output of the fit to the top."""
+        self.query_one(Fit).next_output()
+
+    def action_lay_over(self) -> None:
+        """Ask for the manoeuvre to lay over the selected one."""
+        self.ask(
+            "Lay over manoeuvre number (0: none):", lambda answer: self._lay_over(int(answer)), integer=True
+        )
+
+    def _lay_over(self, number: int) -> None:
+        view = self._view
+        judged = view.judged if view is not None else None
+        if view is None or judged is None:
+            self.say("There is no manoeuvre to lay another one over yet.")
+            return
+        known = {j.maneuver.number for j in view.state.maneuvers}
+        if number and (number not in known or number == judged.maneuver.number):
+            self.say(f"Choose another manoeuvre than {judged.maneuver.number}, from {_listed(known)}.")
+            return
+        self.query_one(Fit).lay_over(number or None)
+        self.show(view)
+
+
+def _listed(numbers: set[int]) -> str:
+    return f"{min(numbers)} to {max(numbers)}"

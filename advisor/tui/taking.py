@@ -1,0 +1,73 @@
+"""Taking what a pane shows away: into the clipboard, or into files beside the log."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from textual.geometry import Region
+from textual.strip import Strip
+
+from advisor.atomic_file import write_atomically
+from advisor.printable import printable
+from advisor.tui.panes.pane import Pane
+from advisor.tui.plot.widget import Plot
+from advisor.tui.svg import picture_of
+from advisor.tui.view import View
+
+WITHOUT_LOG = Path("advisor")
+"""Beside it, in the current folder, files are written where nothing is recorded."""
+
+
+def pane_name(pane: Pane, view: View) -> str:
+    """Name a pane for a file: ``fit-4`` for the fit of manoeuvre 4, ``history`` for what has no number."""
+    name = "-".join(pane.TITLE.split()[1:]).lower()
+    judged = view.judged if pane.OF_SELECTED else None
+    return f"{name}-{judged.maneuver.number}" if judged is not None else name
+
+
+def beside_which(logs: Sequence[Path], pane: Pane, view: View) -> Path:
+    """Choose the log to write beside: of the selected manoeuvre where the pane shows it, else the newest."""
+    if not logs:
+        return WITHOUT_LOG
+    judged = view.judged if pane.OF_SELECTED else None
+    flight = judged.maneuver.flight if judged is not None else view.state.flight
+    return logs[min(flight, len(logs) - 1)]
+
+
+def save(pane: Pane, log: Path, name: str) -> str:
+    """Write a pane's rows as CSV or its text, and its plots as SVG; a sentence says where, or why not.
+
+    Files of the same name that were saved before are replaced; what is half written never has the name.
+    """
+    stem = log.parent / f"{log.stem}.{name}"
+    contents = {".csv" if pane.rows() is not None else ".txt": pane.text()}
+    if picture := picture_of_plots(pane, name):
+        contents[".svg"] = picture
+    try:
+        for ending, text in contents.items():
+            write_atomically(stem.with_name(stem.name + ending), text)
+    except OSError as error:
+        folder = printable(str(stem.parent))
+        return f"{stem.name} cannot be saved in {folder}: {error.strerror or error}; key c copies instead"
+    return f"saved {printable(str(stem))}{' and '.join(contents)}"
+
+
+def picture_of_plots(pane: Pane, title: str) -> str:
+    """Draw the plots in sight as SVG, each in its place; empty where the pane has none with curves."""
+    plots = [plot for plot in pane.query(Plot) if plot.display and plot.chart.series and plot.size.area]
+    if not plots:
+        return ""
+    around = Region.from_union([plot.region for plot in plots])
+    strips = []
+    for y in range(around.y, around.bottom):
+        across = sorted((p for p in plots if p.region.y <= y < p.region.bottom), key=lambda p: p.region.x)
+        strips.append(_joined(across, y, around))
+    return picture_of(strips, around.width, title)
+
+
+def _joined(plots: list[Plot], y: int, around: Region) -> Strip:
+    """One line of plots that stand side by side."""
+    pieces, x = [], around.x
+    for plot in plots:
+        pieces += [Strip.blank(plot.region.x - x), plot.render_line(y - plot.region.y)]
+        x = plot.region.right
+    return Strip.join([*pieces, Strip.blank(around.right - x)])
