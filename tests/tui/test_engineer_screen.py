@@ -186,4 +186,5 @@ async def test_the_log_tells_of_the_campaign_and_of_the_link_in_order():
         source.deliver()
         await here.until(lambda: "manoeuvre 2 judged" in here.words("EventLog Lines"))
         lines = here.words("EventLog Lines").split("\n")
-        assert [line.split()[0] for line in lines] == ["ardupilot", "113", "link:", "138"]
+        assert [line[9:].split()[0] for line in lines] == ["following", "manoeuvre", "link:", "manoeuvre"]
+        assert [line[:7].strip() for line in lines] == ["–", "1:53.0", "–", "2:18.0"]

@@ -21,7 +21,7 @@ class Parameters(Pane):
     """Table of the joint estimate, and the history of the parameter under the cursor."""
 
     TITLE = "3 Parameters"
-    SHORT = "3 Param"
+    SHORT = "3 Par"
     can_focus = False
     HELP = """\
 # Parameters

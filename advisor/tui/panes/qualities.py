@@ -16,7 +16,7 @@ class Qualities(Pane):
     """Natural frequency, damping, n/α, CAP, T_θ2 and level, each with its 95 % interval."""
 
     TITLE = "u Flying qualities"
-    SHORT = "u FlyQ"
+    SHORT = "u FQ"
     can_focus = False
     HELP = """\
 # Flying qualities

@@ -20,7 +20,7 @@ class Verdict(Pane):
     """Sentence, reasons with number beside limit, quality of the fit, cautions."""
 
     TITLE = "2 Verdict"
-    SHORT = "2 Verd"
+    SHORT = "2 Ver"
     OF_SELECTED = True
     can_focus = False
     HELP = """\

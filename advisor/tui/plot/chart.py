@@ -20,8 +20,8 @@ class Series:
     """Shape (n,), in the unit of the chart's y axis; NaN breaks a line."""
     ink: Ink
     mark: Literal["line", "points", "joined", "stems", "intervals"] = "line"
-    """A joined series is a line with a stroke at each value, so that one value alone is seen. A stem goes from 0
-    to the value; an interval is a value with a vertical bar of half-length ``half``."""
+    """A joined series is a line with a stroke at each value, so that one value alone is seen. A stem goes
+    from 0 to the value; an interval is a value with a vertical bar of half-length ``half``."""
     half: FloatArray | None = None
     """Shape (n,), half of each interval in the unit of the y axis; only for intervals."""
 
@@ -51,8 +51,8 @@ class Chart:
     whole_x: bool = False
     """Ticks only at whole numbers (counts)."""
     log_y: bool = False
-    """Equal ratios of y take equal room: 25 and 2,500 both read. Only positive values are drawn, and no intervals
-    or stems."""
+    """Equal ratios of y take equal room: 25 and 2,500 both read. Only positive values are drawn, and no
+    intervals or stems."""
     x_range: tuple[float, float] | None = None
     """The ends of the x axis; None: rounded ends that hold all data. Only the former lets a mouse point."""
     cursor: float | None = None

@@ -93,7 +93,7 @@ def _y_axis(chart: Chart, rows: int) -> Axis | LogAxis:
 
 
 def _logarithmic(chart: Chart) -> Chart:
-    """Give curves and levels at the decimal logarithms of their heights; NaN where a height is not positive."""
+    """Give curves and levels at the decimal logarithms of their heights; NaN where one is not positive."""
     return replace(
         chart,
         series=tuple(replace(s, y=np.log10(np.where(s.y > 0.0, s.y, np.nan))) for s in chart.series),
