@@ -8,8 +8,8 @@ from math import isfinite
 
 from advisor.tui.plot.chart import Chart
 
-_DIGITS = 9
-"""Significant digits of a number: more than any channel resolves."""
+_DIGITS = 7
+"""Significant digits of a number: as many as a log keeps (float32)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from html import escape, unescape
 
 from rich.console import Console
@@ -79,16 +79,17 @@ def picture_of(strips: Sequence[Strip], width: int, title: str) -> str:
         record=True,
         legacy_windows=False,
     )
-    for strip in strips:
-        console.print(_Line(strip), soft_wrap=True)
+    console.print(_Lines(strips), end="")
     return drawn(console.export_svg(title=title))
 
 
-class _Line:
-    """A strip that Rich can print."""
+class _Lines:
+    """Lines of a terminal that Rich can print."""
 
-    def __init__(self, strip: Strip) -> None:
-        self._strip = strip
+    def __init__(self, strips: Sequence[Strip]) -> None:
+        self._strips = strips
 
-    def __rich_console__(self, console: Console, options: object) -> list[Segment]:
-        return list(self._strip)
+    def __rich_console__(self, console: Console, options: object) -> Iterator[Segment]:
+        for strip in self._strips:
+            yield from strip
+            yield Segment.line()

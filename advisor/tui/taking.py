@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from rich.style import Style
 from textual.geometry import Region
 from textual.strip import Strip
 
@@ -40,7 +41,7 @@ def save(pane: Pane, log: Path, name: str) -> str:
     """
     stem = log.parent / f"{log.stem}.{name}"
     contents = {".csv" if pane.rows() is not None else ".txt": pane.text()}
-    if picture := picture_of_plots(pane, name):
+    if picture := picture_of_plots(pane, f"{log.name}  {pane.TITLE}  {pane.border_subtitle or ''}".strip()):
         contents[".svg"] = picture
     try:
         for ending, text in contents.items():
@@ -60,14 +61,14 @@ def picture_of_plots(pane: Pane, title: str) -> str:
     strips = []
     for y in range(around.y, around.bottom):
         across = sorted((p for p in plots if p.region.y <= y < p.region.bottom), key=lambda p: p.region.x)
-        strips.append(_joined(across, y, around))
+        strips.append(_joined(across, y, around, plots[0].rich_style))
     return picture_of(strips, around.width, title)
 
 
-def _joined(plots: list[Plot], y: int, around: Region) -> Strip:
+def _joined(plots: list[Plot], y: int, around: Region, paper: Style) -> Strip:
     """One line of plots that stand side by side."""
     pieces, x = [], around.x
     for plot in plots:
-        pieces += [Strip.blank(plot.region.x - x), plot.render_line(y - plot.region.y)]
+        pieces += [Strip.blank(plot.region.x - x, paper), plot.render_line(y - plot.region.y)]
         x = plot.region.right
-    return Strip.join([*pieces, Strip.blank(around.right - x)])
+    return Strip.join([*pieces, Strip.blank(around.right - x, paper)])

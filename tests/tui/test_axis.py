@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from advisor.tui.plot.axis import Axis, round_axis
+from advisor.tui.plot.axis import Axis, exact_axis, round_axis
 from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
 
 values = st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=8)
@@ -19,6 +19,13 @@ def test_an_axis_holds_its_data_and_has_at_least_two_ticks(data: list[float], in
     assert max(data) <= axis.high + slack
     # The next finer step than one with a single tick, at 0, may have two more on either side.
     assert 2 <= len(axis.ticks) <= max(intervals + 3, 5)
+
+
+@given(st.floats(-1e6, 1e6), st.floats(1e-3, 1e6), st.integers(1, 12))
+def test_an_exact_axis_keeps_its_ends_and_has_a_tick(low: float, length: float, intervals: int):
+    axis = exact_axis(low, low + length, intervals)
+    assert (axis.low, axis.high) == (low, low + length)
+    assert 1 <= len(axis.ticks) <= max(intervals + 2, 5)
 
 
 @pytest.mark.parametrize("empty", [[], [np.array([])], [np.array([np.nan, np.inf])]])

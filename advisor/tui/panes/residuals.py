@@ -118,5 +118,5 @@ def _chart(name: str, white: Whiteness) -> Chart:
         "lag [s]",
         series=(Series(counted, white.lag_s, white.r, "residual", "stems"),),
         levels=(Level(f"±{white.bound:.2f}", white.bound), Level("", -white.bound)),
-        x_range=(0.0, float(white.lag_s[-1])) if len(white.lag_s) else None,
+        x_range=(0.0, float(white.lag_s[-1])) if np.any(white.lag_s > 0.0) else None,
     )

@@ -13,7 +13,7 @@ from textual.strip import Strip
 from advisor.flight.messages import FloatArray
 from advisor.tui.plot.axis import Axis, LogAxis, exact_axis, log_axis, round_axis
 from advisor.tui.plot.canvas import Canvas
-from advisor.tui.plot.chart import INKS, Chart, Level, Series
+from advisor.tui.plot.chart import INKS, Chart, Series
 from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
 from advisor.tui.plot.legend import legend
 from advisor.tui.plot.reading import readings
@@ -117,30 +117,20 @@ def _cut(series: Series, low: float, high: float) -> Series:
 
 def _heights(chart: Chart) -> list[FloatArray]:
     """Everything that the y axis has to hold."""
-    held = [_seen(s, chart.x_range) for s in chart.series]
+    held = [np.array([level.y]) for level in chart.levels]
     for series in chart.series:
-        if series.half is not None:
-            held += [series.y - series.half, series.y + series.half]
-    return held + [np.array([level.y]) for level in chart.levels]
-
-
-def _seen(series: Series, x_range: tuple[float, float] | None) -> FloatArray:
-    if x_range is None:
-        return series.y
-    return series.y[(series.x >= x_range[0]) & (series.x <= x_range[1])]
+        half = 0.0 if series.half is None else series.half
+        held += [series.y - half, series.y + half]
+    return held
 
 
 def _draw(canvas: Canvas, chart: Chart) -> None:
     if chart.cursor is not None:
         canvas.upright(chart.cursor, INKS.index("prior"))
     for level in chart.levels:
-        _draw_level(canvas, level)
+        canvas.level(level.y, INKS.index(level.ink), level.dashed)
     for series in chart.series:
         _draw_series(canvas, series)
-
-
-def _draw_level(canvas: Canvas, level: Level) -> None:
-    canvas.level(level.y, INKS.index(level.ink), level.dashed)
 
 
 def _draw_series(canvas: Canvas, series: Series) -> None:

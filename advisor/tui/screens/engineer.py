@@ -79,7 +79,8 @@ saves the same into a file beside the log or the recording, and its plots as a p
         """The panes in three columns; the style sheet shows what there is room for."""
         yield StatusLine()
         yield Alarm()
-        yield PaneTabs([pane.TITLE for pane in PANES], [pane.SHORT for pane in PANES])
+        titles = [pane.TITLE.removesuffix(" and link") for pane in PANES]
+        yield PaneTabs(titles, [pane.SHORT for pane in PANES])
         with Container(id="panes"):
             for column, panes in _COLUMNS.items():
                 yield Container(*(pane() for pane in panes), id=column, classes="column")

@@ -53,10 +53,8 @@ class PaneActions(Base):
         pane = self.pane_in_front()
         text = pane.text()
         self.app.copy_to_clipboard(text)
-        lines = text.count("\n")
-        self.say(
-            f"{pane_name(pane, self._view)} copied, {lines} lines; a terminal without OSC 52: key s", 5.0
-        )
+        what = f"{pane_name(pane, self._view)} copied, {text.count(chr(10))} lines."
+        self.say(f"{what} Where the terminal has no OSC 52, press s.", _SAY_S)
 
     def action_save(self) -> None:
         """Write the pane into files beside the log."""

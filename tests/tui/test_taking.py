@@ -1,0 +1,65 @@
+"""Any pane can be copied, and saved beside the log."""
+
+import csv
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from advisor.tui.rows import Rows
+from advisor.tui.settings import Settings
+from tests.tui import flights
+from tests.tui.stage import stage
+
+ENGINEER = Settings(screen="engineer")
+
+
+def table(text: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(StringIO(text)))
+
+
+def test_what_is_not_known_stands_as_nothing_in_a_row():
+    assert (
+        Rows(("a", "b", "c"), ((1, np.nan, None), ("x, y", 0.5, 2.0))).csv() == 'a,b,c\n1,,\n"x, y",0.5,2\n'
+    )
+
+
+async def test_every_pane_can_be_copied():
+    async with stage(flights.state(4), settings=ENGINEER, size=(200, 60)) as here:
+        copied = {}
+        for key in "1234567890h":
+            await here.press(key, "c")
+            copied[key] = here.app.clipboard
+        assert table(copied["1"])[1]["verdict"] == "✗ REPEAT"
+        assert copied["2"].startswith("✓ GOOD  manoeuvre 4")
+        assert table(copied["3"])[5]["parameter"] == "M_α 1/s²"
+        assert {row["channel"] for row in table(copied["4"])} == {"elevator", "alpha", "q", "a_z", "theta"}
+        assert "Nothing is being flown" in copied["5"]
+        assert {row["series"] for row in table(copied["6"])} == {"continuous", "separate", "information"}
+        assert "AOA_SSA.AOA" in copied["7"]
+        assert "manoeuvre 4 judged" in copied["8"]
+        assert {row["output"] for row in table(copied["9"])} == {"alpha", "q", "a_z", "theta"}
+        assert {row["estimate"] for row in table(copied["0"])} == {"joint", "manoeuvre 4"}
+        assert {row["manoeuvre"] for row in table(copied["h"])} == {"1", "2", "3", "4"}
+
+
+async def test_a_pane_is_saved_beside_the_log_as_numbers_and_as_a_picture(tmp_path: Path):
+    async with stage(
+        flights.state(4), settings=ENGINEER, size=(100, 30), logs=[tmp_path / "flight.tlog"]
+    ) as here:
+        await here.press("4", "s")
+        assert sorted(path.name for path in tmp_path.iterdir()) == ["flight.fit-4.csv", "flight.fit-4.svg"]
+        svg = (tmp_path / "flight.fit-4.svg").read_text(encoding="utf-8")
+        assert "<circle" in svg
+        assert "elevator" in svg
+        await here.press("8", "s")
+        assert "manoeuvre 4 judged" in (tmp_path / "flight.log.txt").read_text(encoding="utf-8")
+        await here.until(lambda: "flight.log.txt" in here.page())
+
+
+async def test_a_place_that_cannot_be_written_is_one_sentence(tmp_path: Path):
+    nowhere = tmp_path / "gone" / "flight.tlog"
+    async with stage(flights.state(2), settings=ENGINEER, size=(200, 60), logs=[nowhere]) as here:
+        await here.press("h", "s")
+        said = f"history cannot be saved in {nowhere.parent}: No such file or directory; key c copies instead"
+        await here.until(lambda: said in " ".join(here.page().split()))
