@@ -107,7 +107,7 @@ def parse_mark(text: str) -> "Mark":
     from advisor.flight.marks import LONGEST_S, Mark
 
     parts = text.split(":")
-    half = len(parts) // 2 if len(parts) in (2, 4) else 1
+    half = len(parts) // 2 if len(parts) in (2, 4) else len(parts)
     relative = [part.strip().startswith("+") for part in (parts[0], parts[-half])]
     start_s, end_s = _seconds(parts[:half]), _seconds(parts[half:])
     if not (isfinite(start_s) and isfinite(end_s) and start_s >= 0.0 and relative[0] == relative[1]):
@@ -130,7 +130,7 @@ def _seconds(parts: Sequence[str]) -> float:
         *minutes, seconds = map(float, parts)
     except ValueError:
         return nan
-    if minutes and not 0.0 <= seconds < 60.0:
+    if len(minutes) > 1 or minutes and not 0.0 <= seconds < 60.0:
         return nan
     return 60.0 * sum(minutes) + seconds
 
