@@ -130,7 +130,7 @@ def _seconds(parts: Sequence[str]) -> float:
         *minutes, seconds = map(float, parts)
     except ValueError:
         return nan
-    if len(minutes) > 1 or minutes and not 0.0 <= seconds < 60.0:
+    if len(minutes) > 1 or (minutes and not 0.0 <= seconds < 60.0):
         return nan
     return 60.0 * sum(minutes) + seconds
 
