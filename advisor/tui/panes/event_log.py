@@ -2,7 +2,6 @@
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
-from textual.events import Resize
 
 from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.pane import Pane
@@ -36,9 +35,10 @@ begin anew where a line says that another power-on, flight or vehicle begins.
             yield HangingLines("Nothing has happened yet.")
 
     def on_mount(self) -> None:
-        """Nothing is shown yet."""
+        """Show nothing yet, and the newest line whenever there is one."""
         super().on_mount()
         self._shown: tuple[str, ...] = ()
+        self.query_one(VerticalScroll).anchor()
 
     def show(self, view: View) -> None:
         """Write the newest lines."""
@@ -47,8 +47,3 @@ begin anew where a line says that another power-on, flight or vehicle begins.
             self.query_one(HangingLines).write_rows(
                 (line[:_TIME], line[_TIME:]) for line in view.log[-_SHOWN:]
             )
-            self.query_one(VerticalScroll).scroll_end(animate=False)
-
-    def on_resize(self, event: Resize) -> None:
-        """Stay at the end: a pane that comes into sight is wrapped only then."""
-        self.call_after_refresh(self.query_one(VerticalScroll).scroll_end, animate=False)
