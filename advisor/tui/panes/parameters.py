@@ -2,6 +2,7 @@
 
 from rich.text import Text
 from textual.app import ComposeResult
+from textual.events import Resize
 from textual.widgets import DataTable
 
 from advisor.aircraft import PARAMETERS as NAMES
@@ -13,8 +14,11 @@ from advisor.tui.plot.widget import Plot
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
-# Name and width: what grows must not push the others about.
-_COLUMNS = (("parameter", 10), ("model ± 95 %", 17), ("prior", 8), ("off by", 7), ("selected ± 95 %", 17))
+_COLUMNS = {"parameter": 11, "model ± 95 %": 18, "prior": 8, "off by": 8, "selected ± 95 %": 17}
+"""Name and width, with the space to the next: what grows must not push the others about."""
+_LEFT_OUT = ("off by", "prior")
+"""Columns that a table without room for all does without, the first one first: the history draws the prior."""
+_SCROLL_BAR = 1
 
 
 class Parameters(Pane):
@@ -37,10 +41,7 @@ verdict pane says why.
 
     def compose(self) -> ComposeResult:
         """The table over the history."""
-        table: DataTable[Text] = DataTable(cursor_type="row", cell_padding=1)
-        for name, width in _COLUMNS:
-            table.add_column(name, width=width)
-        yield table
+        yield DataTable(cursor_type="row", cell_padding=0)
         yield Plot(history_chart(None, NAMES[0]))
 
     def on_mount(self) -> None:
@@ -48,6 +49,21 @@ verdict pane says why.
         super().on_mount()
         self._view: View | None = None
         self._shown: tuple[object, ...] | None = None
+        self._columns: dict[str, int] = {}
+
+    def on_resize(self, event: Resize) -> None:
+        """Give the columns what room there is: no number is cut."""
+        table = self.query_one(DataTable)
+        columns = dict(_COLUMNS)
+        for name in _LEFT_OUT:
+            if sum(columns.values()) + _SCROLL_BAR > table.size.width:
+                del columns[name]
+        if columns != self._columns:
+            self._columns = columns
+            table.clear(columns=True)
+            for name, width in columns.items():
+                table.add_column(name, width=width)
+            self._fill()
 
     def show(self, view: View) -> None:
         """Fill the table anew when an estimate changed."""
@@ -56,14 +72,20 @@ verdict pane says why.
         if self._shown is not None and all(a is b for a, b in zip(what, self._shown, strict=True)):
             return
         self._shown = what
-        table = self.query_one(DataTable)
+        self._fill()
+
+    def _fill(self) -> None:
+        """Write every row, in the columns that have room."""
+        view, table = self._view, self.query_one(DataTable)
+        if view is None or not self._columns:
+            return
         row = max(table.cursor_row, 0)
         selected = view.judged.estimate if view.judged else None
         with self.prevent(DataTable.RowHighlighted):
             table.clear()
             for name in NAMES:
                 cells = _cells(name, view.state.model, selected, view.aircraft.model.get(name))
-                table.add_row(*(Text(cell) for cell in cells), key=name)
+                table.add_row(*(Text(cells[column]) for column in self._columns), key=name)
             table.move_cursor(row=row)
         self._draw_history(NAMES[row])
 
@@ -77,15 +99,16 @@ verdict pane says why.
         self.query_one(Plot).chart = history_chart(self._view, name)
 
 
-def _cells(name: str, model: object, selected: object, prior: float | None) -> tuple[str, ...]:
+def _cells(name: str, model: object, selected: object, prior: float | None) -> dict[str, str]:
+    """What stands in each column of ``_COLUMNS``."""
     quantity = PARAMETERS[name]
-    return (
-        f"{quantity.symbol} {quantity.unit}".removesuffix(" -"),
-        _value(name, model),
-        _prior(name, model, prior),
-        _off_by(name, model, prior),
-        _value(name, selected),
-    )
+    return {
+        "parameter": f"{quantity.symbol} {quantity.unit}".removesuffix(" -"),
+        "model ± 95 %": _value(name, model),
+        "prior": _prior(name, model, prior),
+        "off by": _off_by(name, model, prior),
+        "selected ± 95 %": _value(name, selected),
+    }
 
 
 def _prior(name: str, estimate: object, prior: float | None) -> str:
