@@ -1,6 +1,5 @@
 """Taking what a pane shows away: into the clipboard, or into files beside the log."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from rich.style import Style
@@ -25,31 +24,39 @@ def pane_name(pane: Pane, view: View) -> str:
     return f"{name}-{judged.maneuver.number}" if judged is not None else name
 
 
-def beside_which(logs: Sequence[Path], pane: Pane, view: View) -> Path:
+def beside_which(pane: Pane, view: View) -> Path:
     """Choose the log to write beside: of the selected manoeuvre where the pane shows it, else the newest."""
-    if not logs:
+    if not view.logs:
         return WITHOUT_LOG
     judged = view.judged if pane.OF_SELECTED else None
     flight = judged.maneuver.flight if judged is not None else view.state.flight
-    return logs[min(flight, len(logs) - 1)]
+    return view.logs[min(flight, len(view.logs) - 1)]
 
 
-def save(pane: Pane, log: Path, name: str) -> str:
-    """Write a pane's rows as CSV or its text, and its plots as SVG; a sentence says where, or why not.
-
-    Files of the same name that were saved before are replaced; what is half written never has the name.
-    """
-    stem = log.parent / f"{log.stem}.{name}"
-    contents = {".csv" if pane.rows() is not None else ".txt": pane.text()}
+def files_of(pane: Pane, view: View) -> dict[str, str]:
+    """Give the files that hold a pane by name: CSV of its rows or its text, and SVG of its plots."""
+    log, name = beside_which(pane, view), pane_name(pane, view)
+    stem = f"{log.stem}.{name}"
+    files = {f"{stem}.csv" if pane.rows() is not None else f"{stem}.txt": pane.text()}
     if picture := picture_of_plots(pane, f"{log.name}  {pane.TITLE}  {pane.border_subtitle or ''}".strip()):
-        contents[".svg"] = picture
+        files[f"{stem}.svg"] = picture
+    return files
+
+
+def save(pane: Pane, view: View) -> str:
+    """Write the files of a pane beside the log; a sentence says where, or why not.
+
+    Files of one name that were saved before are replaced; what is half written never has the name.
+    """
+    folder, files = beside_which(pane, view).parent, files_of(pane, view)
+    names = " and ".join(map(printable, files))
     try:
-        for ending, text in contents.items():
-            write_atomically(stem.with_name(stem.name + ending), text)
+        for file, text in files.items():
+            write_atomically(folder / file, text)
     except OSError as error:
-        folder = printable(str(stem.parent))
-        return f"{stem.name} cannot be saved in {folder}: {error.strerror or error}; key c copies instead"
-    return f"saved {printable(str(stem))}{' and '.join(contents)}"
+        place = printable(str(folder))
+        return f"{names} cannot be written in {place}: {error.strerror or error}; key c copies instead"
+    return f"saved {names} in {printable(str(folder.absolute()))}"
 
 
 def picture_of_plots(pane: Pane, title: str) -> str:

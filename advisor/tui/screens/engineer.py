@@ -1,8 +1,6 @@
 """The engineer's screen: every number behind the word."""
 
-from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 from textual.app import ComposeResult
 from textual.containers import Container
@@ -63,7 +61,8 @@ focus. On a small terminal one pane is shown with the manoeuvres. On a wide one 
 residuals, correlation and history share one place.
 
 **c** copies the pane that has the focus to the clipboard: its numbers as CSV, its words as text. **s**
-saves the same into a file beside the log or the recording, and its plots as a picture (SVG).
+saves the same into a file beside the log or the recording, and its plots as a picture (SVG). A browser
+is offered the files instead.
 """
 
     def __init__(self) -> None:
@@ -152,10 +151,6 @@ saves the same into a file beside the log or the recording, and its plots as a p
         around = self.focused.ancestors_with_self if self.focused else ()
         focused = next((node for node in around if isinstance(node, Pane)), None)
         return focused or self.query_one(self._chosen)
-
-    def logs(self) -> Sequence[Path]:
-        """Return the logs and recordings, flight by flight, beside which files are written."""
-        return self._view.logs if self._view else ()
 
     def action_exclude(self) -> None:
         """Take the selected manoeuvre out of every decision, or in again; ask why."""
