@@ -22,7 +22,7 @@ def table(text: str) -> list[dict[str, str]]:
 
 def notice(here: Stage) -> str:
     """What comes up above the last line, without its breaks."""
-    return "".join(line.partition("▌")[2].strip() for line in here.page().split("\n"))
+    return "".join(line.partition("▌")[2].strip(" ┃") for line in here.page().split("\n"))
 
 
 def test_what_is_not_known_stands_as_nothing_in_a_row():
