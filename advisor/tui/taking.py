@@ -1,4 +1,4 @@
-"""Taking what a pane shows away: into the clipboard, or into files beside the log."""
+"""A pane as text for the clipboard, and as files in the folder of the log."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from advisor.tui.svg import picture_of
 from advisor.tui.view import View
 
 WITHOUT_LOG = Path("advisor")
-"""Beside it, in the current folder, files are written where nothing is recorded."""
+"""Stands for a log where nothing is recorded: files go into the current folder under this name."""
 
 
 def pane_name(pane: Pane, view: View) -> str:
@@ -24,8 +24,8 @@ def pane_name(pane: Pane, view: View) -> str:
     return f"{name}-{judged.maneuver.number}" if judged is not None else name
 
 
-def beside_which(pane: Pane, view: View) -> Path:
-    """Choose the log to write beside: of the selected manoeuvre where the pane shows it, else the newest."""
+def log_of(pane: Pane, view: View) -> Path:
+    """Choose the log that names the files: that of the selected manoeuvre, else the newest."""
     if not view.logs:
         return WITHOUT_LOG
     judged = view.judged if pane.OF_SELECTED else None
@@ -35,7 +35,7 @@ def beside_which(pane: Pane, view: View) -> Path:
 
 def files_of(pane: Pane, view: View) -> dict[str, str]:
     """Give the files that hold a pane by name: CSV of its rows or its text, and SVG of its plots."""
-    log, name = beside_which(pane, view), pane_name(pane, view)
+    log, name = log_of(pane, view), pane_name(pane, view)
     stem = f"{log.stem}.{name}"
     files = {f"{stem}.csv" if pane.rows() is not None else f"{stem}.txt": pane.text()}
     if picture := picture_of_plots(pane, f"{log.name}  {pane.TITLE}  {pane.border_subtitle or ''}".strip()):
@@ -44,11 +44,11 @@ def files_of(pane: Pane, view: View) -> dict[str, str]:
 
 
 def save(pane: Pane, view: View) -> str:
-    """Write the files of a pane beside the log; a sentence says where, or why not.
+    """Write the files of a pane into the folder of the log; return a sentence that says where, or why not.
 
-    Files of one name that were saved before are replaced; what is half written never has the name.
+    A file of an earlier save is replaced. A file that is half written never carries the name.
     """
-    folder, files = beside_which(pane, view).parent, files_of(pane, view)
+    folder, files = log_of(pane, view).parent, files_of(pane, view)
     names = " and ".join(map(printable, files))
     try:
         for file, text in files.items():
@@ -73,7 +73,7 @@ def picture_of_plots(pane: Pane, title: str) -> str:
 
 
 def _joined(plots: list[Plot], y: int, around: Region, paper: Style) -> Strip:
-    """One line of plots that stand side by side."""
+    """Join one line of the plots that stand side by side."""
     pieces, x = [], around.x
     for plot in plots:
         pieces += [Strip.blank(plot.region.x - x, paper), plot.render_line(y - plot.region.y)]

@@ -32,7 +32,7 @@ def test_what_is_not_known_stands_as_nothing_in_a_row():
 
 
 async def test_every_pane_can_be_copied():
-    async with stage(flights.state(4), settings=ENGINEER, size=(200, 60)) as here:
+    async with stage(flights.state(4), settings=ENGINEER, size=(80, 24)) as here:
         copied = {}
         for key in "1234567890h":
             await here.press(key, "c")

@@ -60,7 +60,7 @@ it away.
 """
 
     def compose(self) -> ComposeResult:
-        """All plots; those without room are hidden."""
+        """Lay out all plots; those without room are hidden."""
         yield Plot(no_fit(ELEVATOR, ""), id="fit-elevator")
         for name in OUTPUTS:
             yield Plot(no_fit(name, "no manoeuvre has ended yet."), id=f"fit-{name}", classes="fit")
@@ -99,7 +99,7 @@ it away.
         self._over_number = number
 
     def rows(self) -> Rows | None:
-        """One row for each sample of each channel, whatever part is in sight."""
+        """Give one row for each sample of each channel, in sight or not."""
         return rows_of_fit(self._judged, self._over) if self._judged is not None else None
 
     def on_resize(self, event: Resize) -> None:
@@ -141,7 +141,7 @@ it away.
             self._draw()
 
     def _stamps(self) -> FloatArray:
-        """Stamps of the output at the top, which the cursor stands on; of the elevator where it has none."""
+        """Return the stamps on which the cursor stands: of the output at the top, else of the elevator."""
         there = self._outputs()
         for name in (there[self._first % len(there)], ELEVATOR):
             curve = measured(self._judged, name) if self._judged is not None else None
@@ -163,7 +163,7 @@ it away.
         self._write_subtitle()
 
     def _outputs(self) -> list[str]:
-        """Outputs of the fit; without one, a single output says why."""
+        """List the outputs of the fit; without a fit, the one output that says why."""
         fits = fits_of(self._judged) if self._judged is not None else {}
         return [name for name in OUTPUTS if name in fits] or [OUTPUTS[0]]
 

@@ -41,12 +41,12 @@ verdict pane says why.
 """
 
     def compose(self) -> ComposeResult:
-        """The table over the history."""
+        """Lay out the table over the history."""
         yield DataTable[Text](cursor_type="row", cell_padding=0)
         yield Plot(history_chart(None, NAMES[0]))
 
     def on_mount(self) -> None:
-        """Nothing is shown yet."""
+        """Begin without an estimate."""
         super().on_mount()
         self._view: View | None = None
         self._shown: tuple[object, ...] | None = None
@@ -106,13 +106,13 @@ def _cells(name: str, model: object, selected: object, prior: float | None) -> t
 
 
 def _columns_in(width: int) -> int:
-    """How many columns have room, at least those of the names and of the model."""
+    """Count the columns that have room, at least those of the names and of the model."""
     ends = accumulate(width for _, width in _COLUMNS)
     return max(sum(end <= width for end in ends), 2)
 
 
 def _prior(name: str, estimate: object, prior: float | None) -> str:
-    """The prior in as many digits as the estimate deserves."""
+    """Write the prior in as many digits as the estimate deserves."""
     if prior is None:
         return "-"
     factor = PARAMETERS[name].factor

@@ -74,6 +74,6 @@ def exact_axis(low: float, high: float, intervals: int) -> Axis:
 
 
 def _round_up(step: float) -> float:
-    """The next of 1, 2 and 5 times a power of ten."""
+    """Return the next of 1, 2 and 5 times a power of ten."""
     magnitude = 10.0 ** floor(log10(step))
     return next(m * magnitude for m in (1.0, 2.0, 5.0, 10.0) if m * magnitude >= step * (1.0 - 1e-9))

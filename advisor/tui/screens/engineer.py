@@ -47,7 +47,7 @@ _LOW_TABLE = 38
 
 
 class EngineerScreen(Face, PaneActions):
-    """Eleven panes: eight at once on a wide terminal, one beside or below the manoeuvres on a small one.
+    """Eleven panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
 
     The panes of the middle column share one place: fit, residuals, correlation, history.
     """
@@ -73,7 +73,7 @@ is offered the files instead.
         self._middle: type[Pane] = Fit
 
     def compose(self) -> ComposeResult:
-        """The panes in three columns; the style sheet shows what there is room for."""
+        """Lay out the panes in three columns; the style sheet shows those that have room."""
         yield StatusLine()
         yield Alarm()
         titles = [pane.TITLE.removesuffix(" and link") for pane in PANES]
@@ -86,7 +86,7 @@ is offered the files instead.
         yield KeysLine()
 
     def on_mount(self) -> None:
-        """Begin with the fit beside the manoeuvres."""
+        """Begin with the fit next to the manoeuvres."""
         self.action_choose(PANES.index(Fit) + 1)
         self.query_one("Maneuvers DataTable").focus()
 

@@ -1,4 +1,4 @@
-"""What both faces have in common."""
+"""The base of both faces."""
 
 from collections.abc import Callable
 from contextlib import suppress

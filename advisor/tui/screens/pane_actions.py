@@ -1,4 +1,4 @@
-"""What keys do to the pane in front: copy it, save it, lay a manoeuvre over its plots."""
+"""Actions of keys on one pane: copy, save, bring the next output up, lay a manoeuvre over another one."""
 
 from abc import abstractmethod
 from collections.abc import Callable
@@ -18,7 +18,7 @@ else:
     Base = object
 
 _SAY_S = 8.0
-"""A path needs longer to be read than a word."""
+"""Seconds for a sentence with a path in it: a path takes longer to read than a word."""
 
 
 class PaneActions(Base):
@@ -56,7 +56,7 @@ class PaneActions(Base):
         self.say(f"{what} Where the terminal has no OSC 52, press s.", _SAY_S)
 
     def action_save(self) -> None:
-        """Write the pane into files beside the log; hand it to the browser where a browser shows it."""
+        """Write the pane into files in the folder of the log, or offer the files to a browser."""
         if self._view is None:
             return
         pane = self.pane_in_front()
