@@ -30,6 +30,8 @@ from advisor.tui.view import View
 
 _ROWS_FOR_ONE = 11
 """Rows that an output and its residual need where several stand above one another."""
+_LEAST_ROWS_FOR_BOTH = 8
+"""Rows below which an output has no room for its residual."""
 _ROWS_OF_ELEVATOR = 3
 _SHARE_OF_ELEVATOR = 8
 """The elevator takes one row in eight, and never less than ``_ROWS_OF_ELEVATOR``."""
@@ -156,9 +158,10 @@ it away.
         count = min(max(1, (self.size.height - elevator) // _ROWS_FOR_ONE), len(there))
         shown = [there[(self._first + k) % len(there)] for k in range(count)]
         lowest = max(shown, key=OUTPUTS.index)
+        residuals = self.size.height - elevator >= _LEAST_ROWS_FOR_BOTH
         self._draw_elevator(elevator)
         for name in OUTPUTS:
-            self._draw_output(name, name in shown, lowest=name == lowest)
+            self._draw_output(name, name in shown, lowest=name == lowest, with_residual=residuals)
         self.border_title = self.TITLE if count == len(there) else f"{self.TITLE}  (o: next output)"
         self._write_subtitle()
 
@@ -175,15 +178,15 @@ it away.
             chart = elevator_chart(self._judged, self._over)
             plot.chart = in_sight(chart, self._sight.window.shown, self._sight.cursor, foot=False)
 
-    def _draw_output(self, name: str, shown: bool, *, lowest: bool) -> None:
+    def _draw_output(self, name: str, shown: bool, *, lowest: bool, with_residual: bool) -> None:
         fit, residual = self.query_one(f"#fit-{name}", Plot), self.query_one(f"#residual-{name}", Plot)
         if self._judged is not None and self._sight is not None:
             window, cursor = self._sight.window.shown, self._sight.cursor
             charts = fit_chart(name, self._judged, self._over), residual_chart(name, self._judged, self._over)
-            fit.chart = in_sight(charts[0], window, cursor, foot=False)
+            fit.chart = in_sight(charts[0], window, cursor, foot=lowest and not with_residual)
             residual.chart = in_sight(charts[1], window, cursor, foot=lowest)
         fit.display = shown
-        residual.display = shown and bool(residual.chart.series)
+        residual.display = shown and with_residual and bool(residual.chart.series)
 
     def _write_subtitle(self) -> None:
         if self._judged is None or self._sight is None:
