@@ -19,30 +19,32 @@ from advisor.printable import printable
 from advisor.problems import ConfigurationError, UnusableInputError
 
 COMMANDS = {
-    "demo": "The bundled aircraft flies the paper's campaign over a real link, the advisor advises.",
+    "demo": "Fly the bundled aircraft through the paper's campaign over a real link, with advice.",
     "live": "Advise on a live link.",
-    "replay": "The same screens on a log, with pause, speed and jump.",
-    "analyze": "No screen: every manoeuvre's verdict, the estimates, stop or continue.",
+    "replay": "Play a log on the screens of a live flight, with pause, speed and jump.",
+    "serve": "Show the screens of live and replay in a browser, for several viewers.",
+    "analyze": "Print every manoeuvre's verdict, the estimates, and stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
-    "export": "Channels, manoeuvres, estimates and residuals for other tools.",
-    "batch": "Many flights: every log analyzed once, tables and changes over all of them.",
-    "report": "One self-contained page of a flight, for people who were not there.",
-    "doctor": "Is this telemetry good enough, before flying; what to change if not.",
-    "study": "The paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
-    "locate": "Where settings and recordings are kept.",
+    "export": "Write channels, manoeuvres, estimates and residuals for other tools.",
+    "batch": "Analyze many logs: one table of flights, one of manoeuvres, changes over time.",
+    "report": "Write one self-contained page about a flight, for people who were not there.",
+    "doctor": "Check before a flight whether the telemetry is good enough; say what to change.",
+    "study": "Repeat the paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
+    "locate": "Print where settings and recordings are kept.",
 }
-"""Name to the line in ``advisor --help``; kept here so that help imports no command."""
+"""Command name to its line in ``advisor --help``. The lines stand here so that the help imports no
+command."""
 
 
 class LazyCommands(click.Group):
     """A group whose commands live in ``advisor.commands`` and are imported on demand."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names in the order of a flight test: fly, look back, compare, prepare."""
+        """Return names in the order of a flight test: fly, look back, compare, prepare."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Import one command, or None when there is no such name."""
+        """Import one command; None for an unknown name."""
         if name not in COMMANDS:
             return None
         command = import_module(f"advisor.commands.{name}").command
@@ -68,8 +70,8 @@ def advisor() -> None:
 
 
 def main() -> None:
-    """Run the command line; every error a user may meet becomes one sentence and an exit code."""
-    # Matrices here are small: threads of the linear algebra library cost far more than they bring.
+    """Run the command line. Every error that a user may meet becomes one sentence and an exit code."""
+    # Matrices here are small: threads of the linear algebra library cost far more than they gain.
     for library in ("OPENBLAS", "OMP", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     speak_plainly()
@@ -80,7 +82,7 @@ def main() -> None:
 
 
 def _run() -> int:
-    """Call the command that the user names; what click would print or exit for is raised instead."""
+    """Call the command that the user names. Raise every message or exit that click would handle itself."""
     with advisor.make_context("advisor", sys.argv[1:]) as context:
         code = advisor.invoke(context)
     sys.stdout.flush()
@@ -88,7 +90,7 @@ def _run() -> int:
 
 
 def _ended_by(run: Callable[[], int]) -> int:
-    """Exit code of the run, or of the error that has ended the run, which is told."""
+    """Return the exit code of ``run``. Print the error that ended it, if any."""
     try:
         return run()
     except click.exceptions.Exit as end:
@@ -108,7 +110,7 @@ def _ended_by(run: Callable[[], int]) -> int:
         _tell(str(error))
         return UNUSABLE
     except (BrokenPipeError, SystemExit):
-        # The reader of our output (head, less) went away, which rich answers with SystemExit.
+        # The reader of the output (head, less) went away, which rich answers with SystemExit.
         return 0
     except OSError as error:
         where = f" ({printable(os.fsdecode(error.filename))})" if error.filename else ""
@@ -128,13 +130,14 @@ def _ended_by(run: Callable[[], int]) -> int:
 
 
 def _tell(sentence: str) -> None:
-    """Write to standard error, where somebody may listen."""
+    """Write to standard error, unless standard error is closed."""
     with suppress(OSError):
         click.echo(sentence, err=True)
 
 
 def _let_go(stream: TextIO) -> None:
-    """Flush a stream; what nobody can take is thrown away, before the interpreter's end stumbles over it."""
+    """Flush a stream. Drop text that nobody can take, so that the interpreter's shutdown does not fail on
+    it."""
     try:
         stream.flush()
     except OSError:

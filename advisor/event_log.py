@@ -5,12 +5,12 @@ from collections.abc import Iterable
 
 
 class EventLog:
-    """Collects sentences and forgets the oldest.
+    """Collects sentences and drops the oldest.
 
     Parameters
     ----------
     kept
-        How many sentences are kept.
+        Number of sentences that are kept.
     """
 
     def __init__(self, kept: int) -> None:

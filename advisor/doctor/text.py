@@ -1,4 +1,4 @@
-"""The findings as people read them: the verdict first, then what to change, then the tables."""
+"""The findings for people: first the verdict, then the remedies, then the tables."""
 
 import math
 
@@ -41,8 +41,8 @@ class ExaminationText:
             yield Text()
             yield Text(
                 f"Expected errors of one 3-2-1-1, steps of {found.expectation.unit_s:.2f} s and "
-                f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.belief.source}, "
-                f"natural frequency {frequency(found.belief.model):.1f} rad/s. "
+                f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.assumed.source}, "
+                f"natural frequency {frequency(found.assumed.model):.1f} rad/s. "
                 "Half of the 95 % interval (1.96 standard deviations):"
             )
             for name in PARAMETERS:
@@ -55,7 +55,7 @@ class ExaminationText:
         vehicle = self._findings.vehicle
         if vehicle is None:
             return "vehicle    none heard"
-        return f"vehicle    {vehicle}, firmware {vehicle.firmware or 'not told'}"
+        return f"vehicle    {vehicle}, firmware {vehicle.firmware or 'unknown'}"
 
     def _elevator(self) -> str:
         elevator = self._findings.elevator
@@ -100,7 +100,7 @@ class ExaminationText:
 
 
 def _told(limit: Limit) -> list[Text]:
-    """A limit, what to do, and what it costs."""
+    """Return the lines of a defect: its text, its remedy and its cost."""
     lines = [Text(f"  {'✗' if limit.stops else '!'} {limit.text}."), Text(f"    -> {limit.fix}.")]
     worst = sorted(limit.std_ratio.items(), key=lambda item: -item[1])[:3]
     notable = [f"{name} {ratio:.1f}" for name, ratio in worst if ratio >= _NOTABLE_COST]

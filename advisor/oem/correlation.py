@@ -14,8 +14,8 @@ HIGH_CORRELATION = 0.9
 def autocorrelation(residual: FloatArray, lags: int) -> FloatArray:
     """Estimate the autocorrelation of a residual at whole numbers of samples.
 
-    The estimate is the biased one, r_k = Σ v_i v_{i+k} / Σ v_i², with v the residual less its mean
-    (Box, Jenkins and Reinsel, *Time Series Analysis*, section 2.1). Samples count as evenly spaced.
+    The estimate is biased: r_k = Σ v_i v_{i+k} / Σ v_i². Here v is the residual less its mean.
+    Source: Box, Jenkins and Reinsel, *Time Series Analysis*, section 2.1. Samples count as evenly spaced.
 
     Parameters
     ----------

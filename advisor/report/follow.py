@@ -21,12 +21,12 @@ from advisor.vehicle_time import CLOCK, clock
 def follow(
     batches: Iterator[Sequence[Columns]], campaign: Campaign, say: Callable[[str], object]
 ) -> CampaignState:
-    """Feed a campaign to the end of a stream and say every verdict.
+    """Feed a campaign to the end of a stream and print every verdict.
 
     Parameters
     ----------
     batches
-        What arrives, in order; empty batches are pauses.
+        Messages in order of arrival. Empty batches are pauses.
     say
         Takes one line of text.
     """
@@ -43,7 +43,7 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
         case FlightBegan(_, name):
             say(f"{name}: its times count from its own boot")
         case ManeuverAgain(maneuver, takes_place):
-            better = ", and this record takes the place" if takes_place else ""
+            better = ", and this record replaces it" if takes_place else ""
             at = clock(maneuver.span.start_s)
             say(f"{maneuver.number:2d}  {at:>7}  comes again and counts once{better}")
         case VehicleFound(vehicle):

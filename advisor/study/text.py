@@ -6,7 +6,6 @@ from textwrap import wrap
 import numpy as np
 
 from advisor.aircraft import PARAMETERS, CampaignPlan
-from advisor.report.text import SYMBOLS
 from advisor.study.advised import PLAN, Saving
 from advisor.study.changed import BEFORE, LOSS, Detection
 from advisor.study.flaws import NOISE_PERCENT, Flaws
@@ -46,8 +45,8 @@ def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
 
 
 def table(rows: Sequence[Row]) -> list[str]:
-    """A block a rule and noise: the median error, the range of the middle 80 %, the paper's error."""
-    names = "".join(f"{SYMBOLS[name]:>{_CELL}}" for name in PARAMETERS)
+    """Return a block a rule and noise: the median error, the range of the middle 80 %, the paper's error."""
+    names = "".join(f"{_symbol(name):>{_CELL}}" for name in PARAMETERS)
     lines = [
         *_wrapped(
             "Nominal error in % at the stop: median, 10 % and 90 % of the campaigns, and the paper's. "
@@ -68,14 +67,19 @@ def table(rows: Sequence[Row]) -> list[str]:
     return [*lines, ""]
 
 
+def _symbol(name: str) -> str:
+    """Return a parameter's symbol, short enough for a column: ``M_δe``."""
+    return name.replace("_alpha", "_α").replace("_delta_e", "_δe")
+
+
 def _numbers(label: str, values: Iterable[float]) -> str:
-    """A line of the table: one number a parameter."""
+    """Return a line of the table: one number a parameter."""
     cells = (f"{value:.2f}" if value < 1000.0 else f"{value:.2g}" for value in values)
     return f"{f'  {label}':<{_LABEL}}" + "".join(f"{cell:>{_CELL}}" for cell in cells)
 
 
 def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
-    """A sentence a row on the paper's single realisation within our distribution."""
+    """Return a sentence a row on the paper's single realisation within our distribution."""
     lines = ["Where the paper's single campaign lies among ours:"]
     for row in rows:
         if row.paper is None:
@@ -97,7 +101,7 @@ def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
 
 
 def tolerances(rows: Sequence[Row]) -> list[str]:
-    """How often the rule `information` was wrong."""
+    """Return how often the rule `information` was wrong."""
     lines = []
     for row in rows:
         if row.outside_tolerance_percent is not None:
@@ -129,7 +133,7 @@ def flaws(found: Flaws) -> list[str]:
 
 
 def readings(results: Iterable[ReadingResult]) -> list[str]:
-    """How other readings of the paper fare."""
+    """Return how other readings of the paper fare."""
     lines = _wrapped(
         "Other readings of the rules: median needed, never, share of campaigns that need exactly what the "
         "paper's did"
@@ -143,7 +147,7 @@ def readings(results: Iterable[ReadingResult]) -> list[str]:
 
 
 def savings(found: Sequence[Saving], campaigns: int) -> list[str]:
-    """Manoeuvres needed with and without the advice."""
+    """Return manoeuvres needed with and without the advice."""
     lines = _wrapped(
         f"Manoeuvres until the response is known to {PLAN.tolerance_percent:g} % of its peak, the named "
         f"derivatives accordingly (rule information), {campaigns} campaigns each, repeating the standard "
@@ -162,7 +166,7 @@ def savings(found: Sequence[Saving], campaigns: int) -> list[str]:
 
 
 def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
-    """Changes noticed, and false alarms."""
+    """Return changes noticed, and false alarms."""
     lines = [f"Something changed, {campaigns} campaigns each:"]
     for one in found:
         if one.lost is None:
@@ -201,7 +205,7 @@ def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
 
 
 def _wrapped(text: str) -> list[str]:
-    """A sentence in lines of 80 columns, those after the first indented; no number without its %."""
+    """Wrap a sentence into lines of 80 columns, those after the first indented; no number without its %."""
     told = text.lstrip().replace(" %", "\N{NO-BREAK SPACE}%")
     begins = " " * (len(text) - len(text.lstrip()))
     lines = wrap(told, _COLUMNS, initial_indent=begins, subsequent_indent="    ")

@@ -193,7 +193,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         if isinstance(self.screen, Face):
             self.screen.say(text, seconds)
         else:
-            self.notify(text, timeout=seconds)
+            self.notify(text, timeout=seconds, markup=False)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the replay's actions only in a replay, the link's only on a link."""

@@ -1,4 +1,4 @@
-"""What a pane holds, as rows with a header: CSV for the clipboard and for files."""
+"""Rows with a header, and CSV made from them for the clipboard and for files."""
 
 import csv
 from collections.abc import Iterable

@@ -1,4 +1,4 @@
-"""Pictures of a terminal as SVG that looks the same wherever it is seen."""
+"""Pictures of a terminal as SVG that looks alike on every machine."""
 
 import io
 import re
@@ -23,12 +23,12 @@ _RUNS = re.compile(
 
 
 def drawn(svg: str) -> str:
-    """The picture with dots and blocks drawn and no font fetched: it looks the same wherever it is seen."""
+    """Draw dots and blocks as shapes and remove fonts: the picture looks alike on every machine."""
     return _TEXT.sub(_shapes, _FONTS.sub("", svg))
 
 
 def _shapes(line: re.Match[str]) -> str:
-    """A piece of a line of the terminal: words where they begin, blocks and dots as shapes."""
+    """Set a piece of a line of the terminal: words where they begin, blocks and dots as shapes."""
     drawn_runs = []
     for run in _RUNS.finditer(unescape(line["text"])):
         x, width = float(line["x"]) + run.start() * _CELL_WIDTH, len(run[0]) * _CELL_WIDTH

@@ -1,6 +1,5 @@
-"""Taking what a pane shows away: into the clipboard, or into files beside the log."""
+"""A pane as text for the clipboard, and as files in the folder of the log."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from rich.style import Style
@@ -15,7 +14,7 @@ from advisor.tui.svg import picture_of
 from advisor.tui.view import View
 
 WITHOUT_LOG = Path("advisor")
-"""Beside it, in the current folder, files are written where nothing is recorded."""
+"""Stands for a log where nothing is recorded: files go into the current folder under this name."""
 
 
 def pane_name(pane: Pane, view: View) -> str:
@@ -25,31 +24,39 @@ def pane_name(pane: Pane, view: View) -> str:
     return f"{name}-{judged.maneuver.number}" if judged is not None else name
 
 
-def beside_which(logs: Sequence[Path], pane: Pane, view: View) -> Path:
-    """Choose the log to write beside: of the selected manoeuvre where the pane shows it, else the newest."""
-    if not logs:
+def log_of(pane: Pane, view: View) -> Path:
+    """Choose the log that names the files: that of the selected manoeuvre, else the newest."""
+    if not view.logs:
         return WITHOUT_LOG
     judged = view.judged if pane.OF_SELECTED else None
     flight = judged.maneuver.flight if judged is not None else view.state.flight
-    return logs[min(flight, len(logs) - 1)]
+    return view.logs[min(flight, len(view.logs) - 1)]
 
 
-def save(pane: Pane, log: Path, name: str) -> str:
-    """Write a pane's rows as CSV or its text, and its plots as SVG; a sentence says where, or why not.
-
-    Files of the same name that were saved before are replaced; what is half written never has the name.
-    """
-    stem = log.parent / f"{log.stem}.{name}"
-    contents = {".csv" if pane.rows() is not None else ".txt": pane.text()}
+def files_of(pane: Pane, view: View) -> dict[str, str]:
+    """Give the files that hold a pane by name: CSV of its rows or its text, and SVG of its plots."""
+    log, name = log_of(pane, view), pane_name(pane, view)
+    stem = f"{log.stem}.{name}"
+    files = {f"{stem}.csv" if pane.rows() is not None else f"{stem}.txt": pane.text()}
     if picture := picture_of_plots(pane, f"{log.name}  {pane.TITLE}  {pane.border_subtitle or ''}".strip()):
-        contents[".svg"] = picture
+        files[f"{stem}.svg"] = picture
+    return files
+
+
+def save(pane: Pane, view: View) -> str:
+    """Write the files of a pane into the folder of the log; return a sentence that says where, or why not.
+
+    A file of an earlier save is replaced. A file that is half written never carries the name.
+    """
+    folder, files = log_of(pane, view).parent, files_of(pane, view)
+    names = " and ".join(map(printable, files))
     try:
-        for ending, text in contents.items():
-            write_atomically(stem.with_name(stem.name + ending), text)
+        for file, text in files.items():
+            write_atomically(folder / file, text)
     except OSError as error:
-        folder = printable(str(stem.parent))
-        return f"{stem.name} cannot be saved in {folder}: {error.strerror or error}; key c copies instead"
-    return f"saved {printable(str(stem))}{' and '.join(contents)}"
+        place = printable(str(folder))
+        return f"{names} cannot be written in {place}: {error.strerror or error}; key c copies instead"
+    return f"saved {names} in {printable(str(folder.absolute()))}"
 
 
 def picture_of_plots(pane: Pane, title: str) -> str:
@@ -66,7 +73,7 @@ def picture_of_plots(pane: Pane, title: str) -> str:
 
 
 def _joined(plots: list[Plot], y: int, around: Region, paper: Style) -> Strip:
-    """One line of plots that stand side by side."""
+    """Join one line of the plots that stand side by side."""
     pieces, x = [], around.x
     for plot in plots:
         pieces += [Strip.blank(plot.region.x - x, paper), plot.render_line(y - plot.region.y)]

@@ -93,7 +93,7 @@ async def stage(
         settings,
         logs,
     )
-    async with app.run_test(size=size) as pilot:
+    async with app.run_test(size=size, notifications=True) as pilot:
         here = Stage(app, pilot, campaign, source)
         await here.until(lambda: app.view.state.vehicle == campaign.state.vehicle and app.is_attached)
         yield here

@@ -5,17 +5,24 @@ from io import StringIO
 from pathlib import Path
 
 import numpy as np
+import pytest
+from textual.app import App
 
 from advisor.tui.rows import Rows
 from advisor.tui.settings import Settings
 from tests.tui import flights
-from tests.tui.stage import stage
+from tests.tui.stage import Stage, stage
 
 ENGINEER = Settings(screen="engineer")
 
 
 def table(text: str) -> list[dict[str, str]]:
     return list(csv.DictReader(StringIO(text)))
+
+
+def notice(here: Stage) -> str:
+    """What comes up above the last line, without its breaks."""
+    return "".join(line.partition("▌")[2].strip(" ┃") for line in here.page().split("\n"))
 
 
 def test_what_is_not_known_stands_as_nothing_in_a_row():
@@ -25,7 +32,7 @@ def test_what_is_not_known_stands_as_nothing_in_a_row():
 
 
 async def test_every_pane_can_be_copied():
-    async with stage(flights.state(4), settings=ENGINEER, size=(200, 60)) as here:
+    async with stage(flights.state(4), settings=ENGINEER, size=(80, 24)) as here:
         copied = {}
         for key in "1234567890h":
             await here.press(key, "c")
@@ -61,5 +68,32 @@ async def test_a_place_that_cannot_be_written_is_one_sentence(tmp_path: Path):
     nowhere = tmp_path / "gone" / "flight.tlog"
     async with stage(flights.state(2), settings=ENGINEER, size=(200, 60), logs=[nowhere]) as here:
         await here.press("h", "s")
-        said = f"history cannot be saved in {nowhere.parent}: No such file or directory; key c copies instead"
+        said = "flight.history.csv and flight.history.svg cannot be written in"
         await here.until(lambda: said in " ".join(here.page().split()))
+        assert "No such file or directory; key c copies instead" in " ".join(here.page().split())
+
+
+async def test_a_long_path_is_told_in_full_on_a_narrow_terminal(tmp_path: Path):
+    folder = tmp_path / f"[bold]{'a' * 70}"
+    folder.mkdir()
+    logs = [folder / "flight.tlog"]
+    async with stage(flights.state(2), settings=ENGINEER, size=(80, 24), logs=logs) as here:
+        await here.press("h", "s")
+        await here.until(lambda: folder.name in notice(here))
+
+
+async def test_a_browser_is_offered_the_files_and_the_server_keeps_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    offered: dict[str, str] = {}
+    monkeypatch.setattr(App, "is_web", True)
+    monkeypatch.setattr(
+        App, "deliver_text", lambda app, file, save_filename: offered.update({save_filename: file.read()})
+    )
+    async with stage(
+        flights.state(2), settings=ENGINEER, size=(80, 24), logs=[tmp_path / "flight.tlog"]
+    ) as here:
+        await here.press("h", "s", "c")
+        assert list(offered) == ["flight.history.csv", "flight.history.svg"]
+        assert list(tmp_path.iterdir()) == []
+        assert here.app.clipboard == ""

@@ -43,12 +43,12 @@ grow at the cost of the other. An input with other frequencies tells them apart.
 """
 
     def compose(self) -> ComposeResult:
-        """Text that scrolls."""
+        """Lay out a text that scrolls."""
         with VerticalScroll():
             yield Static("No manoeuvre has ended yet.", id="matrix")
 
     def on_mount(self) -> None:
-        """Nothing is shown yet."""
+        """Begin without an estimate."""
         super().on_mount()
         self._joint: Estimate | None = None
         self._single: Estimate | None = None
@@ -73,7 +73,7 @@ grow at the cost of the other. An input with other frequencies tells them apart.
         self._write()
 
     def rows(self) -> Rows | None:
-        """One row for each pair and estimate."""
+        """Give one row for each pair of parameters and each estimate."""
         if self._number is None:
             return None
         rows: list[tuple[object, ...]] = []

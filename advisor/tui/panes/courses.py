@@ -32,12 +32,12 @@ drifts shows an aircraft that changes.
 """
 
     def compose(self) -> ComposeResult:
-        """One plot a parameter."""
+        """Lay out one plot for each parameter."""
         for name in NAMES:
             yield Plot(history_chart(None, name), id=f"course-{name}")
 
     def on_mount(self) -> None:
-        """Nothing is shown yet."""
+        """Begin without an estimate."""
         super().on_mount()
         self._view: View | None = None
         self._shown: tuple[object, ...] = ()
@@ -63,7 +63,7 @@ drifts shows an aircraft that changes.
             self.subtitle("by manoeuvre: ├┤ estimate ± 95 %  ── joint  ╌╌ aircraft file")
 
     def rows(self) -> Rows:
-        """One row for each manoeuvre and parameter."""
+        """Give one row for each manoeuvre and parameter."""
         header = (
             "parameter",
             "unit",
@@ -84,7 +84,7 @@ drifts shows an aircraft that changes.
 
 
 def _small(chart: Chart, *, foot: bool) -> Chart:
-    """Leave away what the pane says once for all plots."""
+    """Remove the names that the frame of the pane gives for all plots."""
     series = tuple(replace(one, name="") for one in chart.series)
     levels = tuple(replace(one, name="") for one in chart.levels)
     return replace(chart, x_label="", foot=foot, series=series, levels=levels)

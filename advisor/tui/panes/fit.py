@@ -30,6 +30,8 @@ from advisor.tui.view import View
 
 _ROWS_FOR_ONE = 11
 """Rows that an output and its residual need where several stand above one another."""
+_LEAST_ROWS_FOR_BOTH = 8
+"""Rows below which an output has no room for its residual."""
 _ROWS_OF_ELEVATOR = 3
 _SHARE_OF_ELEVATOR = 8
 """The elevator takes one row in eight, and never less than ``_ROWS_OF_ELEVATOR``."""
@@ -60,7 +62,7 @@ it away.
 """
 
     def compose(self) -> ComposeResult:
-        """All plots; those without room are hidden."""
+        """Lay out all plots; those without room are hidden."""
         yield Plot(no_fit(ELEVATOR, ""), id="fit-elevator")
         for name in OUTPUTS:
             yield Plot(no_fit(name, "no manoeuvre has ended yet."), id=f"fit-{name}", classes="fit")
@@ -99,7 +101,7 @@ it away.
         self._over_number = number
 
     def rows(self) -> Rows | None:
-        """One row for each sample of each channel, whatever part is in sight."""
+        """Give one row for each sample of each channel, in sight or not."""
         return rows_of_fit(self._judged, self._over) if self._judged is not None else None
 
     def on_resize(self, event: Resize) -> None:
@@ -141,7 +143,7 @@ it away.
             self._draw()
 
     def _stamps(self) -> FloatArray:
-        """Stamps of the output at the top, which the cursor stands on; of the elevator where it has none."""
+        """Return the stamps on which the cursor stands: of the output at the top, else of the elevator."""
         there = self._outputs()
         for name in (there[self._first % len(there)], ELEVATOR):
             curve = measured(self._judged, name) if self._judged is not None else None
@@ -156,14 +158,15 @@ it away.
         count = min(max(1, (self.size.height - elevator) // _ROWS_FOR_ONE), len(there))
         shown = [there[(self._first + k) % len(there)] for k in range(count)]
         lowest = max(shown, key=OUTPUTS.index)
+        residuals = self.size.height - elevator >= _LEAST_ROWS_FOR_BOTH
         self._draw_elevator(elevator)
         for name in OUTPUTS:
-            self._draw_output(name, name in shown, lowest=name == lowest)
+            self._draw_output(name, name in shown, lowest=name == lowest, with_residual=residuals)
         self.border_title = self.TITLE if count == len(there) else f"{self.TITLE}  (o: next output)"
         self._write_subtitle()
 
     def _outputs(self) -> list[str]:
-        """Outputs of the fit; without one, a single output says why."""
+        """List the outputs of the fit; without a fit, the one output that says why."""
         fits = fits_of(self._judged) if self._judged is not None else {}
         return [name for name in OUTPUTS if name in fits] or [OUTPUTS[0]]
 
@@ -175,15 +178,15 @@ it away.
             chart = elevator_chart(self._judged, self._over)
             plot.chart = in_sight(chart, self._sight.window.shown, self._sight.cursor, foot=False)
 
-    def _draw_output(self, name: str, shown: bool, *, lowest: bool) -> None:
+    def _draw_output(self, name: str, shown: bool, *, lowest: bool, with_residual: bool) -> None:
         fit, residual = self.query_one(f"#fit-{name}", Plot), self.query_one(f"#residual-{name}", Plot)
         if self._judged is not None and self._sight is not None:
             window, cursor = self._sight.window.shown, self._sight.cursor
             charts = fit_chart(name, self._judged, self._over), residual_chart(name, self._judged, self._over)
-            fit.chart = in_sight(charts[0], window, cursor, foot=False)
+            fit.chart = in_sight(charts[0], window, cursor, foot=lowest and not with_residual)
             residual.chart = in_sight(charts[1], window, cursor, foot=lowest)
         fit.display = shown
-        residual.display = shown and bool(residual.chart.series)
+        residual.display = shown and with_residual and bool(residual.chart.series)
 
     def _write_subtitle(self) -> None:
         if self._judged is None or self._sight is None:

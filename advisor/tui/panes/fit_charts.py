@@ -1,4 +1,4 @@
-"""What the fit pane draws of a manoeuvre, and of a second one laid over it."""
+"""Charts of a manoeuvre for the fit pane, alone and with a second manoeuvre laid over it."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""How one parameter's estimate went from manoeuvre to manoeuvre."""
+"""The course of one parameter's estimate from manoeuvre to manoeuvre."""
 
 from dataclasses import dataclass
 
@@ -54,7 +54,7 @@ def course(view: View | None, name: str) -> Course:
 
 
 def history_chart(view: View | None, name: str) -> Chart:
-    """Each manoeuvre's value with its 95 % interval, the joint estimate and the prior as levels."""
+    """Draw each manoeuvre's value with its 95 % interval, and the joint estimate and the prior as levels."""
     quantity, of = PARAMETERS[name], course(view, name)
     if len(of.numbers) == 0:
         return Chart(quantity.label, "manoeuvre", why_empty="no manoeuvre has given an estimate of it yet.")

@@ -1,4 +1,4 @@
-"""What all panes have in common."""
+"""The base of all panes."""
 
 from typing import ClassVar
 
@@ -20,7 +20,7 @@ class Pane(Part, Vertical):
     OF_SELECTED: ClassVar[bool] = False
     """Whether the pane shows the selected manoeuvre."""
     HELP = ""
-    """What the pane shows and how to use it, for the help key."""
+    """Content and use of the pane, for the help key."""
     can_focus = True
     """Unless something in it takes the keys: a table, a text that scrolls."""
 

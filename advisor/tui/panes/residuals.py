@@ -17,7 +17,8 @@ from advisor.tui.view import View
 from advisor.tui.words import channel
 
 _LAGS_SHARE = 4
-"""Lags up to a quarter of the record: beyond, too few products are left to average (Box and Jenkins)."""
+"""Share of the record that the longest lag takes: a quarter (Box and Jenkins). A longer lag averages too few
+products."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,11 +26,11 @@ class Whiteness:
     """The autocorrelation of one residual against that of white noise."""
 
     lag_s: FloatArray
-    """Shape (m,), from one sample on."""
+    """Shape (m,), rising; the first is one sample."""
     r: FloatArray
     """Shape (m,), autocorrelation at each lag."""
     bound: float
-    """White noise stays within ± this at 95 % of the lags."""
+    """Half-width of the band that white noise keeps at 95 % of the lags."""
 
     @classmethod
     def of(cls, fit: ChannelFit) -> "Whiteness":
@@ -62,7 +63,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
 """
 
     def compose(self) -> ComposeResult:
-        """One plot an output."""
+        """Lay out one plot for each output."""
         for name in OUTPUTS:
             yield Plot(_nothing(name, "no manoeuvre has ended yet."), id=f"white-{name}")
 
@@ -96,7 +97,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
             self.query_one(f"#white-{name}").display = name in shown
 
     def rows(self) -> Rows | None:
-        """One row for each output and lag."""
+        """Give one row for each output and lag."""
         if not self._fits:
             return None
         rows = []

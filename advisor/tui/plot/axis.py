@@ -106,7 +106,7 @@ def round_axis(values: list[FloatArray], intervals: int) -> Axis:
 
 
 def exact_axis(low: float, high: float, intervals: int) -> Axis:
-    """Choose ticks for a range that keeps its ends, about ``intervals`` steps, at least one tick.
+    """Choose ticks for a range that keeps its ends, about ``intervals`` steps, at least three ticks.
 
     Parameters
     ----------
@@ -116,12 +116,12 @@ def exact_axis(low: float, high: float, intervals: int) -> Axis:
         Wanted number of steps of 1, 2 or 5 times a power of ten, at least 1.
     """
     axis = Axis(low, high, _round_up((high - low) / max(intervals, 1)))
-    while not axis.ticks:
+    while len(axis.ticks) < 3:
         axis = Axis(low, high, _round_up(axis.step * 0.4))
     return axis
 
 
 def _round_up(step: float) -> float:
-    """The next of 1, 2 and 5 times a power of ten."""
+    """Return the next of 1, 2 and 5 times a power of ten."""
     magnitude = 10.0 ** floor(log10(step))
     return next(m * magnitude for m in (1.0, 2.0, 5.0, 10.0) if m * magnitude >= step * (1.0 - 1e-9))

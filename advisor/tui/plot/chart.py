@@ -1,4 +1,4 @@
-"""What a plot shows: series with units, levels, and a sentence for when there is nothing."""
+"""The content of a plot: series with units, levels, and a sentence for when there is nothing."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -34,7 +34,7 @@ class Painting:
     """None where no curve is painted."""
 
     def x_at(self, column: int, width: int) -> float | None:
-        """Value of x under a cell of the plot; None where no curve is painted."""
+        """Return the value of x under a cell of the plot; None where no curve is painted."""
         if self.x_axis is None:
             return None
         share = (column - self.gutter) / max(width - self.gutter - 1, 1)
@@ -116,7 +116,7 @@ def _cut(series: Series, low: float, high: float) -> Series:
 
 
 def _heights(chart: Chart) -> list[FloatArray]:
-    """Everything that the y axis has to hold."""
+    """Collect the values that the y axis has to hold."""
     held = [np.array([level.y]) for level in chart.levels]
     for series in chart.series:
         half = 0.0 if series.half is None else series.half
@@ -150,7 +150,7 @@ def _draw_series(canvas: Canvas, series: Series) -> None:
 
 
 def _runs(text: str, ink: NDArray[np.int8], inks: list[Style], base: Style) -> list[Segment]:
-    """One segment for each stretch of cells in one colour."""
+    """Cut a line into one segment for each stretch of cells in one colour."""
     edges = [0, *(np.flatnonzero(np.diff(ink)) + 1).tolist(), len(text)]
     styles = [*inks, base]
     return [Segment(text[i:j], styles[ink[i]]) for i, j in pairwise(edges)]

@@ -1,4 +1,4 @@
-"""What a cursor reads of a chart."""
+"""Values of a chart at its cursor."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What part of a time axis is looked at, and where a cursor stands on it."""
+"""The part of a time axis in sight, and the place of a cursor on the axis."""
 
 from dataclasses import dataclass, replace
 

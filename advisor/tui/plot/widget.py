@@ -40,7 +40,7 @@ class Plot(Widget):
 
     @property
     def chart(self) -> Chart:
-        """What is shown."""
+        """The chart in sight."""
         return self._chart
 
     @chart.setter
@@ -51,11 +51,11 @@ class Plot(Widget):
             self.refresh()
 
     def on_resize(self) -> None:
-        """A new size needs new ticks."""
+        """Paint anew: another size needs other ticks."""
         self._painting = None
 
     def notify_style_update(self) -> None:
-        """A new theme needs new colours."""
+        """Paint anew: another theme needs other colours."""
         super().notify_style_update()
         self._painting = None
 
@@ -94,7 +94,7 @@ class Plot(Widget):
             self.post_message(self.Wheeled(x, up, event.shift))
 
     def render_line(self, y: int) -> Strip:
-        """One line of the painted chart."""
+        """Return one line of the painted chart."""
         strips = self._painted().strips
         return strips[y] if y < len(strips) else Strip.blank(self.size.width, self.rich_style)
 
@@ -105,6 +105,6 @@ class Plot(Widget):
         return self._painting
 
     def _inks(self, base: Style) -> list[Style]:
-        """The theme's colours; as component classes they would be looked up anew at every change of focus."""
+        """Look the theme's colours up. Component classes would be looked up at every change of focus."""
         colours = self.app.theme_variables
         return [base + Style(color=colours[f"ink-{ink}"], bold=ink in _BOLD) for ink in INKS]

@@ -1,8 +1,6 @@
 """The engineer's screen: every number behind the word."""
 
-from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 from textual.app import ComposeResult
 from textual.containers import Container
@@ -51,7 +49,7 @@ _LOW_TABLE = 38
 
 
 class EngineerScreen(Face, PaneActions):
-    """Eleven panes: eight at once on a wide terminal, one beside or below the manoeuvres on a small one.
+    """Eleven panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
 
     The panes of the middle column share one place: fit, residuals, correlation, history.
     """
@@ -65,7 +63,8 @@ focus. On a small terminal one pane is shown with the manoeuvres. On a wide one 
 residuals, correlation and history share one place.
 
 **c** copies the pane that has the focus to the clipboard: its numbers as CSV, its words as text. **s**
-saves the same into a file beside the log or the recording, and its plots as a picture (SVG).
+saves the same into a file beside the log or the recording, and its plots as a picture (SVG). A browser
+is offered the files instead.
 """
 
     def __init__(self) -> None:
@@ -76,7 +75,7 @@ saves the same into a file beside the log or the recording, and its plots as a p
         self._middle: type[Pane] = Fit
 
     def compose(self) -> ComposeResult:
-        """The panes in three columns; the style sheet shows what there is room for."""
+        """Lay out the panes in three columns; the style sheet shows those that have room."""
         yield StatusLine()
         yield Alarm()
         titles = [pane.TITLE.removesuffix(" and link") for pane in PANES]
@@ -89,7 +88,7 @@ saves the same into a file beside the log or the recording, and its plots as a p
         yield KeysLine()
 
     def on_mount(self) -> None:
-        """Begin with the fit beside the manoeuvres."""
+        """Begin with the fit next to the manoeuvres."""
         self.action_choose(PANES.index(Fit) + 1)
         self.query_one("Maneuvers DataTable").focus()
 
@@ -154,10 +153,6 @@ saves the same into a file beside the log or the recording, and its plots as a p
         around = self.focused.ancestors_with_self if self.focused else ()
         focused = next((node for node in around if isinstance(node, Pane)), None)
         return focused or self.query_one(self._chosen)
-
-    def logs(self) -> Sequence[Path]:
-        """Return the logs and recordings, flight by flight, beside which files are written."""
-        return self._view.logs if self._view else ()
 
     def action_exclude(self) -> None:
         """Take the selected manoeuvre out of every decision, or in again; ask why."""

@@ -1,4 +1,4 @@
-"""What both faces have in common."""
+"""The base of both faces."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -43,7 +43,7 @@ class Face(Screen[None]):
         if line.has_room_for(text):
             line.say(text, seconds)
         else:
-            self.notify(text, timeout=seconds)
+            self.notify(text, timeout=seconds, markup=False)
 
     def show(self, view: View) -> None:
         """Update every part that wants to be to a new moment."""

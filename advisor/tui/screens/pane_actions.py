@@ -1,13 +1,13 @@
-"""What keys do to the pane in front: copy it, save it, lay a manoeuvre over its plots."""
+"""Actions of keys on one pane: copy, save, bring the next output up, lay a manoeuvre over another one."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Callable
+from io import StringIO
 from typing import TYPE_CHECKING
 
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.pane import Pane
-from advisor.tui.taking import beside_which, pane_name, save
+from advisor.tui.taking import files_of, pane_name, save
 from advisor.tui.view import View
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ else:
     Base = object
 
 _SAY_S = 8.0
-"""A path needs longer to be read than a word."""
+"""Seconds for a sentence with a path in it: a path takes longer to read than a word."""
 
 
 class PaneActions(Base):
@@ -39,16 +39,15 @@ class PaneActions(Base):
         """Update what is visible."""
 
     @abstractmethod
-    def logs(self) -> Sequence[Path]:
-        """Return the logs and recordings, flight by flight, beside which files are written."""
-
-    @abstractmethod
     def say(self, text: str, seconds: float = 3.0) -> None:
         """Tell something for a while."""
 
     def action_copy(self) -> None:
         """Copy the pane to the clipboard of the terminal."""
         if self._view is None:
+            return
+        if self.app.is_web:
+            self.say("a browser's clipboard is out of reach; key s offers the pane as files", _SAY_S)
             return
         pane = self.pane_in_front()
         text = pane.text()
@@ -57,12 +56,17 @@ class PaneActions(Base):
         self.say(f"{what} Where the terminal has no OSC 52, press s.", _SAY_S)
 
     def action_save(self) -> None:
-        """Write the pane into files beside the log."""
+        """Write the pane into files in the folder of the log, or offer the files to a browser."""
         if self._view is None:
             return
         pane = self.pane_in_front()
-        log = beside_which(self.logs(), pane, self._view)
-        self.say(save(pane, log, pane_name(pane, self._view)), _SAY_S)
+        if not self.app.is_web:
+            self.say(save(pane, self._view), _SAY_S)
+            return
+        files = files_of(pane, self._view)
+        for name, text in files.items():
+            self.app.deliver_text(StringIO(text), save_filename=name)
+        self.say(f"your browser is offered {' and '.join(files)}", _SAY_S)
 
     def action_next_output(self) -> None:
         """Bring the next output of the fit to the top."""
