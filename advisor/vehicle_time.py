@@ -6,7 +6,7 @@ Documents and files that programs read give the vehicle's time in seconds since 
 from math import isfinite
 
 CLOCK = "minutes:seconds since the vehicle's boot"
-"""What the times that `clock` writes are, for headings and help."""
+"""Unit and origin of the times that `clock` writes, for headings and help."""
 
 
 def clock(seconds: float) -> str:

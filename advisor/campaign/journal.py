@@ -1,4 +1,4 @@
-"""The event log of a campaign: what happens, in sentences, each with the vehicle's time."""
+"""The event log of a campaign: sentences, each with the vehicle's time."""
 
 from math import inf, isfinite, nan
 
@@ -22,15 +22,15 @@ KEPT = 1000
 WIDTH = 7
 """Characters of a time: 999 minutes."""
 _LATE_S = 1.0
-"""A sentence that comes so much later than what it tells of says when that was, s: messages of one moment
-carry stamps that differ by less."""
+"""A sentence that comes so much later than its event names the event's time, s. The stamps of messages of one
+moment differ by less."""
 
 
 class Journal:
     """Writes sentences with their times, which never run backwards within one power-on.
 
-    A sentence stands at the time that it tells of, or at the newest time before it where that is later. Where
-    the vehicle's clock begins anew, a sentence says so.
+    A sentence stands at the time of its event, or at the newest time before it where that is later. Where the
+    vehicle's clock begins anew, a sentence says so.
     """
 
     def __init__(self) -> None:
@@ -52,18 +52,18 @@ class Journal:
         text
             One line.
         at_s
-            Vehicle time that the sentence tells of, s since boot; NaN: the newest time so far.
+            Vehicle time of the event, s since boot; NaN: the newest time so far.
         """
         when = f"at {clock(at_s)}, " if at_s < self._newest_s - _LATE_S else ""
         self._newest_s = max(self._newest_s, at_s) if isfinite(at_s) else self._newest_s
         self._log.add([f"{clock(self._newest_s):>{WIDTH}}  {when}{text}"])
 
     def write_of_past(self, text: str, at_s: float) -> None:
-        """Write a sentence that names by itself the time of what it tells of, ``at_s`` at the latest."""
+        """Write a sentence that names the time of its event itself; the event was over at ``at_s``."""
         self.write(text, max(at_s, self._newest_s))
 
     def take(self, event: FlightEvent) -> None:
-        """Write what an event of the flight means for the crew; other events are left to the campaign."""
+        """Write the sentence of an event of the flight; events without one are left to the campaign."""
         match event:
             case ModeChanged(mode, at_s):
                 self.write(f"mode {mode}", at_s)
@@ -88,12 +88,12 @@ class Journal:
                 )
 
     def _begin(self, text: str) -> None:
-        """Write that another clock counts now."""
+        """Begin another clock: times may be smaller than before, and ``text`` says so."""
         self._newest_s = -inf
         self.write(text)
 
     def _say(self, said: VehicleSaid) -> None:
-        """Write what a vehicle said, once where it repeats the very words."""
+        """Write a vehicle's text, once where the vehicle repeats it word for word."""
         last, self._last_said = self._last_said, said
         if last is not None and (said.text, said.system, said.component) == (
             last.text,

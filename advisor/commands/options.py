@@ -125,7 +125,7 @@ def parse_mark(text: str) -> "Mark":
 
 
 def _seconds(parts: Sequence[str]) -> float:
-    """Seconds of ``["80.4"]`` or of minutes and seconds, ``["1", "20.4"]``; NaN where it is no time."""
+    """Read seconds, ``["80.4"]``, or minutes and seconds, ``["1", "20.4"]``; NaN where it is no time."""
     try:
         *minutes, seconds = map(float, parts)
     except ValueError:

@@ -1,4 +1,4 @@
-"""What vehicles say in words: STATUSTEXT, whole again where a text came in chunks."""
+"""Texts of vehicles (STATUSTEXT), joined where a text came in chunks."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -82,14 +82,14 @@ def _paint(drawing: Drawing, one: Mapping[str, Any], limit: float) -> None:
 
 
 def _range(values: Sequence[float]) -> tuple[float, float]:
-    """Ends of the axis: all values with room around, and a factor of ten at least."""
+    """Return the ends of the axis: all values with room around, and a factor of ten at least."""
     low, high = 0.6 * min(values), 1.8 * max(values)
     widen = max(1.0, sqrt(10.0 * low / high))
     return low / widen, high * widen
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    """Values at 1, 2 and 5 times powers of ten, or at powers of ten alone where those are many."""
+    """Return the values at 1, 2 and 5 times powers of ten, or at powers of ten alone where those are many."""
     decades = range(floor(log10(low)), ceil(log10(high)) + 1)
     fine = [m * 10.0**k for k in decades for m in (1.0, 2.0, 5.0) if low <= m * 10.0**k <= high]
     return fine if len(fine) <= _MOST_TICKS else [v for v in fine if 10.0 ** round(log10(v)) == v]

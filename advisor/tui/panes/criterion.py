@@ -35,7 +35,7 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
 """
 
     def compose(self) -> ComposeResult:
-        """A line for each rule over the curves."""
+        """Lay out the rules' lines over the curves."""
         with VerticalScroll():
             yield HangingLines("No manoeuvre has ended yet.")
         yield Plot(_chart(None))

@@ -1,4 +1,4 @@
-"""Lines that are never cut: what has no room goes on below, under the text and not under its label."""
+"""Lines that are never cut: a text without room goes on below, under itself and not under its label."""
 
 from collections.abc import Iterable
 from functools import lru_cache
@@ -12,7 +12,7 @@ Labelled = tuple[str, str]
 """A label, which stands once, and the text after it."""
 
 _LEAST = 20
-"""Fewest columns of text beside a label; on less the text goes on from the left edge."""
+"""Fewest columns of text after a label; on less the text goes on from the left edge."""
 
 
 class HangingLines(Lines):
@@ -39,7 +39,7 @@ class HangingLines(Lines):
 
 @lru_cache(maxsize=2000)
 def _wrapped(label: str, text: str, width: int) -> str:
-    """One row at a width, in as many lines as it takes."""
+    """Wrap one row at a width, into as many lines as it takes."""
     indent = " " * len(label) if width - len(label) >= _LEAST else ""
     lines = wrap(label + text, width, subsequent_indent=indent, drop_whitespace=True, break_on_hyphens=False)
     return "\n".join(lines)

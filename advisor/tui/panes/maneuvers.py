@@ -23,8 +23,7 @@ _MIDDLE: tuple[Columns, ...] = (
     (("", 2), ("csi", 3)),
     (("", 2),),
 )
-"""What stands between the input and the reason, from the fullest to the least: the verdict in symbol and word
-with the rules, the symbol with the rules, the symbol alone."""
+"""Columns between the input and the reason, the fullest first. The symbol alone is the least."""
 _REASON = 13
 """Characters that the longest reason takes in a word (``free response``), and ``turbulence +1``."""
 _RULES = ("continuous", "separate", "information")
@@ -58,7 +57,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
             self.number = number
 
     def compose(self) -> ComposeResult:
-        """One table."""
+        """Lay out one table."""
         yield DataTable(cursor_type="row", zebra_stripes=True, cell_padding=1)
 
     def on_mount(self) -> None:
@@ -143,7 +142,7 @@ def _cell(judged: JudgedManeuver, column: str, width: int) -> str:
 
 
 def _reason(judged: JudgedManeuver, width: int) -> str:
-    """Why it is out, in as many words as the column has room for; none is cut within."""
+    """Return the reasons against a manoeuvre, as many as have room; no word is cut."""
     if judged.excluded_because is not None:
         return shorten(judged.excluded_because, width, placeholder="…")
     words = [r.code.replace("_", " ") for r in judged.verdict.reasons]
@@ -152,6 +151,6 @@ def _reason(judged: JudgedManeuver, width: int) -> str:
 
 
 def _listed(words: list[str], count: int) -> str:
-    """The first words, and how many more there are."""
+    """Join the first words, and say how many more there are."""
     more = f" +{len(words) - count}" if count < len(words) else ""
     return f"{', '.join(words[:count])}{more}"

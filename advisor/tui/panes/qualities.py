@@ -1,4 +1,4 @@
-"""What the joint estimate says of the flying qualities."""
+"""Flying qualities of the joint estimate."""
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
@@ -28,12 +28,12 @@ are given for stand below.
 """
 
     def compose(self) -> ComposeResult:
-        """Text that scrolls when there is much to say."""
+        """Lay out text that scrolls."""
         with VerticalScroll():
             yield HangingLines(_NONE_YET)
 
     def on_mount(self) -> None:
-        """Nothing is shown yet."""
+        """Show nothing before the first estimate."""
         super().on_mount()
         self._shown: Estimate | None = None
 

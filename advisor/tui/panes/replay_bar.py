@@ -30,7 +30,7 @@ class ReplayBar(Part, Lines):
 
 
 def _now(view: View) -> str:
-    """Where the replay stands on the vehicle's clock, and on which clock where there are several."""
+    """Return the vehicle's time, with flight and power-on where there are several."""
     state = view.state
     flight = f"flight {state.flight + 1}, " if state.flight else ""
     power_on = f"power-on {state.boot + 1}, " if state.boot else ""

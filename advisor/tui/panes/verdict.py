@@ -74,6 +74,6 @@ def _rows(judged: JudgedManeuver, of: str) -> list[Labelled]:
 
 
 def _limits(verdict: ManeuverVerdict) -> str:
-    """What the cost was held against, rule by rule."""
+    """Return the limits of the cost, rule by rule."""
     limits = [f"{rule} {one.limit:.3g}" for rule, one in verdict.rules.items() if one.limit is not None]
     return f" (limit {', '.join(limits)})" if limits else ""

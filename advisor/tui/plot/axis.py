@@ -41,7 +41,7 @@ class LogAxis:
     high: float
     """Decimal logarithm of the value at the upper end."""
     values: tuple[float, ...]
-    """What stands at the ticks, rising."""
+    """Values at the ticks, rising."""
 
     @property
     def ticks(self) -> list[float]:
