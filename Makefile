@@ -20,9 +20,7 @@ $(STAMP): pyproject.toml constraints.txt
 # Compiled before a user waits for it; what was compiled from another text is compiled anew by itself.
 KERNELS := $(shell grep -rl --include='*.py' '@kernel' advisor sim) advisor/compiled.py
 .venv/.compiled: $(STAMP) $(KERNELS)
-	$(BIN)/python -m advisor.mavlink.warm
-	$(BIN)/python -m advisor.oem.warm
-	$(BIN)/python -m advisor.gap.warm
+	$(BIN)/python -m advisor.first_run
 	touch $@
 
 # What tests, checks and benchmarks need beyond running: installed only for them.

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from advisor.bundled import SIMULATOR
 from advisor.problems import UnusableInputError
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ class Demonstration:
         from advisor.mavlink.link import Link
 
         self._link = Link("udpin:127.0.0.1:0", record_to=self._record_to).start()
-        command = [sys.executable, "-m", "sim", "fly", "--master", f"udpout:127.0.0.1:{self._link.port}"]
+        command = [sys.executable, "-m", SIMULATOR, "fly", "--master", f"udpout:127.0.0.1:{self._link.port}"]
         self._process = subprocess.Popen(
             [*command, *self._options],
             stdin=subprocess.DEVNULL,
@@ -79,6 +80,6 @@ class Demonstration:
             raise UnusableInputError(
                 "no_flight",
                 f"The bundled aircraft ended with exit code {code}: {said.strip()}",
-                "Try: python -m sim fly --master udpout:127.0.0.1:14550",
+                f"Try: python -m {SIMULATOR} fly --master udpout:127.0.0.1:14550",
             )
         return code == 0 and self._link.statistics.silent_s > LANDING_S

@@ -1,0 +1,28 @@
+"""How the repository's folders become packages; all else stands in pyproject.toml.
+
+In the repository the simulator is ``sim`` and the logs are ``logs``. In a wheel both get names that no other
+program takes: ``inflight_sim``, and ``advisor.sample`` with one log and its aircraft file. An editable
+installation leaves the repository's names as they are.
+"""
+
+import sys
+
+from setuptools import find_packages, setup
+
+SAMPLE = ("arduplane-calm.tlog", "arduplane-calm.yaml")
+"""The files of ``logs`` that ``advisor sample`` hands out."""
+
+simulator = find_packages(include=["sim", "sim.*"])
+advisor = find_packages(include=["advisor", "advisor.*"])
+
+if "editable_wheel" in sys.argv:
+    setup(packages=[*advisor, *simulator])
+else:
+    setup(
+        packages=[*advisor, *("inflight_" + name for name in simulator), "advisor.sample"],
+        package_dir={"inflight_sim": "sim", "advisor.sample": "logs"},
+        package_data={"advisor.sample": list(SAMPLE)},
+        exclude_package_data={
+            "advisor.sample": ["arduplane-turbulent.*", "arduplane-default-rates.*", "bundled-demo.*", "*.md"]
+        },
+    )
