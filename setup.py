@@ -7,13 +7,14 @@ installation leaves the repository's names as they are.
 
 import sys
 
-from setuptools import find_packages, setup
+from setuptools import find_namespace_packages, setup
 
 SAMPLE = ("arduplane-calm.tlog", "arduplane-calm.yaml")
 """The files of ``logs`` that ``advisor sample`` hands out."""
 
-simulator = find_packages(include=["sim", "sim.*"])
-advisor = find_packages(include=["advisor", "advisor.*"])
+# Folders of data alone (styles, scenarios) count, too; caches do not.
+simulator = find_namespace_packages(include=["sim", "sim.*"], exclude=["*.__pycache__"])
+advisor = find_namespace_packages(include=["advisor", "advisor.*"], exclude=["*.__pycache__"])
 
 if "editable_wheel" in sys.argv:
     setup(packages=[*advisor, *simulator])
