@@ -1,4 +1,4 @@
-"""Where the bundled simulator and the sample flight are, in the repository and where a wheel installed them."""
+"""Where the bundled simulator and the sample flight are: in the repository, or where a wheel put them."""
 
 from pathlib import Path
 

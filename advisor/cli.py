@@ -99,7 +99,12 @@ def _say_version(context: click.Context, _: click.Parameter, wanted: bool) -> No
 
 @click.group(cls=LazyCommands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.option(
-    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_say_version, help="Show the version."
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_say_version,
+    help="Show the version.",
 )
 def advisor() -> None:
     """Inflight advisor: was that manoeuvre good, may we stop testing.
