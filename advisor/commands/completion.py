@@ -13,7 +13,7 @@ def command(context: click.Context, shell: str) -> None:
     """Print the script that makes SHELL complete the advisor's commands, options and files.
 
     \b
-    Example, by shell:
+    Example:
       eval "$(advisor completion bash)"          in ~/.bashrc
       eval "$(advisor completion zsh)"           in ~/.zshrc, after compinit
       advisor completion fish | source           in ~/.config/fish/config.fish
