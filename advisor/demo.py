@@ -7,6 +7,7 @@ meets it as it meets any aircraft: as packets on a socket.
 import subprocess
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -63,6 +64,16 @@ class Demonstration:
         if self._process is not None:
             self._process.terminate()
             self._process.communicate()
+
+    @staticmethod
+    def fly_once() -> None:
+        """Fly one manoeuvre into a file and throw the file away: that compiles all that the aircraft needs."""
+        with TemporaryDirectory() as folder:
+            scenario = Path(folder) / "one.yaml"
+            scenario.write_text('aircraft: linear\nmaneuvers: ["3211"]\n')
+            out = Path(folder) / "one.tlog"
+            command = [sys.executable, "-m", SIMULATOR, "record", "--scenario", scenario, "--out", out]
+            subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
 
     def over(self) -> bool:
         """Whether the aircraft has landed and its last packets have arrived.

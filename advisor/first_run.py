@@ -6,24 +6,30 @@
 import os
 import platform
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from hashlib import sha256
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
-STAGES = {
-    "log readers": ("advisor.mavlink.warm", "warm_up"),
-    "estimator": ("advisor.oem.warm", "warm"),
-    "diagnosis": ("advisor.gap.warm", "warm_up"),
-}
-"""What is compiled, with the module and the function that compile it."""
-
 Tell = Callable[[str], None]
+Stages = Mapping[str, Callable[[], None]]
+"""What is compiled, and what compiles it."""
 
 
-def compile_once(tell: Tell) -> None:
+def _called(module: str, function: str) -> Callable[[], None]:
+    return lambda: getattr(import_module(module), function)()
+
+
+KERNELS: Stages = {
+    "log readers": _called("advisor.mavlink.warm", "warm_up"),
+    "estimator": _called("advisor.oem.warm", "warm"),
+    "diagnosis": _called("advisor.gap.warm", "warm_up"),
+}
+
+
+def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
     """Compile every kernel, unless this version was compiled on this machine before.
 
     A mark in the folder of the machine code says so. A kernel whose source changes is compiled anew when it
@@ -33,16 +39,18 @@ def compile_once(tell: Tell) -> None:
     ----------
     tell
         Takes each sentence about the progress.
+    stages
+        What is compiled; by default all that commands call.
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return
     folder = _folder()
-    mark = folder and folder / f"inflight-advisor-{_key()}.compiled"
+    mark = folder and folder / f"inflight-advisor-{_key(stages)}.compiled"
     if mark is not None and mark.exists():
         return
-    for number, (name, (module, function)) in enumerate(STAGES.items(), 1):
-        tell(f"First run: compiling the {name} for this machine ({number} of {len(STAGES)}).")
-        getattr(import_module(module), function)()
+    for number, (name, run) in enumerate(stages.items(), 1):
+        tell(f"First run: compiling the {name} for this machine ({number} of {len(stages)}).")
+        run()
     if mark is None:
         tell(
             "The compiled code cannot be kept, so every start compiles anew. "
@@ -71,9 +79,9 @@ def _writable(folder: Path) -> bool:
     return nearest.is_dir() and os.access(nearest, os.W_OK)
 
 
-def _key() -> str:
+def _key(stages: Stages) -> str:
     """What machine code depends on besides the sources: versions, machine, and the place of the sources."""
-    parts = (version("numba"), _own_version(), sys.version, platform.machine(), __file__)
+    parts = (version("numba"), _own_version(), sys.version, platform.machine(), __file__, *stages)
     return sha256("\0".join(parts).encode()).hexdigest()[:16]
 
 

@@ -43,9 +43,10 @@ def command() -> None:
     show_default=True,
     help="File to write.",
 )
+@click.option("--blank", is_flag=True, help="Ask nothing: every key as a comment with its meaning.")
 @click.option("--force", is_flag=True, help="Write over a file that exists.")
 @target_system_option
-def new(log: Path | None, out: Path, force: bool, target_system: int | None) -> None:
+def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: int | None) -> None:
     """Write a commented aircraft file, from answers on the terminal or from a log.
 
     A log tells the outputs with their functions and limits, the air speed, the pressure, and whether there is
@@ -62,11 +63,14 @@ def new(log: Path | None, out: Path, force: bool, target_system: int | None) -> 
     from advisor.commands.asking import ask
     from advisor.config import load_aircraft
 
+    if blank and log is not None:
+        raise ConfigurationError("--blank and --from contradict each other; give one of them.")
     refuse_unwritable("-o", out)
     if out.exists() and not force:
         raise ConfigurationError(f"-o: {out} exists; name another file, or add --force to write over it.")
     if log is None:
-        draft = Draft(head=["Aircraft file of the inflight advisor."], values=ask())
+        head = ["Aircraft file of the inflight advisor. Remove the # in front of a key that you know."]
+        draft = Draft(head=head, values={} if blank else ask())
     else:
         draft = proposed(_facts(log, Aircraft(), target_system), printable(log.name))
         draft.values.setdefault("name", printable(log.stem))

@@ -5,6 +5,8 @@ from pathlib import Path
 import click
 import pytest
 
+from advisor.aircraft import Aircraft
+from advisor.aircraft_file.keys import KEYS
 from advisor.config import load_aircraft
 from tests.conftest import Advisor
 
@@ -52,6 +54,13 @@ def test_a_log_that_is_none_ends_with_code_3(advisor: Advisor, tmp_path: Path) -
     run = advisor("aircraft", "new", "--from", tmp_path / "no.tlog", "-o", tmp_path / "a.yaml")
     assert run.returncode == 3
     assert not (tmp_path / "a.yaml").exists()
+
+
+def test_a_blank_file_holds_every_key_as_a_comment(advisor: Advisor, tmp_path: Path) -> None:
+    advisor("aircraft", "new", "--blank", "-o", tmp_path / "a.yaml")
+    text = (tmp_path / "a.yaml").read_text()
+    assert load_aircraft(tmp_path / "a.yaml") == Aircraft()
+    assert [key.path for key in KEYS if f"# {key.path.rpartition('.')[2]}: {key.example}" not in text] == []
 
 
 @pytest.fixture
