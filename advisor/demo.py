@@ -67,13 +67,15 @@ class Demonstration:
 
     @staticmethod
     def fly_once() -> None:
-        """Fly one manoeuvre into a file and throw the file away: that compiles all that the aircraft needs."""
+        """Fly one manoeuvre into a file that is thrown away: this compiles all that the aircraft needs."""
         with TemporaryDirectory() as folder:
             scenario = Path(folder) / "one.yaml"
             scenario.write_text('aircraft: linear\nmaneuvers: ["3211"]\n')
             out = Path(folder) / "one.tlog"
-            command = [sys.executable, "-m", SIMULATOR, "record", "--scenario", scenario, "--out", out]
-            subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+            command = [sys.executable, "-m", SIMULATOR, "record", "--scenario", str(scenario)]
+            subprocess.run(
+                [*command, "--out", str(out)], stdin=subprocess.DEVNULL, capture_output=True, check=False
+            )
 
     def over(self) -> bool:
         """Whether the aircraft has landed and its last packets have arrived.
