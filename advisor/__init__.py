@@ -23,13 +23,13 @@ _PUBLIC = {
     "judge": "advisor.library",
     "read": "advisor.library",
 }
-"""Public name to the module that has it."""
+"""Public name to the module that defines the name."""
 
 __all__ = ["__version__", *_PUBLIC]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name when it is first asked for, so that the command line starts fast."""
+    """Import a public name at its first use, so that the command line starts fast."""
     if name == "__version__":
         return _installed_version()
     if name not in _PUBLIC:
@@ -40,7 +40,7 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """Public names, for completion."""
+    """Return the public names, for completion in a shell."""
     return sorted(__all__)
 
 

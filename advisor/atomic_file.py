@@ -1,16 +1,16 @@
-"""Files that are old or new and whole, whenever power fails or the disk is full."""
+"""Files that are always whole, old or new, even where power fails or the disk is full."""
 
 import os
 from pathlib import Path
 
 
 def write_atomically(path: Path, text: str) -> None:
-    """Write a text file under a name of its own, then give the file its name.
+    """Write a text to a temporary file, then give the file its name.
 
     Raises
     ------
     OSError
-        The file cannot be written; what stood there before is still there.
+        The file cannot be written. The earlier file is unchanged.
     """
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:

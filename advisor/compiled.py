@@ -1,9 +1,9 @@
-"""Compiled functions, kept on disk for as long as all that they were compiled from is the same.
+"""Compiled functions on disk, recompiled after any change of the text that they were compiled from.
 
 Numba freezes into a kernel's machine code the functions that the kernel calls and the constants that it
-reads. The key of numba's cache is the text of the kernel's own file, so that machine code outlives a change
-of what was frozen. The key here is the text of that file and of every module of the same package that the
-file imports, directly or through other modules.
+reads. Numba's own cache depends only on the text of the kernel's file, so that stale machine code would
+survive a change elsewhere. The key here is the text of the kernel's file and of every module of the package
+that the file imports, directly or through other modules.
 """
 
 import ast
@@ -22,7 +22,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def kernel(**options: Any) -> Callable[[Function], Function]:
-    """Compile a function when it is first called, and keep the machine code on disk where a folder allows.
+    """Compile a function at its first call, and keep the machine code on disk where a folder allows.
 
     Numba keeps machine code in the folder ``NUMBA_CACHE_DIR``, beside the module, or in the user's own cache,
     whichever comes first and can be written to. Where none can, each process compiles for itself.
@@ -30,7 +30,7 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
     Parameters
     ----------
     options
-        Of ``numba.njit``, such as ``error_model`` and ``fastmath``.
+        Options of ``numba.njit``, such as ``error_model`` and ``fastmath``.
 
     Returns
     -------
@@ -50,7 +50,7 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
 
 @cache
 def key_of(module: str) -> str:
-    """Hash of the text of an imported module and of all modules of its package that it is made of.
+    """Return the hash of the texts of an imported module and of all modules of its package that it imports.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def key_of(module: str) -> str:
 
 @cache
 def _imports_of(module: str) -> tuple[str, ...]:
-    """Modules of the same package that the top level of a module's text imports."""
+    """Return the modules of the package that the top level of a module's text imports."""
     named = []
     for node in ast.parse(_text_of(module)).body:
         if isinstance(node, ast.Import):

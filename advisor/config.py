@@ -1,4 +1,5 @@
-"""The aircraft file: YAML to :class:`advisor.aircraft.Aircraft`, every mistake listed at once."""
+"""Reader of the aircraft file: YAML to :class:`advisor.aircraft.Aircraft`, with every mistake listed at
+once."""
 
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
@@ -19,7 +20,7 @@ from advisor.yaml_file import read_yaml
 
 
 def load_aircraft(path: Path | None) -> Aircraft:
-    """Read an aircraft file; without one, the defaults.
+    """Read an aircraft file. Without a path, return the defaults.
 
     Raises
     ------
@@ -57,7 +58,7 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
             found = reader.validate_python(content)
         except ValidationError as error:
             mistakes += dict.fromkeys(_sentence(item) for item in error.errors())
-            # What remains is read again, so that one wrong key does not hide another's mistake.
+            # The rest is read again, so that one wrong key does not hide another's mistake.
             remainder = _without(content, [item["loc"] for item in error.errors()])
             if remainder == content:
                 break
@@ -73,7 +74,7 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
 
 
 def _without_empty(content: Any) -> Any:
-    # "elevator:" with nothing under it is how people leave a section for later.
+    # "elevator:" with nothing under it is a section that the user leaves for later.
     return {k: v for k, v in content.items() if v is not None} if isinstance(content, dict) else content
 
 
@@ -86,7 +87,7 @@ def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
 
 
 def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
-    """Take out the innermost key that a location names, and no other: its neighbours may be wrong, too."""
+    """Remove the innermost key that a location names. Its neighbours stay, for they may be wrong, too."""
     key, *inside = location
     within = section.get(key)
     if isinstance(within, dict) and inside and inside[0] in within:
@@ -96,8 +97,7 @@ def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
 
 
 def _reader() -> TypeAdapter[Aircraft]:
-    # The core's dataclasses stay free of pydantic; the rule "unknown keys are refused"
-    # is attached here, where a file is read.
+    # The core's dataclasses stay free of pydantic. The rule that unknown keys are refused is attached here.
     strict = with_config(ConfigDict(extra="forbid", allow_inf_nan=False))
     for part in _PARTS:
         strict(part)
@@ -106,7 +106,7 @@ def _reader() -> TypeAdapter[Aircraft]:
 
 def _sentence(item: Any) -> str:
     path = ""
-    # Union members add the member's type to the location; a user's file has no such key.
+    # Union members add the member's type to the location. A user's file has no such key.
     for step in item["loc"]:
         if isinstance(step, int):
             path += f"[{step}]"
@@ -146,22 +146,23 @@ _PARTS = (
 _EXAMPLE = "To see every key with its meaning, type: advisor aircraft new --blank -o example.yaml."
 """What to do about a file that is not taken."""
 _MOST_LISTED = 20
-"""Mistakes that are listed; whoever makes more has made one, many times."""
+"""Most mistakes that are listed. A user with more has repeated one mistake."""
 _MOST_POINTS = 500
-"""Points of a calibration: one for every second microsecond of a servo's travel."""
+"""Most points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
-"""Manoeuvres in Eq. (12): more than any flight has."""
+"""Largest window of Eq. (12), in manoeuvres: more than any flight has."""
 _FARTHEST_CG_PERCENT = 200.0
-"""Centre of gravity from the leading edge: canards fly ahead of the wing, none flies two chords away."""
+"""Largest distance of the centre of gravity from the leading edge, % of the chord. Canards fly ahead of the
+wing, and no aircraft flies two chords away."""
 _OUTPUTS = 32
-"""Servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
+"""Number of servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
 _LONGEST_STEP_S = 0.1
-"""Communication step of an FMU: a short period of a second still has ten of these."""
+"""Longest communication step of an FMU, s. A short period of one second still has ten such steps."""
 _UNION_TAGS = frozenset({"int", "str", "float", "none"})
 
 
 def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
-    """Yield mistakes that types do not show, as ``path: what is wrong``."""
+    """Yield mistakes that types do not show, as ``path: description``."""
     yield from _elevator_mistakes(aircraft.elevator)
     source = aircraft.alpha.source
     if source not in ("auto", "aoa_ssa", "derived", "none") and not (

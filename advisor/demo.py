@@ -1,7 +1,7 @@
 """The demonstration: the bundled aircraft flies as a process of its own, over a real MAVLink link.
 
-Together with the study, this is the only place where the advisor meets the simulator, and it
-meets it as it meets any aircraft: as packets on a socket.
+The advisor meets the simulator only here and in the study. Here the simulator is heard like any aircraft, by
+packets on a socket.
 """
 
 import subprocess
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from advisor.mavlink.link import Link
 
 LANDING_S = 2.0
-"""How long the link may be silent after the aircraft's process has ended, before the flight is over."""
+"""Silence of the link after the end of the aircraft's process, s, that ends the flight."""
 
 
 class Demonstration:
-    """A flight of the bundled aircraft and the link to it.
+    """A flight of the bundled aircraft, and the link to it.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Demonstration:
         self._process: subprocess.Popen[bytes] | None = None
 
     def __enter__(self) -> "Link":
-        # The decoders behind a link take longer to load than the first screen to paint.
+        # The decoders of a link take longer to load than the first screen takes to paint.
         from advisor.mavlink.link import Link
 
         self._link = Link("udpin:127.0.0.1:0", record_to=self._record_to).start()
@@ -78,12 +78,12 @@ class Demonstration:
             )
 
     def over(self) -> bool:
-        """Whether the aircraft has landed and its last packets have arrived.
+        """Return whether the aircraft has landed and its last packets have arrived.
 
         Raises
         ------
         UnusableInputError
-            When the aircraft could not fly.
+            The aircraft could not fly.
         """
         if self._link is None or self._process is None:
             return False

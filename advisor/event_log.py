@@ -1,27 +1,27 @@
-"""Sentences for an event log: the newest of them, and how many came before."""
+"""Sentences for an event log: the newest sentences, and the number of dropped ones."""
 
 from collections import deque
 from collections.abc import Iterable
 
 
 class EventLog:
-    """Collects sentences and forgets the oldest.
+    """Collects sentences and drops the oldest.
 
     Parameters
     ----------
     kept
-        How many sentences are kept.
+        Number of sentences that are kept.
     """
 
     def __init__(self, kept: int) -> None:
         self._lines: deque[str] = deque(maxlen=kept)
         self.lines: tuple[str, ...] = ()
-        """Oldest first; the same object until something is added."""
+        """Sentences, oldest first. The object stays identical until a sentence is added."""
         self.before = 0
-        """How many sentences have been forgotten."""
+        """Number of sentences that were dropped."""
 
     def add(self, sentences: Iterable[str]) -> None:
-        """Take further sentences."""
+        """Add sentences."""
         before, further = len(self._lines), list(sentences)
         if further:
             self._lines.extend(further)
@@ -29,6 +29,6 @@ class EventLog:
             self.lines = tuple(self._lines)
 
     def clear(self) -> None:
-        """Begin anew."""
+        """Drop all sentences."""
         self._lines.clear()
         self.lines, self.before = (), 0

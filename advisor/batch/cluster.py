@@ -114,7 +114,7 @@ def _connected(address: str) -> "Iterator[Client]":
 
 
 def _versions_on(client: "Client") -> dict[str, Any]:
-    """Versions of the packages in the client and in each worker.
+    """Return versions of the packages in the client and in each worker.
 
     A cluster whose workers start, or start again after a death, has ``CONNECT_S`` for the first.
     """
@@ -136,7 +136,7 @@ async def _answer(address: str) -> None:
 
 
 def _cause(error: BaseException) -> str:
-    """The innermost reason of an error, in a few words."""
+    """Return the innermost reason of an error, in a few words."""
     while error.__cause__ is not None and type(error.__cause__) is not asyncio.CancelledError:
         error = error.__cause__
     if isinstance(error, TimeoutError):

@@ -43,12 +43,12 @@ from advisor.oem.solution import Method
 from advisor.problems import Problem
 
 NOTICES = 1000
-"""Sentences kept for the event log, 0.1 kB each: some hundred manoeuvres with all that is said of them."""
+"""Sentences that the event log keeps, 0.1 kB each: enough for some hundred manoeuvres."""
 
 
 @dataclass(frozen=True, slots=True)
 class ManeuverJudged:
-    """A manoeuvre was estimated and judged; the flight test decided anew."""
+    """A manoeuvre was estimated and judged, and the flight test was decided anew."""
 
     judged: JudgedManeuver
     flight_test: FlightTestVerdict
@@ -58,27 +58,28 @@ CampaignEvent = FlightEvent | ManeuverJudged
 
 
 class Campaign:
-    """Listens, estimates, judges. No input or output, no clock: a log and a live link give the same.
+    """Finds, estimates and judges the manoeuvres of a flight test. The class does no input or output and has
+    no clock, so that a log and a live link give equal results.
 
     Parameters
     ----------
     aircraft
-        What the crew says of its aircraft.
+        The crew's aircraft file.
     target_system
         System id of the vehicle; None: the first one heard.
     settle
         Estimate while a manoeuvre is still being flown, for live faces.
         Verdicts do not depend on it.
     tell
-        Called with every event, for whoever announces verdicts.
+        Called with every event, for example to announce verdicts.
     method
-        How each manoeuvre's optimum is sought: Gauss-Newton, or the paper's simplex.
+        Search for each manoeuvre's optimum: Gauss-Newton, or the paper's simplex.
     by_hand
-        What was decided by hand on this flight before.
+        Earlier decisions by hand on this flight.
     marks
-        Further marks, which win over those of ``by_hand`` and are not kept with them.
+        Further marks, which replace overlapping marks of ``by_hand`` and are not kept in a file.
     names
-        What the logs of the campaign are called, in their order; empty for a single one.
+        Names of the campaign's logs, in their order; empty for a single log.
     """
 
     def __init__(
@@ -98,7 +99,7 @@ class Campaign:
         self._tell = tell
         self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names)
         self.by_hand = by_hand
-        """Everything that has been decided by hand."""
+        """All decisions by hand so far."""
         self._to_remark = list(by_hand.remarks)
         self._maneuvers: list[Maneuver] = []
         self._history: list[Flown] = []
@@ -114,13 +115,14 @@ class Campaign:
         self._settling = Settling(aircraft) if settle else None
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
-        """Take the next messages, in order of arrival; how they are cut into batches does not matter."""
+        """Take the next messages, in order of arrival. The result does not depend on how they are cut into
+        batches."""
         told = self._take(self._flights.feed(columns))
         self._repeat_remarks()
         return told
 
     def finish(self) -> list[CampaignEvent]:
-        """The stream has ended: a manoeuvre that is complete but for its quiet end still counts."""
+        """Take the end of the stream: a manoeuvre that lacks only its quiet end still counts."""
         if self._stream.marks.by_hand_since_s is not None:
             self.end_maneuver()
         told = self._take(self._flights.finish())
@@ -133,7 +135,7 @@ class Campaign:
 
     @property
     def state(self) -> CampaignState:
-        """Everything a face may show, as of the newest message."""
+        """State after the newest message, as shown on screens."""
         stream, flights = self._stream, self._flights
         flying, channels = flights.so_far(), stream.channels
         settled = self._settling.follow(flying) if self._settling else None
@@ -171,24 +173,24 @@ class Campaign:
 
     @property
     def power_on(self) -> tuple[int, int]:
-        """Flight and power-on being heard, each 0 for the first."""
+        """Flight and power-on of the newest message, each counted from 0."""
         return self._flights.flight, self._stream.boot
 
     def recent(self, name: str, seconds: float) -> Channel | None:
-        """The newest stretch of a channel of the power-on being heard; None when nothing has arrived."""
+        """Return the newest stretch of a channel in the current power-on; None without samples."""
         return self._stream.recent(name, seconds)
 
     @property
     def problems(self) -> list[Problem]:
-        """Why this stream cannot be used, as far as it has been heard; empty when it can."""
+        """Reasons for which the stream so far cannot be used; empty for a usable stream."""
         return self._flights.problems()
 
     def exclude(self, number: int, because: str) -> None:
-        """Take a manoeuvre out of every decision; all that followed is decided again."""
+        """Exclude a manoeuvre from every decision, and decide anew on all later manoeuvres."""
         self._decide_by_hand(number, because)
 
     def include(self, number: int) -> None:
-        """Take an excluded manoeuvre in again."""
+        """Include an excluded manoeuvre again."""
         self._decide_by_hand(number, None)
 
     def mark(self, text: str) -> None:
@@ -199,7 +201,7 @@ class Campaign:
         self._log(f"mark: {text}", self._stream.now_s)
 
     def begin_maneuver(self) -> None:
-        """Mark a manoeuvre from the newest vehicle time on; a mark that is open already is dropped."""
+        """Begin a manoeuvre's mark at the newest vehicle time. A mark that is already open is dropped."""
         if not math.isfinite(self._now_s):
             self._log("nothing can be marked before the vehicle's clock is heard")
             return
@@ -207,7 +209,7 @@ class Campaign:
         self._log("a manoeuvre is marked from here", self._stream.now_s)
 
     def end_maneuver(self) -> None:
-        """End the mark at the newest vehicle time; its manoeuvre is judged when all of it has arrived."""
+        """End the mark at the newest vehicle time. The manoeuvre is judged when all of it has arrived."""
         ended = self._stream.marks.end_by_hand(self._now_s)
         if isinstance(ended, Notice):
             self._log(ended.text, self._stream.now_s)
@@ -216,7 +218,7 @@ class Campaign:
         self._log(f"a manoeuvre is marked from {ended.start_s:.1f} s to here", self._stream.now_s)
 
     def note(self, number: int, text: str) -> None:
-        """Write a note beside a manoeuvre."""
+        """Write a note on a manoeuvre."""
         self.by_hand = self.by_hand.noting(self._maneuvers[self._index(number)], text)
         self._log(f"note on manoeuvre {number}: {text}", self._stream.now_s)
         self._decide()
@@ -227,27 +229,14 @@ class Campaign:
             told.append(event)
             match event:
                 case ManeuverFlown(maneuver):
-                    self._maneuvers.append(maneuver)
-                    flown = assess(maneuver, self._learnt, self._method)
-                    because = self.by_hand.excluded_because(maneuver)
-                    self._history.append(replace(flown, excluded_because=because))
-                    self._decide()
-                    self._learn()
-                    told.append(ManeuverJudged(self._judged[-1], self._flight_test))
-                    ended_s = maneuver.span.end_s
-                    self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
-                    self._log(self._flight_test.sentence, ended_s)
+                    told.append(self._judge(maneuver))
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
                 case ModeChanged(mode, at_s):
                     self._log(f"mode {mode}", at_s)
-                case Notice(code, text):
-                    self._log(text)
-                    if code in MARK_NOTICES:
-                        self._mark_notes += (text,)
-                    if code == READER_NOTICE:
-                        self._reader_notes += (text,)
+                case Notice():
+                    self._note_down(event)
                 case NoData(problems):
                     for problem in problems:
                         self._log(f"NO DATA: {problem}", self._stream.now_s)
@@ -266,8 +255,30 @@ class Campaign:
                 self._tell(happened)
         return told
 
+    def _judge(self, maneuver: Maneuver) -> ManeuverJudged:
+        """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
+        self._maneuvers.append(maneuver)
+        flown = assess(maneuver, self._learnt, self._method)
+        because = self.by_hand.excluded_because(maneuver)
+        self._history.append(replace(flown, excluded_because=because))
+        self._decide()
+        self._learn()
+        ended_s = maneuver.span.end_s
+        self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
+        self._log(self._flight_test.sentence, ended_s)
+        return ManeuverJudged(self._judged[-1], self._flight_test)
+
+    def _note_down(self, notice: Notice) -> None:
+        """Log a notice, and keep those about marks and about the reader for the report."""
+        self._log(notice.text)
+        if notice.code in MARK_NOTICES:
+            self._mark_notes += (notice.text,)
+        if notice.code == READER_NOTICE:
+            self._reader_notes += (notice.text,)
+
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
-        """A manoeuvre came a second time: the better record counts, and stays out if one of them does."""
+        """Take a manoeuvre that came a second time: the better record counts, and an exclusion of either
+        holds."""
         maneuver = event.maneuver
         i = self._index(maneuver.number)
         known = self._history[i].excluded_because
@@ -289,16 +300,16 @@ class Campaign:
 
     @property
     def _stream(self) -> FlightStream:
-        """The flight being heard."""
+        """Stream of the current flight."""
         return self._flights.stream
 
     @property
     def _now_s(self) -> float:
-        """Newest vehicle time to the millisecond, as the vehicle's clock counts and a file keeps."""
+        """Newest vehicle time, s, rounded to the millisecond as the file of decisions keeps it."""
         return round(self._stream.now_s, 3)
 
     def _repeat_remarks(self) -> None:
-        """Write the moments marked before into the event log, each at its time."""
+        """Write earlier remarks into the event log, each at its time."""
         now = (self._flights.flight, self._stream.boot, self._stream.now_s)
         for remark in [r for r in self._to_remark if (r.flight, r.boot, r.at_s) <= now]:
             self._to_remark.remove(remark)
@@ -328,7 +339,8 @@ class Campaign:
 
     @property
     def _joined(self) -> Sequence[JudgedManeuver]:
-        """The manoeuvres that are estimated together: the newest accepted ones, at the end all."""
+        """Manoeuvres of the joint estimate: the newest accepted ones in flight, all accepted ones at the
+        end."""
         accepted = [judged for judged in self._judged if judged.verdict.accepted]
         return accepted if self._ended else accepted[-NEWEST:]
 

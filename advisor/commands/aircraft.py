@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
@@ -10,6 +11,7 @@ import click
 
 from advisor.aircraft import Aircraft
 from advisor.commands.options import json_option, read_aircraft, refuse_unwritable, target_system_option
+from advisor.first_run import compile_once
 from advisor.printable import printable
 from advisor.problems import ConfigurationError
 
@@ -132,4 +134,5 @@ def _facts(log: Path, aircraft: Aircraft, target_system: int | None) -> "LogFact
     from advisor.aircraft_file.log_facts import facts_of
     from advisor.mavlink.logs import open_log
 
+    compile_once(partial(click.echo, err=True))
     return facts_of(open_log(log), aircraft, target_system)

@@ -1,4 +1,4 @@
-"""``advisor doctor``: is this telemetry good enough, before flying."""
+"""``advisor doctor``: whether the telemetry is good enough, before a flight."""
 
 import json
 import time
@@ -32,10 +32,12 @@ _LOG_ENDINGS = (".tlog", ".bin", ".ulg")
     shell_complete=lambda ctx, parameter, text: [CompletionItem(text, type="file")],
 )
 @click.option(
-    "--seconds", type=click.FloatRange(min=1.0), default=15.0, show_default=True, help="Time to listen."
+    "--seconds", type=click.FloatRange(min=1.0), default=15.0, show_default=True, help="Time to listen, s."
 )
 @click.option(
-    "--request-rates", is_flag=True, help="Ask the vehicle for 50 Hz streams and its servo set-up first."
+    "--request-rates",
+    is_flag=True,
+    help="First ask the vehicle for streams of 50 Hz and for its servo parameters.",
 )
 @aircraft_option
 @target_system_option
@@ -48,9 +50,9 @@ def command(
     target_system: int | None,
     as_json: bool,
 ) -> int:
-    """Is this telemetry good enough to identify the aircraft, and what to change if not.
+    """Check whether the telemetry is good enough to identify the aircraft, and say what to change.
 
-    Reads a log, or listens to a live link. Nothing is sent unless --request-rates asks for it.
+    The command reads a log, or listens to a live link. Nothing is sent unless --request-rates asks for it.
 
     \b
     Example:
@@ -90,7 +92,8 @@ def command(
 
 
 def _is_log(target: str) -> bool:
-    """A file, or what can only be meant as one: neither a network address nor a device."""
+    """Return whether the target is a file, or can only be meant as a file: neither a network address nor a
+    device."""
     if Path(target).is_file() or target.lower().endswith(_LOG_ENDINGS):
         return True
     return ":" not in target and "," not in target and not target.startswith("/dev/")

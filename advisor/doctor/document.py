@@ -1,4 +1,4 @@
-"""The ``advisor.doctor/1`` document: what scripts read. SI units, None where there is nothing."""
+"""The ``advisor.doctor/1`` document for scripts, in SI units, with None for missing values."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -19,7 +19,7 @@ def doctor_document(
     Parameters
     ----------
     findings
-        None when nothing could be listened to; ``problem`` then says why.
+        Findings of the examination. None when nothing was heard; ``problem`` then gives the reason.
     commands
         Commands to type next.
     """
@@ -95,9 +95,9 @@ def doctor_document(
             "unit_s": number(expectation.unit_s),
             "amplitude_deg": number(expectation.amplitude_deg),
             "alpha_change_deg": RESPONSE_ALPHA_DEG,
-            "noise": {name: number(std) for name, std in findings.belief.noise.items()},
-            "model": findings.belief.source,
-            "natural_frequency_rad_s": number(frequency(findings.belief.model)),
+            "noise": {name: number(std) for name, std in findings.assumed.noise.items()},
+            "model": findings.assumed.source,
+            "natural_frequency_rad_s": number(frequency(findings.assumed.model)),
         },
     }
 

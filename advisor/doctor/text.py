@@ -1,4 +1,4 @@
-"""The findings as people read them: the verdict first, then what to change, then the tables."""
+"""The findings for people: first the verdict, then the remedies, then the tables."""
 
 import math
 from collections.abc import Sequence
@@ -41,8 +41,8 @@ class ExaminationText:
             yield Text()
             yield Text(
                 f"Expected errors of one 3-2-1-1, steps of {found.expectation.unit_s:.2f} s and "
-                f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.belief.source}, "
-                f"natural frequency {frequency(found.belief.model):.1f} rad/s:"
+                f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.assumed.source}, "
+                f"natural frequency {frequency(found.assumed.model):.1f} rad/s:"
             )
             for name in PARAMETERS:
                 yield Text(f"  {name:<10} ±{found.expectation.std[name]:.3g}")
@@ -54,7 +54,7 @@ class ExaminationText:
         vehicle = self._findings.vehicle
         if vehicle is None:
             return "vehicle    none heard"
-        return f"vehicle    {vehicle}, firmware {vehicle.firmware or 'not told'}"
+        return f"vehicle    {vehicle}, firmware {vehicle.firmware or 'unknown'}"
 
     def _elevator(self) -> str:
         elevator = self._findings.elevator
@@ -99,7 +99,7 @@ class ExaminationText:
 
 
 def _told(limit: Limit) -> list[Text]:
-    """A limit, what to do, and what it costs."""
+    """Return the lines of a defect: its text, its remedy and its cost."""
     lines = [Text(f"  {'✗' if limit.stops else '!'} {limit.text}."), Text(f"    -> {limit.fix}.")]
     worst = sorted(limit.std_ratio.items(), key=lambda item: -item[1])[:3]
     notable = [f"{name} {ratio:.1f}" for name, ratio in worst if ratio >= _NOTABLE_COST]

@@ -94,7 +94,7 @@ def read_whole(
 
 
 def dataset(flights: WholeFlights) -> Dataset:
-    """Everything that an export holds, as tables."""
+    """Return everything that an export holds, as tables."""
     record_of = {
         (flight, one.boot): number for number, (flight, one) in enumerate(flights.power_ons, start=1)
     }

@@ -1,4 +1,4 @@
-"""The flights of a campaign, one log or link after the other; each manoeuvre has a number and counts once."""
+"""The flights of a campaign, one log or link after the other. Each manoeuvre has a number and counts once."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +19,7 @@ from advisor.flight.events import (
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import Mark
 from advisor.flight.messages import Columns
-from advisor.flight.same import are_one, is_fuller
+from advisor.flight.repeated_maneuver import are_one, is_fuller
 from advisor.flight.stream import FlightStream
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus
@@ -27,42 +27,43 @@ from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
 
 _PROBE_US = (1400.0, 1600.0)
-"""Pulses between which two elevators' scales are compared: within the travel of every servo."""
+"""Pulses between which two elevators' scales are compared, us: within the travel of every servo."""
 _SCALES_AGREE = 0.05
-"""Share by which the scale of one elevator may differ from flight to flight, as when a trim is set anew."""
+"""Relative difference of an elevator's scale between flights that counts as equal, as when a trim is set
+anew."""
 
 
 @dataclass(frozen=True, slots=True)
 class FlightHeard:
-    """What one log or link of the campaign was."""
+    """Summary of one log or link of the campaign."""
 
     flight: int
-    """0 for the first."""
+    """Number of the flight, 0 for the first."""
     name: str
-    """As the user knows it."""
+    """Name of the log or link, as the user knows it."""
     vehicle: Vehicle | None
     duration_s: float
     """Vehicle time heard, over all power-ons, s."""
     channels: Mapping[str, ChannelStatus]
     again: int = 0
-    """How many of its manoeuvres another log or power-on holds, too."""
+    """Number of its manoeuvres that another log or power-on also holds."""
     problems: tuple[Problem, ...] = ()
-    """Why it does not count; known when it is over."""
+    """Reasons for which the flight does not count, known at its end."""
 
 
 class Flights:
-    """Follows the vehicle through several logs, and through a link at last.
+    """Follows the vehicle through several logs, and then through a link.
 
-    Each flight is heard as if it were alone, so a log's manoeuvres do not depend on its neighbours.
+    Each flight is heard as if it were alone, so that a log's manoeuvres do not depend on its neighbours.
 
     Parameters
     ----------
     aircraft, target_system
-        As `FlightStream` takes them.
+        Arguments of `FlightStream`.
     marks
-        Stretches that somebody has called manoeuvres, each on its flight.
+        Stretches marked as manoeuvres, each on its flight.
     names
-        What the logs are called, in their order; empty for a single one.
+        Names of the logs, in their order; empty for a single log.
     """
 
     def __init__(
@@ -85,13 +86,13 @@ class Flights:
         self.flight = flight
         marks = [mark for mark in self._marks if mark.flight == flight]
         self.stream = FlightStream(self._aircraft, self._target_system, marks)
-        """The flight being heard."""
+        """Stream of the present flight."""
         self._again = 0
         self._foreign: Problem | None = None
 
     @property
     def maneuvers(self) -> int:
-        """How many manoeuvres have been found, each once."""
+        """Number of manoeuvres found, each counted once."""
         return len(self._found)
 
     @property
@@ -101,20 +102,20 @@ class Flights:
 
     @property
     def elevator_notes(self) -> tuple[str, ...]:
-        """What the elevator is made of and what is assumed of it, over all flights."""
+        """Composition of the elevator and assumptions about it, over all flights, as sentences."""
         return tuple(dict.fromkeys((*self._notes, *self.stream.elevator_notes)))
 
     def heard(self, channels: Mapping[str, ChannelStatus], over: bool = False) -> tuple[FlightHeard, ...]:
-        """Every flight so far; ``channels`` are those of the one being heard."""
+        """Return the summary of every flight so far; ``channels`` are those of the present flight."""
         return (*self._past, self._so_far(channels, over))
 
     def so_far(self) -> Maneuver | None:
-        """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
         flying = self.stream.so_far() if self._foreign is None else None
         return flying and replace(flying, number=len(self._found) + 1, flight=self.flight)
 
     def problems(self) -> list[Problem]:
-        """Why none of the flights can be used, as far as they have been heard; empty when one can."""
+        """Return the reasons for which none of the flights so far can be used; empty when one can."""
         now = self._problems()
         if not now or any(not past.problems for past in self._past):
             return []
@@ -124,7 +125,7 @@ class Flights:
         return [*before, *here]
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
-        """Take messages that have arrived, of one flight after the other; what became known by them."""
+        """Take messages, of one flight after the other; return the events that they cause."""
         events: list[FlightEvent] = []
         filled = sorted((c for c in columns if len(c)), key=lambda c: c.flight)
         for flight, part in groupby(filled, key=lambda c: c.flight):
@@ -139,7 +140,7 @@ class Flights:
         return events
 
     def finish(self) -> list[FlightEvent]:
-        """No more messages will come: whatever is open is closed."""
+        """Take the end of the messages, and close every open movement."""
         if self._foreign is not None:
             return []
         events = [*self._through(self.stream.finish()), *self._compare_elevators()]
@@ -148,7 +149,7 @@ class Flights:
         return events
 
     def _end(self) -> list[FlightEvent]:
-        """Close a flight that another one follows."""
+        """End a flight before the next one begins."""
         events = self.finish()
         if self.flight == self._told_of:
             self._past.append(self._so_far(self.stream.channels, over=True))
@@ -174,11 +175,11 @@ class Flights:
 
     @property
     def name(self) -> str:
-        """What the log being heard is called; empty for a single one."""
+        """Name of the present log; empty for a single log."""
         return self._name(self.flight)
 
     def _through(self, events: Sequence[FlightEvent]) -> list[FlightEvent]:
-        """The events of one flight as those of the campaign."""
+        """Return the events of one flight, renumbered as those of the campaign."""
         through: list[FlightEvent] = []
         for event in events:
             match event:
@@ -195,7 +196,8 @@ class Flights:
         return through
 
     def _once(self, maneuver: Maneuver) -> FlightEvent:
-        """A manoeuvre with its number in the campaign, be it new or known."""
+        """Return the event of a manoeuvre with its number in the campaign: a new manoeuvre, or a known
+        one."""
         for i, known in enumerate(self._found):
             if known.power_on != maneuver.power_on and are_one(maneuver, known):
                 self._again += 1
@@ -208,7 +210,8 @@ class Flights:
         return ManeuverFlown(self._found[-1])
 
     def _compare_vehicles(self, vehicle: Vehicle) -> Iterator[FlightEvent]:
-        """What is told of a vehicle that is not the first flight's; another kind of autopilot is refused."""
+        """Yield notices on a vehicle that differs from the first flight's. Another kind of autopilot is
+        refused."""
         name = self._name(self.flight)
         if self._first is None:
             self._first = (name, vehicle, None)
@@ -228,7 +231,7 @@ class Flights:
             yield Notice("other_system", said)
 
     def _compare_elevators(self) -> Iterator[FlightEvent]:
-        """What is told of an elevator that is not driven as in the first flight."""
+        """Yield notices on an elevator that is driven otherwise than in the first flight."""
         elevator = self.stream.elevator
         if self._first is None or not isinstance(elevator, Surface):
             return

@@ -1,4 +1,4 @@
-"""What a diagnosis says where the aircraft file holds no model: no simulator was tested."""
+"""The diagnosis without a simulator: the aircraft file holds no model."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ _STATEMENT = (
 
 
 def without_simulator(diagnosis: Diagnosis) -> Diagnosis:
-    """Return the diagnosis as one of the flight alone; it never says that there is no gap."""
+    """Return the diagnosis as a statement about the flight alone, which never claims that there is no gap."""
     notes = (f"{_NOT_GIVEN} {_INSTEAD}", *diagnosis.notes)
     if diagnosis.verdict != "none":
         return replace(diagnosis, notes=notes)

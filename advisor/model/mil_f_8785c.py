@@ -98,7 +98,7 @@ class ShortPeriodFound:
 
 
 def assess(category: Category, found: ShortPeriodFound) -> LevelFound:
-    """The level of a short period, and the best and the worst level within its intervals."""
+    """Return the level of a short period, and the best and the worst level within its intervals."""
     return LevelFound(
         category,
         _first(category, found.values, _lies_within),
@@ -108,7 +108,8 @@ def assess(category: Category, found: ShortPeriodFound) -> LevelFound:
 
 
 def _first(category: Category, found: ShortPeriodLimits, agrees: Callable[[Range, Range], bool]) -> int:
-    """The first level whose four ranges agree with those found; every level allows what better ones do."""
+    """Return the first level whose four ranges agree with those found; every level allows what better ones
+    do."""
     for level, limits in enumerate(LIMITS[category], start=1):
         if all(map(agrees, astuple(found), astuple(limits))):
             return level

@@ -94,87 +94,136 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
     -------
     False when the parameters make the model overflow; ``y`` and ``g`` are then useless.
     """
-    wanted = g.shape[0] > 0
     kinds = len(grid.step_s)
     table = np.empty((kinds, WIDTH))
     parts = np.empty(kinds, np.int64)
-    z_alpha, z_q, z_delta = shared[0], shared[1], shared[2]
-    m_alpha, m_q, m_delta = shared[3], shared[4], shared[5]
-    for i in range(kinds):
+    if not _fill_transitions(grid, shared, table, parts):
+        return False
+    state = np.empty((3, N_PARAMETERS))
+    attitude = grid.row[3].max() >= 0
+    for m in range(len(grid.first) - 1):
+        if not _respond_in(grid, m, shared, local[m], table, parts, state, attitude, y, g):
+            return False
+    return True
+
+
+@kernel()
+def _fill_transitions(grid: Grid, shared: FloatArray, table: FloatArray, parts: Index) -> bool:
+    """Write the exact solution over each kind of step.
+
+    Parameters
+    ----------
+    shared : (7,), order of ``SHARED``.
+    table : (kinds, WIDTH) receives the solution over one part of the step, as ``transition.fill`` writes it.
+    parts : (kinds,) receives in how many equal parts the step is taken.
+
+    Returns
+    -------
+    False when no division of a step is short enough for the model.
+    """
+    z_alpha, z_q, m_alpha, m_q = shared[0], shared[1], shared[3], shared[4]
+    for i in range(len(grid.step_s)):
         s = grid.ratio[i]
         a11, a12, a21, a22 = s * z_alpha, 1.0 + z_q, s * s * m_alpha, s * m_q
         parts[i] = divisions(a11, a12, a21, a22, grid.step_s[i])
         if parts[i] == 0:
             return False
         fill(table[i], a11, a12, a21, a22, grid.step_s[i] / parts[i])
+    return True
 
-    state = np.empty((3, N_PARAMETERS))
+
+@kernel()
+def _respond_in(
+    grid: Grid,
+    m: int,
+    shared: FloatArray,
+    local: FloatArray,
+    table: FloatArray,
+    parts: Index,
+    state: FloatArray,
+    attitude: bool,
+    y: FloatArray,
+    g: FloatArray,
+) -> bool:
+    """Solve the model over manoeuvre ``m``.
+
+    Parameters
+    ----------
+    shared : (7,), order of ``SHARED``; local : (7,), order of ``LOCAL``.
+    table, parts : as ``_fill_transitions`` writes them.
+    state : (3, 14), overwritten: derivatives of α, q and θ by all parameters.
+    attitude : whether any manoeuvre measures θ.
+    y, g : as ``respond`` takes them.
+
+    Returns
+    -------
+    False when the parameters make the model overflow.
+    """
+    wanted = g.shape[0] > 0
+    z_delta, m_delta = shared[2], shared[5]
     nothing = np.empty(0)
     rows, kind, start, slope = grid.row, grid.kind, grid.start, grid.slope
     vane, known = grid.vane, grid.known
-    attitude = rows[3].max() >= 0
-    for m in range(len(grid.first) - 1):
-        begin, end = grid.first[m], grid.first[m + 1]
-        z_0, m_0 = local[m, 0], local[m, 1]
-        alpha, q, theta = local[m, 2], local[m, 3], local[m, 4]
-        state[:] = 0.0
-        state[0, 9] = state[1, 10] = state[2, 11] = 1.0
-        for e in range(begin, end):
-            row = rows[0, e]
-            if row >= 0:
-                y[row] = alpha + vane[e] * q
-                if wanted:
-                    for j in range(N_PARAMETERS):
-                        g[row, j] = state[0, j] + vane[e] * state[1, j]
-            row = rows[1, e]
-            if row >= 0:
-                y[row] = q + local[m, 5]
-                if wanted:
-                    g[row] = state[1]
-                    g[row, 12] += 1.0
-            row = rows[3, e]
-            if row >= 0:
-                y[row] = theta
-                if wanted:
-                    g[row] = state[2]
-            row = rows[2, e]
-            if row >= 0:
-                force = _specific_force(
-                    grid.ratio[kind[e]],
-                    grid.elevator[e],
-                    known[e],
-                    grid.airspeed[e],
-                    grid.acceleration[e],
-                    grid.arm,
-                    shared,
-                    local[m],
-                    alpha,
-                    q,
-                    state,
-                    g[row] if wanted else nothing,
-                )
-                y[row] = force - grid.gravity[e] + local[m, 6]
-            if e + 1 == end:
-                break
-            i = kind[e]
-            s = grid.ratio[i]
-            h = grid.step_s[i] / parts[i]
-            for part in range(parts[i]):
-                delta = start[e] + part * h * slope[e]
-                u1 = s * (z_0 + z_delta * delta) + known[e]
-                u2 = s * s * (m_0 + m_delta * delta)
-                v1, v2 = s * z_delta * slope[e], s * s * m_delta * slope[e]
-                if wanted:
-                    _carry(table[i], s, shared, alpha, q, u1, u2, v1, v2, delta, slope[e], state, attitude)
-                t = table[i]
-                theta += t[15] * alpha + t[16] * q + t[28] * u1 + t[29] * u2 + t[41] * v1 + t[42] * v2
-                alpha, q = (
-                    t[0] * alpha + t[1] * q + t[13] * u1 + t[14] * u2 + t[26] * v1 + t[27] * v2,
-                    t[2] * alpha + t[3] * q + t[15] * u1 + t[16] * u2 + t[28] * v1 + t[29] * v2,
-                )
-        if not abs(alpha) + abs(q) < 1e12:
-            return False
-    return True
+    begin, end = grid.first[m], grid.first[m + 1]
+    z_0, m_0 = local[0], local[1]
+    alpha, q, theta = local[2], local[3], local[4]
+    state[:] = 0.0
+    state[0, 9] = state[1, 10] = state[2, 11] = 1.0
+    for e in range(begin, end):
+        row = rows[0, e]
+        if row >= 0:
+            y[row] = alpha + vane[e] * q
+            if wanted:
+                for j in range(N_PARAMETERS):
+                    g[row, j] = state[0, j] + vane[e] * state[1, j]
+        row = rows[1, e]
+        if row >= 0:
+            y[row] = q + local[5]
+            if wanted:
+                g[row] = state[1]
+                g[row, 12] += 1.0
+        row = rows[3, e]
+        if row >= 0:
+            y[row] = theta
+            if wanted:
+                g[row] = state[2]
+        row = rows[2, e]
+        if row >= 0:
+            force = _specific_force(
+                grid.ratio[kind[e]],
+                grid.elevator[e],
+                known[e],
+                grid.airspeed[e],
+                grid.acceleration[e],
+                grid.arm,
+                shared,
+                local,
+                alpha,
+                q,
+                state,
+                g[row] if wanted else nothing,
+            )
+            y[row] = force - grid.gravity[e] + local[6]
+        if e + 1 == end:
+            break
+        i = kind[e]
+        s = grid.ratio[i]
+        h = grid.step_s[i] / parts[i]
+        for part in range(parts[i]):
+            delta = start[e] + part * h * slope[e]
+            u1 = s * (z_0 + z_delta * delta) + known[e]
+            u2 = s * s * (m_0 + m_delta * delta)
+            v1, v2 = s * z_delta * slope[e], s * s * m_delta * slope[e]
+            if wanted:
+                _carry(table[i], s, shared, alpha, q, u1, u2, v1, v2, delta, slope[e], state, attitude)
+            t = table[i]
+            theta += t[15] * alpha + t[16] * q + t[28] * u1 + t[29] * u2 + t[41] * v1 + t[42] * v2
+            alpha, q = (
+                t[0] * alpha + t[1] * q + t[13] * u1 + t[14] * u2 + t[26] * v1 + t[27] * v2,
+                t[2] * alpha + t[3] * q + t[15] * u1 + t[16] * u2 + t[28] * v1 + t[29] * v2,
+            )
+    finite: bool = abs(alpha) + abs(q) < 1e12
+    return finite
 
 
 @kernel()
@@ -254,7 +303,8 @@ def _specific_force(
     state: FloatArray,
     row: FloatArray,
 ) -> float:
-    """a_z without gravity and bias, from α̇ and q̇ of the model; derivatives into ``row`` (14,) or (0,)."""
+    """Return a_z without gravity and bias, from α̇ and q̇ of the model; derivatives into ``row`` (14,) or
+    (0,)."""
     a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
     alpha_dot = a11 * alpha + a12 * q + s * (shared[2] * delta + local[0]) + known
     q_dot = a21 * alpha + a22 * q + s * s * (shared[5] * delta + local[1])

@@ -23,7 +23,7 @@ MOST_DIVISIONS = 256
 
 @kernel()
 def divisions(a11: float, a12: float, a21: float, a22: float, h: float) -> int:
-    """Equal parts a step is cut into so that the series converges fast; 0 when A is beyond use."""
+    """Return equal parts a step is cut into so that the series converges fast; 0 when A is beyond use."""
     trace = abs(a11 + a22)
     determinant = abs(a11 * a22 - a12 * a21)
     size = h * (trace + math.sqrt(determinant))

@@ -44,7 +44,8 @@ class Airspeed:
 
 
 def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
-    """Air speed of a manoeuvre; None when none was measured, or none that is one of flight throughout."""
+    """Return the air speed of a manoeuvre; None when none was measured, or none that is one of flight
+    throughout."""
     measured = channels.get("airspeed")
     if measured is None or len(measured) < 2 or not np.all(np.isfinite(measured.y)):
         return None
@@ -72,7 +73,7 @@ def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
 def _joined(
     t: FloatArray, y: FloatArray, grid: FloatArray, shape: FloatArray, lags: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Level and drift that join shape and instrument, and the mean square left over, for each lag."""
+    """Return level and drift that join shape and instrument, and the mean square left over, for each lag."""
     late = t - lags[:, None]
     side = y - np.interp(late, grid, shape)
     since = late - grid[0]

@@ -21,12 +21,12 @@ FEWEST_SAMPLES = 20
 
 
 def has(channels: Mapping[str, Channel], name: str) -> bool:
-    """Whether a channel has samples enough to be estimated from."""
+    """Return whether a channel has samples enough to be estimated from."""
     return name in channels and int(np.count_nonzero(np.isfinite(channels[name].y))) >= FEWEST_SAMPLES
 
 
 def lacking(maneuver: Maneuver, aircraft: Aircraft) -> tuple[str, ...]:
-    """Channels whose absence keeps the motion from standing in for an angle of attack."""
+    """Return channels whose absence keeps the motion from standing in for an angle of attack."""
     absent = [name for name in NEEDED if not has(maneuver.channels, name)]
     airspeed = maneuver.channels.get("airspeed")
     measured = airspeed is not None and len(airspeed) > 1 and float(np.min(airspeed.y)) > 0.0
@@ -36,14 +36,13 @@ def lacking(maneuver: Maneuver, aircraft: Aircraft) -> tuple[str, ...]:
 
 
 def can_do_without(maneuver: Maneuver, aircraft: Aircraft) -> bool:
-    """Whether the motion can stand in for an angle of attack."""
+    """Return whether the motion can stand in for an angle of attack."""
     return not lacking(maneuver, aircraft)
 
 
 def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
-    """Why no measured angle of attack counts in these manoeuvres, as half a sentence; empty where one
-    does.
-    """
+    """Return why no measured angle of attack counts in these manoeuvres, as half a sentence; empty where one
+    does."""
     if aircraft.alpha.source == "none":
         return "alpha is left out, as the aircraft file asks"
     if not all(has(m.channels, "alpha") for m in maneuvers):
@@ -62,7 +61,7 @@ def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
 
 
 def infer(maneuver: Maneuver, aircraft: Aircraft) -> Channel:
-    """The angle of attack as the motion shows it, for a manoeuvre that can do without a measured one.
+    """Return the angle of attack as the motion shows it, for a manoeuvre that can do without a measured one.
 
     Raises
     ------

@@ -17,7 +17,7 @@ CHANCE = 0.05
 
 
 def widened_by_scatter(covariance: FloatArray, contributions: FloatArray) -> FloatArray:
-    """The covariance, each error at least as large as the manoeuvres' scatter makes plain.
+    """Return the covariance, each error at least as large as the manoeuvres' scatter makes plain.
 
     Parameters
     ----------

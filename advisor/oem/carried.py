@@ -86,7 +86,8 @@ class Carried:
             self._sums[name].add(np.ascontiguousarray(g[:, self._free]), z - y)
 
     def on(self, maneuver: Maneuver) -> Estimate | None:
-        """The estimate with the manoeuvre's newest samples; None where the model must be solved again."""
+        """Return the estimate with the manoeuvre's newest samples; None where the model must be solved
+        again."""
         new = {name: self._new(name, maneuver) for name in self._rows}
         stamps = np.concatenate([signal.t for signal in new.values()])
         if len(stamps) and not self._solve(maneuver, new, stamps):
@@ -128,7 +129,7 @@ class Carried:
         return True
 
     def _through(self, g: FloatArray) -> FloatArray:
-        """Derivatives (k, 14) by the state that was reached, put down to all parameters."""
+        """Return derivatives (k, 14) by the state that was reached, put down to all parameters."""
         whole = g.copy()
         whole[:, _INITIAL] = 0.0
         return np.asarray(whole + g[:, _INITIAL] @ self._sensitivities)
@@ -172,7 +173,7 @@ class Carried:
         )
 
     def _stepped(self) -> Estimate | None:
-        """The estimate after a step from the solution's place by all samples."""
+        """Return the estimate after a step from the solution's place by all samples."""
         optimum = self._solution.optimum
         first = self._step({name: float(optimum.noise[OUTPUTS.index(name)]) for name in self._sums})
         noise = {} if first is None else self._noise_after(first.change)
@@ -197,7 +198,7 @@ class Carried:
         )
 
     def _step(self, noise: Mapping[str, float]) -> "_Step | None":
-        """The step for this noise of the outputs; None where it is hardly determined."""
+        """Return the step for this noise of the outputs; None where it is hardly determined."""
         whole = np.sum([s.gram / noise[name] ** 2 for name, s in self._sums.items()], axis=0)
         information, gradient = whole[:-1, :-1], whole[:-1, -1]
         drawn = self._prior * self._place
@@ -219,7 +220,7 @@ class Carried:
 
 
 def _end(grid: Grid, shared: FloatArray, local: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """α, q, θ at the last event (3,), and their derivatives by all parameters (3, 14)."""
+    """Return α, q, θ at the last event (3,), and their derivatives by all parameters (3, 14)."""
     row = np.full_like(grid.row, -1)
     row[list(_STATES), -1] = np.arange(len(_STATES))
     y, g = np.empty(len(_STATES)), np.empty((len(_STATES), N_PARAMETERS))
@@ -230,7 +231,7 @@ def _end(grid: Grid, shared: FloatArray, local: FloatArray) -> tuple[FloatArray,
 
 
 def _inverse(information: FloatArray) -> FloatArray | None:
-    """Inverse of a symmetric matrix; None where it is nearly singular."""
+    """Return the inverse of a symmetric matrix; None where it is nearly singular."""
     diagonal = np.diag(information)
     if not np.all(diagonal > 0.0):
         return None

@@ -29,7 +29,7 @@ class Coefficient:
 
 
 def coefficients(estimate: Estimate, reference: Reference, air: AirFlown) -> Mapping[str, Coefficient]:
-    """Coefficients by name, as many as the reference data allow; empty without air speed.
+    """Return coefficients by name, as many as the reference data allow; empty without air speed.
 
     Parameters
     ----------
@@ -55,7 +55,8 @@ def coefficients(estimate: Estimate, reference: Reference, air: AirFlown) -> Map
 def scales(
     airspeed_m_s: float, reference: Reference, density_kg_m3: float = SEA_LEVEL_DENSITY_KG_M3
 ) -> Mapping[str, tuple[str, float]]:
-    """Coefficient name to the derivative it comes from and the factor between them, from Table 4.4.
+    """Return the coefficient name to the derivative it comes from and the factor between them, from Table
+    4.4.
 
     A coefficient whose reference data are missing is not among them.
     """

@@ -108,7 +108,7 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
     variance = cost(memory, share)[1]
 
     def joint(x: FloatArray) -> float:
-        """-2·log-likelihood by log variance and shape."""
+        """Return -2·log-likelihood by log variance and shape."""
         power = determinants = 0.0
         for block in prepared:
             part, determinant = _restricted(block, *_bounded(x[1:]))
@@ -121,7 +121,7 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
 
 
 def product(rows: FloatArray, colour: Colour) -> FloatArray:
-    """AᵀΓA, shape (k, k), for the influence ``rows`` (n, k) of one stretch."""
+    """Return AᵀΓA, shape (k, k), for the influence ``rows`` (n, k) of one stretch."""
     square = rows.T @ rows
     if colour.memory == 0.0:
         return colour.variance * square
@@ -131,7 +131,7 @@ def product(rows: FloatArray, colour: Colour) -> FloatArray:
 
 
 def moved(colour: Colour, step: FloatArray) -> Colour:
-    """The colour with log variance and shape displaced by ``step`` (3,)."""
+    """Return the colour with log variance and shape displaced by ``step`` (3,)."""
     memory, share = _bounded(colour.shape + step[1:])
     return Colour(colour.variance * float(np.exp(step[0])), memory, share, colour.uncertainty)
 
@@ -151,7 +151,7 @@ def _simplex(x: FloatArray) -> FloatArray:
 
 
 def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:
-    """(n, r + 1) orthonormal basis of the columns, and the residual last."""
+    """Return (n, r + 1) orthonormal basis of the columns, and the residual last."""
     columns = stretch.columns / np.where(np.any(stretch.columns != 0.0, axis=0), 1.0, np.inf)
     size = np.linalg.norm(columns, axis=0)
     basis, values, _ = np.linalg.svd(columns[:, size > 0.0] / size[size > 0.0], full_matrices=False)
@@ -162,7 +162,7 @@ def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:
 
 @kernel(fastmath={"reassoc", "contract"})
 def _restricted(block: FloatArray, memory: float, share: float) -> tuple[float, float]:
-    """Residual power after whitening and regression, and log det Γ + log det XᵀΓ⁻¹X.
+    """Return the residual power after whitening and regression, and log det Γ + log det XᵀΓ⁻¹X.
 
     ``block`` (n, p + 1): regressors and residual; Γ that of unit-variance x.
     """
@@ -191,7 +191,7 @@ def _restricted(block: FloatArray, memory: float, share: float) -> tuple[float, 
 
 
 def _uncertainty(cost: Callable[[FloatArray], float], centre: FloatArray) -> FloatArray:
-    """Covariance of the parameters from the curvature of -2·log-likelihood."""
+    """Return the covariance of the parameters from the curvature of -2·log-likelihood."""
     n = len(centre)
     steps = np.array([0.05, 0.05, 0.3])
     hessian = np.empty((n, n))

@@ -62,7 +62,7 @@ def influence(
     extra: FloatArray | None = None,
     prior: FloatArray | None = None,
 ) -> Influence | None:
-    """Influence of every measurement on the eight parameters; None when it overflows.
+    """Return the influence of every measurement on the eight parameters; None when it overflows.
 
     Z_0 and M_0 are means over the manoeuvres.
 
@@ -129,7 +129,7 @@ def influence(
 
 
 def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Inverse of a symmetric matrix, and how much of each unknown it leaves open, 0 to 1.
+    """Return the inverse of a symmetric matrix, and how much of each unknown it leaves open, 0 to 1.
 
     Directions in which the matrix is singular to working precision are left out.
     """
@@ -143,12 +143,12 @@ def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def cramer_rao(assembly: Assembly, rows: FloatArray, noise: FloatArray) -> FloatArray:
-    """AᵀRA, shape (8 + k, 8 + k)."""
+    """Return AᵀRA, shape (8 + k, 8 + k)."""
     return (rows * noise[assembly.channel, None] ** 2).T @ rows
 
 
 def colours_of(assembly: Assembly, residual: FloatArray, g: FloatArray) -> Mapping[str, Colour]:
-    """Output name to the colour of its noise, pooled over the manoeuvres."""
+    """Return output name to the colour of its noise, pooled over the manoeuvres."""
     return {
         output: find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
         for output, stretches in _stretches(assembly).items()
@@ -156,7 +156,7 @@ def colours_of(assembly: Assembly, residual: FloatArray, g: FloatArray) -> Mappi
 
 
 def coloured(assembly: Assembly, rows: FloatArray, noise: Coloured) -> FloatArray:
-    """AᵀΓA, shape (8 + k, 8 + k), each standard deviation widened."""
+    """Return AᵀΓA, shape (8 + k, 8 + k), each standard deviation widened."""
     total = np.zeros((rows.shape[1], rows.shape[1]))
     for output, stretches in _stretches(assembly).items():
         for s in stretches:
@@ -166,7 +166,7 @@ def coloured(assembly: Assembly, rows: FloatArray, noise: Coloured) -> FloatArra
 
 
 def widening(assembly: Assembly, rows: FloatArray, colours: Mapping[str, Colour]) -> FloatArray:
-    """(8 + k,) factor on each standard deviation for not knowing the colours exactly.
+    """Return (8 + k,) factor on each standard deviation for not knowing the colours exactly.
 
     The colours are themselves estimates. Their uncertainty is carried to each variance (Satterthwaite's
     degrees of freedom), and the deviation enlarged by Student's over Gauss's 97.5 % point, so that
@@ -196,7 +196,7 @@ def widening(assembly: Assembly, rows: FloatArray, colours: Mapping[str, Colour]
 
 
 def _stretches(assembly: Assembly) -> dict[str, list[slice]]:
-    """Output name to its rows in each manoeuvre that has it."""
+    """Return output name to its rows in each manoeuvre that has it."""
     return {
         output: [named[output] for named in assembly.rows if output in named]
         for output in OUTPUTS

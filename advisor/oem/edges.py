@@ -51,7 +51,7 @@ class Edges:
 
 
 def large_steps(command: Signal) -> Edges:
-    """Steps that stand alone between two stamps, first placed in the middle."""
+    """Return steps that stand alone between two stamps, first placed in the middle."""
     change = np.abs(np.diff(command.y))
     beside = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
     span = float(np.ptp(command.y))
@@ -61,7 +61,7 @@ def large_steps(command: Signal) -> Edges:
 
 
 def sharpened(command: Signal, edges: Edges) -> Signal:
-    """The command with its large steps upright at the given times."""
+    """Return the command with its large steps upright at the given times."""
     t, y = list(command.t), list(command.y)
     for i, when in sorted(zip(edges.interval, edges.time, strict=True), reverse=True):
         t[i + 1 : i + 1] = [when - WIDTH_S / 2.0, when + WIDTH_S / 2.0]
@@ -70,7 +70,7 @@ def sharpened(command: Signal, edges: Edges) -> Signal:
 
 
 def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
-    """The solution with every large step at its own time; ``plain`` itself when that gains too little.
+    """Return the solution with every large step at its own time; ``plain`` itself when that gains too little.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
 
 
 def _edged(problem: Problem, edges: Sequence[Edges], records: Sequence[Record]) -> Problem:
-    """The problem with the commands of ``records`` sharpened."""
+    """Return the problem with the commands of ``records`` sharpened."""
     return replace(
         problem,
         records=tuple(
@@ -122,7 +122,7 @@ def _edged(problem: Problem, edges: Sequence[Edges], records: Sequence[Record]) 
 
 
 def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record]) -> list[Edges]:
-    """Edges displaced, each within its interval."""
+    """Return edges displaced, each within its interval."""
     moved, at = [], 0
     for record, e in zip(records, edges, strict=True):
         k = len(e.interval)
@@ -137,7 +137,7 @@ def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record])
 def _by_edges(
     problem: Problem, edges: Sequence[Edges], records: Sequence[Record], optimum: Optimum, owner: Index
 ) -> FloatArray:
-    """(N, k) derivatives of the outputs by the times of all edges, manoeuvre by manoeuvre.
+    """Return (N, k) derivatives of the outputs by the times of all edges, manoeuvre by manoeuvre.
 
     The j-th edges of all manoeuvres move at once: each shows in its own manoeuvre only.
     """

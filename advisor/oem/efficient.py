@@ -53,7 +53,7 @@ class Step:
 
 
 def efficient(solution: Solution) -> Solution:
-    """The solution with the efficient values and errors of the eight, or itself.
+    """Return the solution with the efficient values and errors of the eight, or itself.
 
     Cost, fit and all else stay those of output error.
     """
@@ -67,7 +67,7 @@ def efficient(solution: Solution) -> Solution:
 
 
 def efficient_step(solution: Solution) -> Step | None:
-    """The step and what speaks for it; None when it overflows."""
+    """Return the step and what speaks for it; None when it overflows."""
     colours, assembly = solution.noise.colours, solution.assembly
     weighing = Weighing.by(solution.noise, assembly)
     found = weighing.influence(solution.sensitivities, solution.extra)
@@ -88,7 +88,7 @@ def efficient_step(solution: Solution) -> Step | None:
 
 
 def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
-    """(8, 8) covariance of the step for not knowing the colours, by which it is weighed, exactly.
+    """Return (8, 8) covariance of the step for not knowing the colours, by which it is weighed, exactly.
 
     The estimate's covariance is larger by it than with known colours, and the usual formula with estimated
     ones smaller: it counts twice (Kenward & Roger, *Biometrics* 53, 1997).
@@ -109,7 +109,8 @@ def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
 
 
 def _chance(change: FloatArray, covariance: FloatArray, unit: FloatArray) -> float:
-    """Chance that a change of this covariance is as long as this one, both in units of ``unit`` (8,)."""
+    """Return chance that a change of this covariance is as long as this one, both in units of ``unit``
+    (8,)."""
     values, vectors = np.linalg.eigh(covariance / np.outer(unit, unit))
     along = vectors.T @ (change / unit)
     return float(chdtrc(len(change), np.sum(along**2 / np.maximum(values, LEAST_SHARE))))

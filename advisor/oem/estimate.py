@@ -123,7 +123,7 @@ class Estimate:
         return np.sqrt(np.diag(self.covariance_cr))
 
     def value(self, parameter: str) -> float:
-        """One parameter by name."""
+        """Return one parameter by name."""
         return float(self.theta[PARAMETERS.index(parameter)])
 
 

@@ -45,7 +45,7 @@ CLEARLY = 10.0
 def estimate(
     maneuver: Maneuver, aircraft: Aircraft, *, method: Method = "gauss-newton"
 ) -> Estimate | NoEstimate:
-    """All eight parameters from one manoeuvre.
+    """Return all eight parameters from one manoeuvre.
 
     Parameters
     ----------
@@ -56,14 +56,15 @@ def estimate(
 
 
 def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | NoEstimate:
-    """One estimate over several manoeuvres: shared derivatives, own trim, initial states and biases."""
+    """Return one estimate over several manoeuvres: shared derivatives, own trim, initial states and
+    biases."""
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
     return _estimate(maneuvers, aircraft, "gauss-newton")
 
 
 def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method) -> Estimate | NoEstimate:
-    """Output error, unknown instruments, times of edges, then filter error where the air moves."""
+    """Return output error, unknown instruments, times of edges, then filter error where the air moves."""
     prepared = prepare(maneuvers, aircraft)
     if isinstance(prepared, NoEstimate):
         return prepared
@@ -87,7 +88,7 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
 
 
 def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) -> Turbulence | None:
-    """Moving air and the noise of the instruments, where output error is out of its validity.
+    """Return the moving air and the noise of the instruments, where output error is out of its validity.
 
     Without an angle of attack the specific force carries every gust, so that its noise is always modelled.
     """
@@ -103,12 +104,12 @@ def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) 
 
 
 def lag_is_unknown(aircraft: Aircraft) -> bool:
-    """Whether neither the crew nor the flight so far tells the servo's lag."""
+    """Return whether neither the crew nor the flight so far tells the servo's lag."""
     return aircraft.elevator.lag_s is None and aircraft.elevator.lag_found_s is None
 
 
 def unknown_instruments(prepared: Prepared, aircraft: Aircraft) -> tuple[Instrument, ...]:
-    """Instruments whose parameters the aircraft file leaves open and the record may tell.
+    """Return instruments whose parameters the aircraft file leaves open and the record may tell.
 
     A vane and an accelerometer at one place describe the motion of that place as well as those at the
     centre of gravity describe the aircraft's: one of the two places must be known to tell the other.
@@ -124,7 +125,7 @@ def unknown_instruments(prepared: Prepared, aircraft: Aircraft) -> tuple[Instrum
 
 
 def _solved(problem: Problem, method: Method, servo_known: bool) -> Solution | NoEstimate:
-    """The solution with the record read as the data clearly prefer.
+    """Return the solution with the record read as the data clearly prefer.
 
     Eqs. (1)-(2) take the flight path as constant; gravity's part in α̇ as it turns is some 1e-4 rad/s and
     is left out where the data do not follow it. A command without large steps may be held between its
@@ -174,7 +175,7 @@ def report(
     filtered: Solution | None = None,
     quick: bool = False,
 ) -> Estimate:
-    """A solution as the rest of the program sees it.
+    """Return a solution as the rest of the program sees it.
 
     Parameters
     ----------
@@ -209,7 +210,8 @@ def report(
 
 
 def _supposing_a_lag(solution: Solution, aircraft: Aircraft) -> FloatArray | None:
-    """(8,) the estimate had an unknown servo a lag of ``SUPPOSED_LAG_S``; None where the servo is known."""
+    """Return (8,) the estimate had an unknown servo a lag of ``SUPPOSED_LAG_S``; None where the servo is
+    known."""
     if not lag_is_unknown(aircraft):
         return None
     servo = Servo(SUPPOSED_LAG_S, solution.problem.servo.delay_s)
@@ -219,7 +221,7 @@ def _supposing_a_lag(solution: Solution, aircraft: Aircraft) -> FloatArray | Non
 
 
 def channel_fits(solution: Solution) -> tuple[dict[str, ChannelFit], ...]:
-    """Measured against fitted, for every manoeuvre and output."""
+    """Return measured against fitted, for every manoeuvre and output."""
     assembly = solution.assembly
     return tuple(
         {

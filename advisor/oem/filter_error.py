@@ -35,7 +35,7 @@ _UNIT = np.ones(len(OUTPUTS))
 
 
 def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
-    """Whether the residuals of a solution bear the mark of moving air, and the noise that fits best.
+    """Return whether the residuals of a solution bear the mark of moving air, and the noise that fits best.
 
     Parameters
     ----------
@@ -58,8 +58,8 @@ def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
 
 
 def _white(rows: Sequence[Rows], channel: int) -> float:
-    """Standard deviation of the white part of an output's residual, from its differences."""
-    steps = np.concatenate([np.diff(r.left[r.channel == channel]) for r in rows])
+    """Return the standard deviation of the white part of an output's residual, from its differences."""
+    steps = np.concatenate([np.diff(r.residual[r.channel == channel]) for r in rows])
     return robust_std(steps) / float(np.sqrt(2.0)) if len(steps) else 1.0
 
 
@@ -67,15 +67,16 @@ def _rows(place: Place) -> list[Rows]:
     found = []
     for m, speed in enumerate(speeds_of(place)):
         order = in_time(place.assembly, m)
-        channel, left = place.assembly.channel[order], place.residual[order].copy()
+        channel, residual = place.assembly.channel[order], place.residual[order].copy()
         for c in np.unique(channel):
-            left[channel == c] -= left[channel == c].mean()
-        found.append(Rows(place.assembly.t[order], channel, left, speed))
+            residual[channel == c] -= residual[channel == c].mean()
+        found.append(Rows(place.assembly.t[order], channel, residual, speed))
     return found
 
 
 def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instrument]) -> Solution | None:
-    """The estimate with moving air and coloured instruments allowed for; None where the search runs away.
+    """Return the estimate with moving air and coloured instruments allowed for; None where the search runs
+    away.
 
     Parameters
     ----------
@@ -110,7 +111,7 @@ def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instru
 def _better(
     here: Place, seen: Whitened, air: AirModel, instruments: Sequence[Instrument]
 ) -> tuple[Place | None, Whitened | None]:
-    """The likeliest place along the step; none where the likelihood falls all the way.
+    """Return the likeliest place along the step; none where the likelihood falls all the way.
 
     A whole step ignores that the filter's gains move with the parameters, and overshoots in a curved valley.
     """
@@ -127,7 +128,7 @@ def _better(
 
 
 def _moved(here: Place, seen: Whitened, scale: float, instruments: Sequence[Instrument]) -> Place | None:
-    """The place after a share of the step; None where the model overflows there."""
+    """Return the place after a share of the step; None where the model overflows there."""
     common, own = free_of(here.assembly)
     shared, local, problem = here.shared.copy(), here.local.copy(), here.problem
     shared[common] += scale * seen.step[: len(common)]
@@ -139,7 +140,8 @@ def _moved(here: Place, seen: Whitened, scale: float, instruments: Sequence[Inst
 
 
 def _solution(start: Solution, place: Place, air: AirModel) -> Solution | None:
-    """Errors of the place reached: Cramér-Rao's, and those that allow for colour left in the innovations."""
+    """Return errors of the place reached: Cramér-Rao's, and those that allow for colour left in the
+    innovations."""
     assembly, n = place.assembly, len(PARAMETERS)
     white = np.empty((len(place.residual), 1 + N_PARAMETERS + place.extra.shape[1]))
     columns = np.column_stack([place.residual, place.sensitivities, place.extra])

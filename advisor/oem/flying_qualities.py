@@ -69,7 +69,7 @@ class FlyingQualities:
 
 
 def flying_qualities(estimate: Estimate, air: AirFlown, reference: Reference) -> FlyingQualities:
-    """Flying qualities of an estimate.
+    """Return flying qualities of an estimate.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def _levels(found: Mapping[str, Quality]) -> tuple[LevelFound, ...]:
 
 
 def _functions(speed: float | None, reference: Reference) -> dict[str, _Function | str]:
-    """Each number as a function of the eight parameters, or why there is none."""
+    """Return each number as a function of the eight parameters, or why there is none."""
     without_speed = "no air speed is known"
     functions: dict[str, _Function | str] = {
         "natural_frequency": _frequency,
@@ -127,7 +127,7 @@ def _functions(speed: float | None, reference: Reference) -> dict[str, _Function
 
 
 def _margin(speed: float | None, reference: Reference) -> _Function | str:
-    """Static margin in percent of the chord."""
+    """Return the static margin in percent of the chord."""
     mass, chord, inertia = reference.mass_kg, reference.chord_m, reference.iyy_kg_m2
     known = {"mass_kg": mass, "chord_m": chord, "iyy_kg_m2": inertia}
     missing = [f"reference.{name}" for name, value in known.items() if value is None]
@@ -144,18 +144,18 @@ def _stiffness(t: NDArray[np.complex128]) -> np.complex128:
 
 
 def _frequency(t: NDArray[np.complex128]) -> np.complex128:
-    """ω_n; NaN where the aircraft is statically unstable."""
+    """Return ω_n; NaN where the aircraft is statically unstable."""
     stiffness = _stiffness(t)
     return np.complex128(np.sqrt(stiffness) if stiffness.real > 0.0 else np.nan)
 
 
 def _turn_per_alpha(t: NDArray[np.complex128]) -> np.complex128:
-    """Steady pitch rate over steady angle of attack with the elevator held, 1/s."""
+    """Return the steady pitch rate over steady angle of attack with the elevator held, 1/s."""
     return np.complex128((t[7] * t[1] - t[5] * t[3]) / (t[6] * t[3] - (1.0 + t[2]) * t[7]))
 
 
 def _with_error(function: _Function, estimate: Estimate) -> Quality | str:
-    """Value and standard deviation by the delta method, or why there is none."""
+    """Return the value and standard deviation by the delta method, or why there is none."""
     theta = estimate.theta.astype(np.complex128)
     with np.errstate(divide="ignore", invalid="ignore"):
         value = float(function(theta).real)

@@ -60,7 +60,7 @@ class Optimum(NamedTuple):
 
 @kernel()
 def weigh(z: FloatArray, y: FloatArray, channel: Index, floor: FloatArray) -> tuple[FloatArray, float]:
-    """σ of each output from its residuals, Eq. (8), and the cost Σ n_c·log σ_c²."""
+    """Return σ of each output from its residuals, Eq. (8), and the cost Σ n_c·log σ_c²."""
     power = np.zeros(len(OUTPUTS))
     count = np.zeros(len(OUTPUTS))
     for i in range(len(z)):
@@ -102,7 +102,7 @@ def normal_equations(
     free: Index,
     noise: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Information matrix (m, n, n) and gradient (m, n) of each manoeuvre by the n free parameters.
+    """Return the information matrix (m, n, n) and gradient (m, n) of each manoeuvre by the n free parameters.
 
     Only the lower triangles are filled.
     """
@@ -130,7 +130,7 @@ def normal_equations(
 
 @kernel()
 def cholesky(a: FloatArray) -> bool:
-    """Lower factor in place; False when ``a`` is not positive definite to working precision."""
+    """Return the lower factor in place; False when ``a`` is not positive definite to working precision."""
     n = a.shape[0]
     for j in range(n):
         pivot = a[j, j]
@@ -169,6 +169,57 @@ def solve_upper(a: FloatArray, b: FloatArray) -> None:
 
 
 @kernel()
+def _stack(
+    information: FloatArray,
+    gradient: FloatArray,
+    damping: float,
+    top: FloatArray,
+    right: FloatArray,
+    own: FloatArray,
+    across: FloatArray,
+) -> None:
+    """Take one manoeuvre's normal equations apart.
+
+    Parameters
+    ----------
+    information : (k, k), gradient : (k,), shared parameters first.
+    top : (w, w), right : (w, 1) of the w shared parameters; the manoeuvre's part is added.
+    own : (n, n) receives the damped equations of the n local parameters.
+    across : (n, w + 1) receives the rows that couple local to shared parameters, and the local gradient last.
+    """
+    width, n = len(top), len(own)
+    for j in range(width):
+        right[j, 0] += gradient[j]
+        for k in range(j + 1):
+            top[j, k] += information[j, k]
+        top[j, j] += damping * information[j, j]
+    for j in range(n):
+        for k in range(j + 1):
+            own[j, k] = information[width + j, width + k]
+        own[j, j] *= 1.0 + damping
+        for k in range(width):
+            across[j, k] = information[width + j, k]
+        across[j, width] = gradient[width + j]
+
+
+@kernel()
+def _eliminate(carried: FloatArray, top: FloatArray, right: FloatArray) -> None:
+    """Subtract from the shared equations what the local parameters take up (Schur complement).
+
+    Parameters
+    ----------
+    carried : (n, w + 1), L⁻¹ times ``across`` of ``_stack``, L being the factor of ``own``.
+    top, right : (w, w) and (w, 1), changed in place.
+    """
+    width = len(top)
+    for j in range(width):
+        for i in range(len(carried)):
+            right[j, 0] -= carried[i, j] * carried[i, width]
+            for k in range(j + 1):
+                top[j, k] -= carried[i, j] * carried[i, k]
+
+
+@kernel()
 def arrow_step(
     information: FloatArray, gradient: FloatArray, free: Index, damping: float
 ) -> tuple[bool, FloatArray, FloatArray, float]:
@@ -188,26 +239,11 @@ def arrow_step(
     factors = np.zeros((maneuvers, n, n))
     carried = np.zeros((maneuvers, n, width + 1))
     for m in range(maneuvers):
-        for j in range(width):
-            right[j, 0] += gradient[m, j]
-            for k in range(j + 1):
-                top[j, k] += information[m, j, k]
-            top[j, j] += damping * information[m, j, j]
-        for j in range(n):
-            for k in range(j + 1):
-                factors[m, j, k] = information[m, width + j, width + k]
-            factors[m, j, j] *= 1.0 + damping
-            for k in range(width):
-                carried[m, j, k] = information[m, width + j, k]
-            carried[m, j, width] = gradient[m, width + j]
+        _stack(information[m], gradient[m], damping, top, right, factors[m], carried[m])
         if not cholesky(factors[m]):
             return False, shared_step, local_step, 0.0
         solve_lower(factors[m], carried[m])
-        for j in range(width):
-            for i in range(n):
-                right[j, 0] -= carried[m, i, j] * carried[m, i, width]
-                for k in range(j + 1):
-                    top[j, k] -= carried[m, i, j] * carried[m, i, k]
+        _eliminate(carried[m], top, right)
     if not cholesky(top):
         return False, shared_step, local_step, 0.0
     solve_lower(top, right)

@@ -35,7 +35,7 @@ SUPPOSED_LAG_S = 0.05
 
 
 def natural_size(theta: FloatArray) -> Mapping[str, float]:
-    """How large each derivative is on an aircraft with these poles and this control power.
+    """Return how large each derivative is on an aircraft with these poles and this control power.
 
     Rates ω = max(√|det A|, |tr A|/2) set Z_α and M_q, their square M_α; control is measured
     by M_δe, and by the lift Z_δe that turns the path as fast as M_δe does within 1/ω.
@@ -54,7 +54,7 @@ def natural_size(theta: FloatArray) -> Mapping[str, float]:
 
 
 def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str, str]:
-    """Parameter name to the reason why it has no usable value.
+    """Return parameter name to the reason why it has no usable value.
 
     Parameters
     ----------
@@ -100,7 +100,8 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
 
 
 def own_motion(solution: Solution) -> float:
-    """Share of the elevator's motion, root mean square, that one feedback of α and q leaves unexplained."""
+    """Return the share of the elevator's motion, root mean square, that one feedback of α and q leaves
+    unexplained."""
     assembly, fitted = solution.assembly, solution.fitted
     measured = assembly.grid.row[OUTPUTS.index("q")] >= 0
     elevator = np.empty(len(fitted))
@@ -119,7 +120,7 @@ def own_motion(solution: Solution) -> float:
 
 
 def correlated(covariance: FloatArray) -> tuple[tuple[str, str, float], ...]:
-    """Pairs of parameters whose errors are correlated above ``HIGH_CORRELATION``."""
+    """Return pairs of parameters whose errors are correlated above ``HIGH_CORRELATION``."""
     scale = np.sqrt(np.diag(covariance))
     scale = np.where(scale > 0.0, scale, 1.0)
     correlation = covariance / np.outer(scale, scale)

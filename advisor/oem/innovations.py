@@ -40,7 +40,7 @@ class AirModel:
 
     @classmethod
     def still(cls, white: FloatArray, seen_by_alpha: float = 1.0) -> "AirModel":
-        """White noise of the instruments, shape (4,), and nothing besides."""
+        """Return white noise of the instruments, shape (4,), and nothing besides."""
         return cls(white, np.full(len(OUTPUTS), 1e-12), 0.3, 0.0, 1.0, seen_by_alpha)
 
 
@@ -61,7 +61,8 @@ class Gains:
     """Shape (4, 8): how each channel sees the states."""
 
     def innovations(self, columns: FloatArray, order: np.ndarray | None = None) -> FloatArray:
-        """Whitened columns, shape (n, k), in the same order of rows: ``order`` says which come in time."""
+        """Return whitened columns, shape (n, k), in the same order of rows: ``order`` says which come in
+        time."""
         rows = np.arange(len(columns)) if order is None else order
         return np.asarray(
             kalman.pass_through(
@@ -103,7 +104,7 @@ def gains_of(
 def cost_of(
     t: FloatArray,
     channel: np.ndarray,
-    left: FloatArray,
+    residual: FloatArray,
     system: FloatArray,
     air: AirModel,
     start_variance: float = DIFFUSE,
@@ -114,10 +115,10 @@ def cost_of(
     """
     observed = kalman.observed_by(system, air.seen_by_alpha, 0.0, 0.0)
     return float(
-        kalman.cost_along(t, channel, left, system, air.white**2, _memory(air), observed, start_variance)
+        kalman.cost_along(t, channel, residual, system, air.white**2, _memory(air), observed, start_variance)
     )
 
 
 def _memory(air: AirModel) -> FloatArray:
-    """Shape (7,): coloured noise by channel and its memory, the gust and its memory."""
+    """Return coloured noise by channel and its memory, the gust and its memory, shape (7,)."""
     return np.array([*air.coloured, air.memory_s, air.gust, air.gust_memory_s])

@@ -185,7 +185,7 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Fitted:
 
 
 def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solution) -> _Fit:
-    """The optimum with one instrument back where the aircraft file has it."""
+    """Return the optimum with one instrument back where the aircraft file has it."""
     begin = _Fit(plain.problem, plain.assembly, plain.optimum)
     others = [other for other in names if other is not x]
     reset = x.write(best.problem, x.read(plain.problem))
@@ -193,7 +193,7 @@ def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solu
 
 
 def _gain(weighing: Weighing, fit: _Fit, rival: _Fit) -> float:
-    """Twice the log-likelihood ratio of a fit over a rival, for noise of one colour."""
+    """Return twice the log-likelihood ratio of a fit over a rival, for noise of one colour."""
 
     def misfit(of: _Fit) -> float:
         return weighing.misfit(of.assembly.z - of.optimum.fitted, of.optimum.sensitivities)
@@ -204,7 +204,8 @@ def _gain(weighing: Weighing, fit: _Fit, rival: _Fit) -> float:
 def by_instruments(
     problem: Problem, shared: FloatArray, local: FloatArray, names: Sequence[Instrument]
 ) -> FloatArray:
-    """(N, k) derivatives of the outputs by instrument parameters; ``shared`` (7,), ``local`` (m, 7)."""
+    """Return (N, k) derivatives of the outputs by instrument parameters; ``shared`` (7,), ``local`` (m,
+    7)."""
     columns = []
     for x in names:
         sides = []
@@ -219,7 +220,7 @@ def by_instruments(
 
 
 def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
-    """The best of the starts of each instrument, one instrument after the other."""
+    """Return the best of the starts of each instrument, one instrument after the other."""
     best = begin
     for x in names:
         near = best
@@ -232,7 +233,7 @@ def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
 
 
 def _descend(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
-    """Gauss-Newton on the instruments, everything else refitted at each step."""
+    """Return Gauss-Newton on the instruments, everything else refitted at each step."""
     best = begin
     for _ in range(ROUNDS if names else 0):
         step = _step(best, names)
@@ -257,7 +258,7 @@ def _moved(problem: Problem, names: Sequence[Instrument], step: FloatArray) -> P
 
 
 def _step(fit: _Fit, names: Sequence[Instrument]) -> FloatArray:
-    """(k,) Gauss-Newton step of the instruments with everything else free."""
+    """Return (k,) Gauss-Newton step of the instruments with everything else free."""
     optimum = fit.optimum
     columns = by_instruments(fit.problem, optimum.shared, optimum.local, names)
     effect = influence(fit.assembly, optimum.sensitivities, optimum.noise, columns)
@@ -275,7 +276,7 @@ def _at(problem: Problem, near: _Fit) -> _Fit | None:
 
 
 def told_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Told, ...]:
-    """The instruments' values and errors in a solution whose first extra columns are theirs."""
+    """Return the instruments' values and errors in a solution whose first extra columns are theirs."""
     std = np.sqrt(np.diag(solution.covariance)[N : N + len(names)])
     return tuple(Told(x, x.read(solution.problem), float(s)) for x, s in zip(names, std, strict=True))
 

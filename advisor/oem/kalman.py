@@ -16,7 +16,8 @@ DIFFUSE = 1e3
 
 @kernel(error_model="numpy")
 def observed_by(system: FloatArray, seen_by_alpha: float, vane_m: float, imu_m: float) -> FloatArray:
-    """Shape (4, 8): how α, q, a_z and θ see the states; ``system``, shape (5,), is Z_α, Z_q, M_α, M_q, V."""
+    """Return how α, q, a_z and θ see the states, shape (4, 8); ``system``, shape (5,), is Z_α, Z_q, M_α, M_q,
+    V."""
     z_a, z_q, m_a, m_q, speed = system[0], system[1], system[2], system[3], system[4]
     lift = speed * z_a - imu_m * m_a
     observed = np.zeros((4, STATES))
@@ -32,7 +33,8 @@ def observed_by(system: FloatArray, seen_by_alpha: float, vane_m: float, imu_m: 
 def _begun(
     system: FloatArray, memory: FloatArray, start_variance: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Rates of α, q, θ and the gust, half their square, and the covariance at the start, shape (8, 8)."""
+    """Return rates of α, q, θ and the gust, half their square, and the covariance at the start, shape (8,
+    8)."""
     z_a, z_q, m_a, m_q = system[0], system[1], system[2], system[3]
     A, P = np.zeros((4, 4)), np.zeros((STATES, STATES))
     A[0, 0], A[0, 1], A[0, 3] = z_a, 1.0 + z_q, z_a
@@ -129,7 +131,7 @@ def gains_along(
     observed: FloatArray,
     start_variance: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Gains of a record, as ``innovations.Gains`` has them: steps, what colour keeps, gains, roots.
+    """Return gains of a record, as ``innovations.Gains`` has them: steps, what colour keeps, gains, roots.
 
     Parameters
     ----------
@@ -171,14 +173,14 @@ def gains_along(
 def cost_along(
     t: FloatArray,
     channel: np.ndarray,
-    left: FloatArray,
+    residual: FloatArray,
     system: FloatArray,
     white: FloatArray,
     memory: FloatArray,
     observed: FloatArray,
     start_variance: float,
 ) -> float:
-    """-2 log likelihood of a residual ``left``, shape (n,): no constant, and no rows that are still diffuse.
+    """-2 log likelihood of a ``residual``, shape (n,): no constant, and no rows that are still diffuse.
 
     What ``gains_along`` and ``pass_through`` say of it, in one pass in which nothing is kept. Arguments as
     there, but ``white``, shape (4,), is by channel.
@@ -202,7 +204,7 @@ def cost_along(
             for s in range(4, STATES):
                 x[s] *= keep
         seen = observed[channel[i]]
-        innovation = left[i]
+        innovation = residual[i]
         for s in range(STATES):
             innovation -= seen[s] * x[s]
         variance = _correct(P, gain, seen, white[channel[i]])
@@ -224,7 +226,7 @@ def pass_through(
     columns: FloatArray,
     rows: np.ndarray,
 ) -> FloatArray:
-    """Innovations of columns, shape (n, k), each in units of its own standard deviation.
+    """Return innovations of columns, shape (n, k), each in units of its own standard deviation.
 
     The first six arguments as ``gains_along`` gives and takes them; ``rows``, shape (n,), are the columns'
     rows in order of time.

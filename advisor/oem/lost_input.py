@@ -28,7 +28,7 @@ _SETTLED = 1e-3
 
 
 def restored(problem: Problem) -> Problem:
-    """The problem with the input samples lost at steps put back, each record by itself.
+    """Return the problem with the input samples lost at steps put back, each record by itself.
 
     A record that lost none, or whose fit does not converge, is left as it is.
     """
@@ -59,7 +59,7 @@ def _restored(problem: Problem, record: Record) -> Record:
 
 
 def _lost(elevator: Signal) -> tuple[FloatArray, Index]:
-    """Stamps of lost samples at steps, and the index of the last sample before each."""
+    """Return stamps of lost samples at steps, and the index of the last sample before each."""
     intervals = np.diff(elevator.t)
     usual = float(np.median(intervals))
     moved = np.abs(np.diff(elevator.y)) > STEP_SHARE * float(np.ptp(elevator.y))
@@ -74,7 +74,7 @@ def _lost(elevator: Signal) -> tuple[FloatArray, Index]:
 
 
 def _completed(record: Record, stamps: FloatArray) -> tuple[Record, Index]:
-    """The record with samples on the straight line at these stamps, and their indices."""
+    """Return the record with samples on the straight line at these stamps, and their indices."""
     t = np.sort(np.concatenate([record.elevator.t, stamps]))
     return replace(record, elevator=Signal(t, record.elevator.at(t))), np.searchsorted(t, stamps)
 
@@ -86,7 +86,8 @@ def _with_values(record: Record, at: Index, values: FloatArray) -> Record:
 
 
 def _correction(solution: Solution, at: Index) -> FloatArray:
-    """Change of each lost sample that, with a change of the parameters, explains the residuals best."""
+    """Return the change of each lost sample that, with a change of the parameters, explains the residuals
+    best."""
     (record,) = solution.problem.records
     step = 0.1 * float(np.ptp(record.elevator.y))
     answers = np.empty((len(solution.fitted), len(at)))

@@ -21,7 +21,7 @@ WORTH_NAMING = 1.05
 
 
 def price(solution: Solution) -> FloatArray | None:
-    """(8,) error of each parameter without a_z over that with it, order of ``PARAMETERS``.
+    """Return (8,) error of each parameter without a_z over that with it, order of ``PARAMETERS``.
 
     Returns
     -------
@@ -51,7 +51,7 @@ def price(solution: Solution) -> FloatArray | None:
 
 
 def in_words(factors: FloatArray | None) -> str:
-    """The sentence for the notes; empty when nothing is known."""
+    """Return the sentence for the notes; empty when nothing is known."""
     if factors is None:
         return ""
     named = [
@@ -67,7 +67,7 @@ def in_words(factors: FloatArray | None) -> str:
 
 
 def _spread(assembly: Assembly, y: FloatArray, output: str) -> float:
-    """Root mean square motion of an output within the manoeuvres."""
+    """Return the root mean square motion of an output within the manoeuvres."""
     return float(np.sqrt(np.mean([np.var(y[rows[output]]) for rows in assembly.rows])))
 
 

@@ -87,7 +87,7 @@ def _instrument(told: Told, solution: Solution) -> str:
 
 
 def _line(told: Told, line: str) -> str:
-    """The line for the aircraft file, once a value is known to a tenth."""
+    """Return the line for the aircraft file, once a value is known to a tenth."""
     return f" For the aircraft file: {line}" if told.std < KNOWN_TO * abs(told.value) else ""
 
 

@@ -42,7 +42,8 @@ class Shifted(NamedTuple):
 
 
 def with_offset(plain: Solution) -> Solution:
-    """The solution with the reading and offset of the input that the data clearly prefer, else ``plain``.
+    """Return the solution with the reading and offset of the input that the data clearly prefer, else
+    ``plain``.
 
     Columns of instruments in ``plain.extra`` are kept; that of the offset is not.
     """
@@ -68,7 +69,7 @@ def with_offset(plain: Solution) -> Solution:
 
 
 def _best(plain: Solution, weighing: Weighing, *, held: bool, middle: float, half: float) -> Shifted | None:
-    """Gauss-Newton on the offset with everything else refitted, within ``half`` of the ``middle``."""
+    """Return Gauss-Newton on the offset with everything else refitted, within ``half`` of the ``middle``."""
     records = tuple(replace(record, held=held) for record in plain.problem.records)
     near, offset, best = plain.optimum, middle, None
     for _ in range(ROUNDS):

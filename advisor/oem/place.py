@@ -35,7 +35,7 @@ class Place:
 def at(
     problem: Problem, shared: FloatArray, local: FloatArray, instruments: Sequence[Instrument]
 ) -> Place | None:
-    """The place of ``shared`` (7,) and ``local`` (m, 7) parameters; None where the model overflows."""
+    """Return the place of ``shared`` (7,) and ``local`` (m, 7) parameters; None where the model overflows."""
     assembly = assemble(problem)
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     if not respond(assembly.grid, shared, local, y, g):
@@ -45,23 +45,23 @@ def at(
 
 
 def free_of(assembly: Assembly) -> tuple[Index, Index]:
-    """Free shared parameters and free parameters of each manoeuvre's own, as indices of all 14."""
+    """Return free shared parameters and free parameters of each manoeuvre's own, as indices of all 14."""
     return assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
 
 
 def in_time(assembly: Assembly, m: int) -> Index:
-    """(n,) rows of the manoeuvre ``m`` in order of time."""
+    """Return (n,) rows of the manoeuvre ``m`` in order of time."""
     rows = np.concatenate([np.arange(s.start, s.stop) for s in assembly.rows[m].values()])
     return np.asarray(rows[np.argsort(assembly.t[rows], kind="stable")])
 
 
 def speeds_of(place: Place) -> list[float]:
-    """Mean air speed of each manoeuvre, m/s."""
+    """Return the mean air speed of each manoeuvre, m/s."""
     speeds = [record.airspeed for record in place.problem.records]
     return [ASSUMED_M_S if speed is None else float(np.mean(speed.y)) for speed in speeds]
 
 
 def system_of(place: Place, ratio: float) -> FloatArray:
-    """(4,) Z_α, Z_q, M_α, M_q at an air speed of ``ratio`` times the reference."""
+    """Return (4,) Z_α, Z_q, M_α, M_q at an air speed of ``ratio`` times the reference."""
     z_a, z_q, m_a, m_q = (place.shared[SHARED.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
     return np.array([ratio * z_a, z_q, ratio**2 * m_a, ratio * m_q])

@@ -20,7 +20,8 @@ _DERIVATIVES = tuple(name for name in SHARED if name in PARAMETERS)
 
 
 def prediction_band(solution: Solution) -> Mapping[str, float]:
-    """Output name to the largest half-width of the 95 % band over the peak of the response, all manoeuvres.
+    """Return output name to the largest half-width of the 95 % band over the peak of the response, all
+    manoeuvres.
 
     Parameters
     ----------

@@ -91,7 +91,7 @@ def prepare(
 
 
 def _without_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> Prepared:
-    """The angle of attack as a state that nobody measures: q and a_z are the outputs."""
+    """Return the angle of attack as a state that nobody measures: q and a_z are the outputs."""
     inferred = [infer(m, aircraft) for m in maneuvers]
     known = [{**m.channels, "alpha": alpha} for m, alpha in zip(maneuvers, inferred, strict=True)]
     return _prepared(
@@ -152,7 +152,7 @@ def _servo(elevator: Elevator) -> Servo:
 
 
 def _renewed(signal: Signal) -> tuple[Signal, bool]:
-    """Samples that bring a new value, and whether the channel is held between them.
+    """Return samples that bring a new value, and whether the channel is held between them.
 
     A staircase under fresh stamps would count each value several times, and late.
     """
@@ -200,7 +200,7 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
 
 
 def _level(channels: Mapping[str, Channel]) -> Signal:
-    """Pitch angle as if the wings were level: θ minus the integral of (cos φ - 1)·q - r·sin φ."""
+    """Return the pitch angle as if the wings were level: θ minus the integral of (cos φ - 1)·q - r·sin φ."""
     theta = _signal(channels["theta"])
     if not _has(channels, "bank"):
         return theta
@@ -225,7 +225,7 @@ def _constant(maneuver: Maneuver, speed: float | None) -> Signal | None:
 
 
 def _reference(speeds: Sequence[Signal], aircraft: Aircraft, smooth: bool) -> float | None:
-    """Reference air speed, when the speed moves enough to matter."""
+    """Return the reference air speed, when the speed moves enough to matter."""
     together = np.concatenate([speed.y for speed in speeds])
     if np.min(together) <= 0.0:
         return None

@@ -22,7 +22,7 @@ turboprop)."""
 
 
 def precision(problem: Problem, shared: FloatArray) -> FloatArray:
-    """Inverse variances with which the prior draws the shared parameters to zero.
+    """Return the inverse variances with which the prior draws the shared parameters to zero.
 
     Parameters
     ----------
@@ -40,7 +40,8 @@ def precision(problem: Problem, shared: FloatArray) -> FloatArray:
 
 
 def precision_without_alpha(shared: FloatArray) -> FloatArray:
-    """(7,) inverse variances where no angle of attack is measured; ``shared`` (7,), order of ``SHARED``."""
+    """Return (7,) inverse variances where no angle of attack is measured; ``shared`` (7,), order of
+    ``SHARED``."""
     weight = np.zeros(N_SHARED)
     moment = max(abs(float(shared[SHARED.index("M_delta_e")])), 1e-6)
     weight[SHARED.index("Z_q")] = Z_Q_STD**-2

@@ -24,7 +24,7 @@ class Signal(NamedTuple):
     y: FloatArray
 
     def at(self, t: FloatArray) -> FloatArray:
-        """Values at ``t``; the first and last value beyond the ends."""
+        """Return values at ``t``; the first and last value beyond the ends."""
         return np.interp(t, self.t, self.y)
 
 
@@ -161,7 +161,7 @@ def assemble(problem: Problem) -> Assembly:
 
 
 def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
-    """Different steps (U, 2) and which of them each (E, 2) is: equal ones share their matrices.
+    """Return different steps (U, 2) and which of them each (E, 2) is: equal ones share their matrices.
 
     Where the speed moves hardly two are equal, so none is looked for.
     """
@@ -172,7 +172,7 @@ def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
 
 
 def _free(measured: set[str], scaled: bool) -> Index:
-    """Which of the 14 parameters the measured outputs give a meaning to.
+    """Return which of the 14 parameters the measured outputs give a meaning to.
 
     Without alpha no output tells the level of the angle of attack: Z_0 and M_0 take up any. Its initial
     value then stays where the search starts.
@@ -256,7 +256,7 @@ def _finite(signal: Signal) -> Signal:
 
 
 def merged(stamps: FloatArray, pace: float) -> FloatArray:
-    """Distinct stamps in order, with more between where they lie further apart than ``pace``."""
+    """Return distinct stamps in order, with more between where they lie further apart than ``pace``."""
     ordered = np.sort(stamps)
     t: FloatArray = ordered[np.concatenate([[True], np.diff(ordered) > STAMP_S])]
     if not np.isfinite(pace):

@@ -11,7 +11,7 @@ from advisor.flight.messages import FloatArray
 
 
 def accumulated(samples: FloatArray, memory: float) -> FloatArray:
-    """y, of the shape of ``samples`` (n,) or (n, k), along its first axis; nothing came before."""
+    """Return y, of the shape of ``samples`` (n,) or (n, k), along its first axis; nothing came before."""
     diagonals = np.ones((2, len(samples)))
     diagonals[1] = -memory
     return np.asarray(solve_banded((1, 0), diagonals, samples, check_finite=False))

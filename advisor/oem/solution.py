@@ -142,7 +142,7 @@ def evaluate(
     noise: Coloured | None = None,
     kept: int | None = None,
 ) -> Solution | NoEstimate:
-    """Errors of an optimum.
+    """Return errors of an optimum.
 
     Parameters
     ----------
@@ -173,20 +173,21 @@ def evaluate(
 
 
 def contributions_of(assembly: Assembly, rows: FloatArray, residual: FloatArray) -> FloatArray:
-    """(m, 8 + k) share of each manoeuvre in the influence ``rows`` (N, 8 + k) of a ``residual`` (N,)."""
+    """Return (m, 8 + k) share of each manoeuvre in the influence ``rows`` (N, 8 + k) of a ``residual``
+    (N,)."""
     pull = rows * residual[:, None]
     first = np.searchsorted(assembly.owner, np.arange(assembly.maneuvers))
     return np.array([part.sum(axis=0) for part in np.split(pull, first[1:])])
 
 
 def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
-    """The eight parameters, order of ``PARAMETERS``, from the solver's."""
+    """Return the eight parameters, order of ``PARAMETERS``, from the solver's."""
     mean = local.mean(axis=0)
     return np.array([shared[i] if is_shared else mean[i] for is_shared, i in REPORTED])
 
 
 def noise_floor(assembly: Assembly) -> FloatArray:
-    """(4,) smallest σ believed of each output, for data without noise."""
+    """Return (4,) smallest σ believed of each output, for data without noise."""
     count = np.maximum(np.bincount(assembly.channel, minlength=len(OUTPUTS)), 1)
     mean = np.bincount(assembly.channel, assembly.z, len(OUTPUTS)) / count
     deviation = assembly.z - mean[assembly.channel]

@@ -20,7 +20,7 @@ from advisor.oem.surface import Servo
 
 
 def start(problem: Problem, *, lift_from_alpha_only: bool = False) -> tuple[FloatArray, FloatArray]:
-    """Shared (7,) and local (m, 7) parameters to begin with.
+    """Return shared (7,) and local (m, 7) parameters to begin with.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def start(problem: Problem, *, lift_from_alpha_only: bool = False) -> tuple[Floa
 
 
 def _from_force(problem: Problem) -> tuple[FloatArray, FloatArray]:
-    """The start where no angle of attack is measured, with Z_q = Z_δe = 0.
+    """Return the start where no angle of attack is measured, with Z_q = Z_δe = 0.
 
     Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) n stands for α, with the factor
     M_α/Z_α, so that moving air, which the inferred α does not show, does no harm. The slope of n over the
@@ -107,7 +107,7 @@ def _from_force(problem: Problem) -> tuple[FloatArray, FloatArray]:
 
 
 def _ratio(record: Record, problem: Problem, t: FloatArray) -> Signal:
-    """Air speed over the reference; 1 where the derivatives are not scaled with it."""
+    """Return the air speed over the reference; 1 where the derivatives are not scaled with it."""
     if record.airspeed is None or problem.reference_airspeed_m_s is None:
         return Signal(t, np.ones(len(t)))
     return Signal(record.airspeed.t, record.airspeed.y / problem.reference_airspeed_m_s)
@@ -120,7 +120,7 @@ def _speed(record: Record, t: FloatArray) -> FloatArray:
 def _regressors(
     record: Record, problem: Problem, t: FloatArray, moment: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Integrals of α, q, δe from the record's first stamp to ``t``: (n, 3); and of 1 and s: (n, 2)."""
+    """Return integrals of α, q, δe from the record's first stamp to ``t``: (n, 3); and of 1 and s: (n, 2)."""
     alpha, q = _usable(record.alpha), _usable(record.outputs["q"])
     surface = _surface(record, problem.servo)
     begin = min(signal.t[0] for signal in record.outputs.values())
@@ -142,7 +142,7 @@ def _surface(record: Record, servo: Servo) -> Signal:
 
 
 def _integral(x: Signal, begin: float, t: FloatArray) -> FloatArray:
-    """∫ x from ``begin`` to each of ``t``, the samples joined by lines."""
+    """Return ∫ x from ``begin`` to each of ``t``, the samples joined by lines."""
     total = integrated(x.t, x.y)
 
     def upto(times: FloatArray) -> FloatArray:

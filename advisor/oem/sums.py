@@ -29,7 +29,7 @@ class Sums:
 
     @classmethod
     def none(cls, parameters: int, colour: Colour) -> "Sums":
-        """Sums over no samples."""
+        """Return sums over no samples."""
         n = parameters
         return cls(colour, np.zeros((n + 1, n + 1)), np.zeros((n, n)), np.zeros(n))
 
@@ -40,7 +40,7 @@ class Sums:
         self.samples += len(residual)
 
     def power(self, step: FloatArray) -> float:
-        """Mean square of the residual after a step of the parameters (n,)."""
+        """Return the mean square of the residual after a step of the parameters (n,)."""
         moved = np.append(-step, 1.0)
         return max(float(moved @ self.gram @ moved), 0.0) / self.samples
 

@@ -26,13 +26,13 @@ class Servo:
     delay_s: float = 0.0
 
     def grid(self, command_t: FloatArray) -> tuple[FloatArray, float]:
-        """Where the surface's motion has corners, and the longest step that still follows it."""
+        """Return where the surface's motion has corners, and the longest step that still follows it."""
         return command_t + self.delay_s, LONGEST_STEP_S if self.lag_s > 0.0 else np.inf
 
     def move(
         self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool = False
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Surface position at the grid ``t`` (E,), which must hold the command's corners.
+        """Return the surface position at the grid ``t`` (E,), which must hold the command's corners.
 
         Returns
         -------
@@ -64,7 +64,8 @@ class Servo:
 def _lagged(
     step: FloatArray, start: FloatArray, arrival: FloatArray, lag: float, initial: float
 ) -> FloatArray:
-    """First-order lag of a command that goes linearly from ``start`` to ``arrival`` in each ``step``."""
+    """Return the first-order lag of a command that goes linearly from ``start`` to ``arrival`` in each
+    ``step``."""
     surface = np.empty(len(step) + 1)
     surface[0] = initial
     for i in range(len(step)):

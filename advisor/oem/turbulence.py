@@ -23,7 +23,7 @@ class Rows:
     t: FloatArray
     channel: np.ndarray
     """Shape (n,), int64: index into ``model.response.OUTPUTS``."""
-    left: FloatArray
+    residual: FloatArray
     speed: float
 
 
@@ -32,7 +32,7 @@ def cost_of(
 ) -> float:
     """-2 log likelihood of residuals under an air model, summed over manoeuvres."""
     return sum(
-        innovations.cost_of(r.t, r.channel, r.left, np.append(system, r.speed), air, start_variance)
+        innovations.cost_of(r.t, r.channel, r.residual, np.append(system, r.speed), air, start_variance)
         for r in rows
     )
 
@@ -116,7 +116,8 @@ def find_turbulence(
 
 
 def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -> float:
-    """Root mean square of what is left in the angle of attack, rad; without a channel, by its lift."""
+    """Return the root mean square of what is left in the angle of attack, rad; without a channel, by its
+    lift."""
     if any(np.any(r.channel == ALPHA) for r in rows):
         return float(rms[ALPHA])
     speed = float(np.mean([r.speed for r in rows]))
@@ -124,9 +125,9 @@ def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -
 
 
 def spread_of(rows: Sequence[Rows]) -> FloatArray:
-    """Root mean square of each output's residuals, shape (4,); 1 for one that is missing."""
-    picked = [np.concatenate([r.left[r.channel == c] for r in rows]) for c in range(len(OUTPUTS))]
-    return np.array([max(float(np.sqrt(np.mean(left**2))), 1e-12) if len(left) else 1.0 for left in picked])
+    """Return the root mean square of each output's residuals, shape (4,); 1 for one that is missing."""
+    picked = [np.concatenate([r.residual[r.channel == c] for r in rows]) for c in range(len(OUTPUTS))]
+    return np.array([max(float(np.sqrt(np.mean(one**2))), 1e-12) if len(one) else 1.0 for one in picked])
 
 
 def _descend(
@@ -137,7 +138,7 @@ def _descend(
     steps: Sequence[float],
     start_variance: float,
 ) -> tuple[AirModel, float]:
-    """Coordinate search in the logarithms of the noise figures, by ever smaller steps."""
+    """Return coordinate search in the logarithms of the noise figures, by ever smaller steps."""
     figures = [*start.white, *start.coloured, start.memory_s, start.gust, start.gust_memory_s]
     x = np.log(np.clip(figures, *_RANGE))
     free = [*range(9), 9, 10] if moving else [*range(9)]

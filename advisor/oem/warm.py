@@ -29,7 +29,7 @@ def warm() -> None:
 
 
 def _flown() -> Maneuver:
-    """Four channels of a doublet: no particular aircraft, but one with an estimate."""
+    """Return four channels of a doublet: no particular aircraft, but one with an estimate."""
     rng = np.random.default_rng(1)
     t = np.arange(0.0, 6.0, 0.05)
     u = np.where((t > 1.0) & (t < 2.0), 0.03, 0.0) - np.where((t > 2.0) & (t < 3.0), 0.03, 0.0)

@@ -46,22 +46,23 @@ class Weighing:
         )
 
     def forward(self, rows: FloatArray) -> FloatArray:
-        """L⁻¹·rows, (N, k)."""
+        """Return L⁻¹·rows, (N, k)."""
         return self._each(Whitening.forward, rows)
 
     def backward(self, rows: FloatArray) -> FloatArray:
-        """L⁻ᵀ·rows, (N, k)."""
+        """Return l⁻ᵀ·rows, (N, k)."""
         return self._each(Whitening.backward, rows)
 
     def influence(self, g: FloatArray, extra: FloatArray | None) -> FloatArray | None:
-        """(N, 8 + k) influence of every measurement on the efficient estimate; None when it overflows."""
+        """Return (N, 8 + k) influence of every measurement on the efficient estimate; None when it
+        overflows."""
         weighed = influence(
             self.assembly, self.forward(g), UNIT, None if extra is None else self.forward(extra)
         )
         return None if weighed is None else self.backward(weighed.rows)
 
     def misfit(self, residual: FloatArray, g: FloatArray) -> float:
-        """Weighed sum of squares, less what a last step of all parameters would still take off.
+        """Return weighed sum of squares, less what a last step of all parameters would still take off.
 
         The difference between two readings of one record is twice their log-likelihood ratio.
         """

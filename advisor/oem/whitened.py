@@ -35,7 +35,7 @@ class Whitened:
 
 
 def whitened(place: Place, air: AirModel, instruments: int) -> Whitened | None:
-    """The place seen through the filter; None where the numbers overflow.
+    """Return the place seen through the filter; None where the numbers overflow.
 
     Parameters
     ----------
@@ -52,21 +52,21 @@ def whitened(place: Place, air: AirModel, instruments: int) -> Whitened | None:
     shared_columns = [*(1 + common), *range(1 + N_PARAMETERS, 1 + N_PARAMETERS + instruments)]
     for order, gains in gains_along(place, air):
         white = gains.innovations(columns[order])
-        left, mine = white[:, 0], white[:, shared_columns]
+        residual, mine = white[:, 0], white[:, shared_columns]
         basis, triangle = np.linalg.qr(white[:, 1 + own])
-        kept, rest = mine - basis @ (basis.T @ mine), left - basis @ (basis.T @ left)
+        kept, rest = mine - basis @ (basis.T @ mine), residual - basis @ (basis.T @ residual)
         information += kept.T @ kept
         gradient += kept.T @ rest
         cost += 2.0 * float(np.sum(np.log(gains.root))) + float(rest @ rest)
-        parts.append((basis, triangle, mine, left))
+        parts.append((basis, triangle, mine, residual))
     if not (np.all(np.isfinite(information)) and np.isfinite(cost)):
         return None
     scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
     inverse = np.linalg.pinv(information / np.outer(scale, scale), rcond=1e-12, hermitian=True)
     step = (inverse @ (gradient / scale)) / scale
     own_steps = tuple(
-        np.asarray(np.linalg.lstsq(triangle, basis.T @ (left - mine @ step), rcond=1e-10)[0])
-        for basis, triangle, mine, left in parts
+        np.asarray(np.linalg.lstsq(triangle, basis.T @ (residual - mine @ step), rcond=1e-10)[0])
+        for basis, triangle, mine, residual in parts
     )
     return Whitened(cost, step, own_steps, np.sqrt(np.diag(inverse)) / scale)
 

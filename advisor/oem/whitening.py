@@ -30,16 +30,16 @@ class Whitening:
 
     @classmethod
     def of(cls, samples: int, memory: float, white_share: float, variance: float = 1.0) -> "Whitening":
-        """The filter for a stretch of noise whose coloured part has ``variance``."""
+        """Return the filter for a stretch of noise whose coloured part has ``variance``."""
         scale, gain, _ = schedule(samples, memory, white_share)
         return cls(memory, scale / np.sqrt(variance), gain)
 
     def forward(self, rows: FloatArray) -> FloatArray:
-        """L⁻¹·rows, shape (n, k)."""
+        """Return L⁻¹·rows, shape (n, k)."""
         return whiten(np.ascontiguousarray(rows), self.memory, self.scale, self.gain).T
 
     def backward(self, rows: FloatArray) -> FloatArray:
-        """L⁻ᵀ·rows, shape (n, k)."""
+        """Return l⁻ᵀ·rows, shape (n, k)."""
         return whiten_adjoint(np.ascontiguousarray(rows), self.memory, self.scale, self.gain)
 
 
@@ -60,7 +60,7 @@ def schedule(samples: int, memory: float, white_share: float) -> tuple[FloatArra
 
 @kernel()
 def whiten(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray) -> FloatArray:
-    """(L⁻¹·rows)ᵀ, shape (k, n): transposed, because what follows are products along time."""
+    """Return (L⁻¹·rows)ᵀ, shape (k, n): transposed, because what follows are products along time."""
     n, width = rows.shape
     white = np.empty((width, n))
     state = np.zeros(width)
@@ -74,7 +74,7 @@ def whiten(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray)
 
 @kernel()
 def whiten_adjoint(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray) -> FloatArray:
-    """L⁻ᵀ·rows, shape (n, k): the recursion of ``whiten`` run backwards."""
+    """Return l⁻ᵀ·rows, shape (n, k): the recursion of ``whiten`` run backwards."""
     n, width = rows.shape
     result = np.empty((n, width))
     carried = np.zeros(width)

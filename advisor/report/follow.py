@@ -12,12 +12,12 @@ from advisor.report.text import maneuver_line, next_line, stop_line
 def follow(
     batches: Iterator[Sequence[Columns]], campaign: Campaign, say: Callable[[str], object]
 ) -> CampaignState:
-    """Feed a campaign to the end of a stream and say every verdict.
+    """Feed a campaign to the end of a stream and print every verdict.
 
     Parameters
     ----------
     batches
-        What arrives, in order; empty batches are pauses.
+        Messages in order of arrival. Empty batches are pauses.
     say
         Takes one line of text.
     """
@@ -34,7 +34,7 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
         case FlightBegan(_, name):
             say(f"{name}:")
         case ManeuverAgain(maneuver, takes_place):
-            better = ", and this record takes the place" if takes_place else ""
+            better = ", and this record replaces it" if takes_place else ""
             say(f"{maneuver.number:2d}  {maneuver.span.start_s:8.2f} s  comes again and counts once{better}")
         case VehicleFound(vehicle):
             say(f"following {vehicle}")

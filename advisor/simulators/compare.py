@@ -104,7 +104,7 @@ def _measured(
     as_flown: Mapping[int, AsGiven],
     holdout: int | None,
 ) -> Diagnosis:
-    """The diagnosis with what the simulator itself makes of its findings."""
+    """Return the diagnosis with what the simulator itself makes of its findings."""
     found = in_simulator(examined, flying, surrogate, as_flown, holdout)
     told = examined.diagnosis
     notes = (f"The effects stay on paper: {found.refused}", *told.notes) if found.refused else told.notes
@@ -112,7 +112,8 @@ def _measured(
 
 
 def _linear(flying: Flying) -> dict[int, AsGiven]:
-    """How a linear simulator begins every manoeuvre: its surrogate is itself, and nothing lies beyond."""
+    """Return how a linear simulator begins every manoeuvre: its surrogate is itself, and nothing lies
+    beyond."""
     begun = []
     for flight in flying.flights.flights:
         rest = Inputs(np.array([0.5, 1.5]) * flight.h, np.zeros(2))
@@ -121,7 +122,7 @@ def _linear(flying: Flying) -> dict[int, AsGiven]:
 
 
 def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, dict[int, AsGiven]]:
-    """The surrogate, and how the simulator flies every manoeuvre."""
+    """Return the surrogate, and how the simulator flies every manoeuvre."""
     flights = flying.flights
     variants = variants_for(flights)
     known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
@@ -143,20 +144,20 @@ def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, 
 
 
 def _without_equations(aircraft: Aircraft) -> Aircraft:
-    """The aircraft file without effects of the force and of the moment."""
+    """Return the aircraft file without effects of the force and of the moment."""
     kept = {e: sizes for e, sizes in aircraft.effects.items() if TRAITS[e].block not in EQUATIONS}
     return replace(aircraft, effects=kept)
 
 
 def _usual(flying: Flying) -> Condition:
-    """The condition in the middle of those in which the manoeuvres began."""
+    """Return the condition in the middle of those in which the manoeuvres began."""
     conditions = [condition_of(f, flying.flights, flying.mass_kg) for f in flying.flights.flights]
     height = float(np.mean([c.height_m for c in conditions]))
     return Condition(flying.flights.reference_m_s, height, 0.0, flying.mass_kg)
 
 
 def _without(m: Maneuver, as_flown: Mapping[int, AsGiven]) -> Maneuver:
-    """The manoeuvre without what the simulator makes of it beyond its surrogate."""
+    """Return the manoeuvre without what the simulator makes of it beyond its surrogate."""
     if m.number not in as_flown:
         return m
     flight, grid = as_flown[m.number].flight, as_flown[m.number].beyond
@@ -169,7 +170,7 @@ def _without(m: Maneuver, as_flown: Mapping[int, AsGiven]) -> Maneuver:
 
 
 def _less(channel: Channel, t: FloatArray, by: FloatArray) -> Channel:
-    """A channel less a series; a sample that repeats the one before repeats it still."""
+    """Return a channel less a series; a sample that repeats the one before repeats it still."""
     y = channel.y - np.interp(channel.t, t, by)
     fresh = np.concatenate([[True], np.diff(channel.y) != 0.0])
     return replace(channel, y=y[np.maximum.accumulate(np.where(fresh, np.arange(len(y)), 0))])

@@ -60,7 +60,7 @@ class Flying:
         return found
 
     def as_flown(self, replays: Sequence[Replay]) -> list[Flight]:
-        """The manoeuvres with the simulator's own speed and trim."""
+        """Return the manoeuvres with the simulator's own speed and trim."""
         pairs = zip(self.flights.flights, replays, strict=True)
         return [as_flight(flight, replay, self.flights.reference_m_s) for flight, replay in pairs]
 
@@ -125,7 +125,7 @@ def added(flown: Sequence[Flight], found: FloatArray, as_given: FloatArray) -> t
 
 
 def without_servo(p: FloatArray, surrogate: Surrogate) -> FloatArray:
-    """Driving numbers, shape (manoeuvres, entries), without the simulator's own lag and delay."""
+    """Return driving numbers, shape (manoeuvres, entries), without the simulator's own lag and delay."""
     out = p.copy()
     for name, own in (("lag_s", surrogate.lag_s), ("delay_s", surrogate.delay_s)):
         out[:, INDEX[name]] = np.maximum(out[:, INDEX[name]] - own, 0.0)

@@ -29,7 +29,7 @@ _LONGEST_NEWTON_STEP_RAD = 0.1
 
 
 def make_fmu(file: str, aircraft: Aircraft) -> Isolated:
-    """The simulator of ``fmu:FILE.fmu``, in a process of its own.
+    """Return the simulator of ``fmu:FILE.fmu``, in a process of its own.
 
     Raises
     ------
@@ -174,7 +174,8 @@ class FmuSimulator:
         self._fmu.begin(values)
 
     def _steady(self, condition: Condition, start: Mapping[int, float]) -> tuple[float, float]:
-        """Angle of attack and elevator for which neither α nor q changes in the first step (Newton)."""
+        """Return the angle of attack and elevator for which neither α nor q changes in the first step
+        (Newton)."""
 
         def change(at: FloatArray) -> FloatArray:
             self._start_at(condition, start, float(at[0]), float(at[1]))
@@ -209,7 +210,7 @@ class FmuSimulator:
         self._fmu.write({self._inputs[name]: value / self._factor[name] for name, value in values.items()})
 
     def _motion(self, condition: Condition) -> list[float]:
-        """The outputs in the order of ``_OUTPUTS``; what is not mapped stays at the condition's."""
+        """Return the outputs in the order of ``_OUTPUTS``; what is not mapped stays at the condition's."""
         values = dict(zip(self._outputs, self._fmu.read(self._outputs.values()), strict=True))
         kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
         return [self._factor[name] * values[name] if name in values else kept[name] for name in _OUTPUTS]

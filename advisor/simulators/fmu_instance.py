@@ -57,7 +57,7 @@ class Fmu:
         return None if step is None else float(step)
 
     def reference(self, key: str, variable: str, use: Use) -> int:
-        """Value reference of a variable that the aircraft file's ``key`` names."""
+        """Return the value reference of a variable that the aircraft file's ``key`` names."""
         found = self._variables.get(variable)
         if found is None:
             raise self._unusable(
@@ -105,7 +105,7 @@ class Fmu:
             raise self._refused("where a value is set", error) from error
 
     def read(self, references: Iterable[int]) -> list[float]:
-        """Values of real variables by value reference."""
+        """Return values of real variables by value reference."""
         getter = self._instance.getFloat64 if self._is_fmi3 else self._instance.getReal
         try:
             return [float(value) for value in getter(list(references))]

@@ -78,7 +78,8 @@ class Isolated:
         return Replay(**{name: row and np.array(row) for name, row in columns.items()})
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Dimensional short-period derivatives at the condition, or None where the simulator has none."""
+        """Return dimensional short-period derivatives at the condition, or None where the simulator has
+        none."""
         derivatives: Mapping[str, float] | None = self._ask("linearise", condition)
         return derivatives
 
@@ -205,7 +206,7 @@ def _outcome(task: Any, *given: Any) -> tuple[str, Any]:
 
 
 def _columns(replay: Any) -> dict[str, list[float] | None]:
-    """The replay as plain numbers, checked."""
+    """Return the replay as plain numbers, checked."""
     rows: dict[str, list[float] | None] = {}
     for one in fields(Replay):
         row = getattr(replay, one.name, None)

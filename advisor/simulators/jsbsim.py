@@ -20,7 +20,7 @@ _PROBE = 1e-3
 
 
 def make_jsbsim(model: str, aircraft: Aircraft) -> Isolated:
-    """The simulator of ``jsbsim:MODEL``, in a process of its own.
+    """Return the simulator of ``jsbsim:MODEL``, in a process of its own.
 
     Raises
     ------
@@ -96,7 +96,7 @@ class Jsbsim:
         return Replay(t, alpha, q, theta, a_z, speed, height, a_x)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
+        """Return central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
 
         A moment by the rate of α is part of the derivatives, as in the short-period model.
         """
@@ -135,14 +135,14 @@ class Jsbsim:
         return (rates[0][0] - rates[1][0]) / width, (rates[0][1] - rates[1][1]) / width
 
     def _rates(self) -> tuple[float, float]:
-        """Rates of α, rad/s, and of q, rad/s²."""
+        """Return rates of α, rad/s, and of q, rad/s²."""
         fdm = self._flight.fdm
         u, w = fdm["velocities/u-fps"], fdm["velocities/w-fps"]
         u_dot, w_dot = fdm["accelerations/udot-ft_sec2"], fdm["accelerations/wdot-ft_sec2"]
         return (u * w_dot - w * u_dot) / (u * u + w * w), fdm["accelerations/qdot-rad_sec2"]
 
     def _throw(self, name: str) -> float:
-        """Command per radian of surface, positive where a positive surface turns to the left."""
+        """Return command per radian of surface, positive where a positive surface turns to the left."""
         fdm = self._flight.fdm
         surface, rate = {
             "aileron": ("fcs/left-aileron-pos-rad", "accelerations/pdot-rad_sec2"),

@@ -146,7 +146,7 @@ class Flight:
             self.fdm.run()
 
     def accelerations(self) -> FloatArray:
-        """Shape (6,): u̇, v̇, ẇ in m/s², ṗ, q̇, ṙ in rad/s²."""
+        """Return u̇, v̇, ẇ in m/s², ṗ, q̇, ṙ in rad/s², shape (6,)."""
         fdm = self.fdm
         linear = [FOOT_M * fdm[f"accelerations/{one}dot-ft_sec2"] for one in "uvw"]
         return np.array(linear + [fdm[f"accelerations/{one}dot-rad_sec2"] for one in "pqr"])
@@ -170,7 +170,7 @@ class Flight:
             fdm.run_ic()
 
     def _elevator_curve(self, condition: Condition) -> tuple[FloatArray, FloatArray] | None:
-        """Surfaces in ascending order and their commands; None: the surface is written."""
+        """Return surfaces in ascending order and their commands; None: the surface is written."""
         fdm = self.fdm
         fdm[WRITES] = 0.0
         fdm["fcs/pitch-trim-cmd-norm"] = 0.0

@@ -26,7 +26,7 @@ LOAD_PLACE = "inertia/pointmass-location-{}-inches"
 
 
 def find_model(name: str) -> Path:
-    """The XML file of a model that JSBSim ships, or of a user's own path.
+    """Return the XML file of a model that JSBSim ships, or of a user's own path.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def find_model(name: str) -> Path:
 
 
 def load(path: Path, dt: float) -> Any:
-    """JSBSim with the model, and its step set to ``dt`` seconds.
+    """Return JSBSim with the model, and its step set to ``dt`` seconds.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def _equipped(path: Path) -> "ET.ElementTree[ET.Element]":
 
 
 def _section(root: ET.Element, tag: str, folder: Path | None = None) -> ET.Element:
-    """The section, with what its own ``file`` holds, and made where there is none."""
+    """Return the section, with what its own ``file`` holds, and made where there is none."""
     section = root.find(tag)
     if section is None:
         section = ET.SubElement(root, tag, {"name": "advisor"})

@@ -66,7 +66,8 @@ def trim(flight: Flight, condition: Condition, known: State | None = None) -> St
 
 
 def _next_throttle(tried: list[_Tried]) -> float | None:
-    """The next throttle between those that slow and those that accelerate; None: the last one serves."""
+    """Return the next throttle between those that slow and those that accelerate; None: the last one
+    serves."""
     last = tried[-1]
     if abs(last.excess) < _BALANCED_M_S2 or len(tried) >= _THROTTLES:
         return None
@@ -82,7 +83,7 @@ def _next_throttle(tried: list[_Tried]) -> float | None:
 
 
 def _steady(flight: Flight, condition: Condition, guess: State) -> _Tried:
-    """Steady flight at the guess's throttle, but for the axial acceleration."""
+    """Return the steady flight at the guess's throttle, but for the axial acceleration."""
     state = guess._replace(axial=0.0)
     flight.put(state, condition.flight_path_rad)
     _settle_engines(flight)

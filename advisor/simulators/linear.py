@@ -60,7 +60,7 @@ class LinearSimulator:
         return Replay(t, angle, rate, attitude, a_z, np.full(n + 1, speed), heights, a_x)
 
     def linearise(self, condition: Condition) -> Mapping[str, float]:
-        """The six derivatives at the condition's speed."""
+        """Return the six derivatives at the condition's speed."""
         v = 1.0 if self.reference_m_s is None else condition.airspeed_m_s / self.reference_m_s
         powers = dict(zip(DERIVATIVES, (1, 0, 1, 2, 1, 2), strict=True))
         return {name: self.derivatives[name] * v ** powers[name] for name in DERIVATIVES}
@@ -78,7 +78,7 @@ class LinearSimulator:
 def _step(
     rates: FloatArray, now: State, weight: float, increments: Increments | None
 ) -> tuple[float, tuple[float, float]]:
-    """The normal force over m·V in rad/s, and the rates of α and q.
+    """Return the normal force over m·V in rad/s, and the rates of α and q.
 
     ``rates``, shape (8,): the six derivatives, g/V, and the lift in trim, rad/s; ``weight``: its part of α̇.
     """

@@ -64,7 +64,7 @@ class Increments(Protocol):
     """
 
     def __call__(self, state: State) -> tuple[float, float]:
-        """Increments of α̇ by a force across the path, rad/s, and of q̇, rad/s²."""
+        """Return increments of α̇ by a force across the path, rad/s, and of q̇, rad/s²."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ class Simulator(Protocol):
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e at the condition.
+        """Return Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e at the condition.
 
         None: they are identified from replays.
         """

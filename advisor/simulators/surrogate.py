@@ -46,7 +46,7 @@ class Surrogate:
     """... and the delay before the servo."""
 
     def aircraft(self, file: Aircraft) -> Aircraft:
-        """The aircraft file with the surrogate in place of its model, and both servos in a row."""
+        """Return the aircraft file with the surrogate in place of its model, and both servos in a row."""
         elevator = replace(
             file.elevator,
             lag_s=(file.elevator.lag_s or 0.0) + self.lag_s,
@@ -107,7 +107,8 @@ def surrogate_of(
 
 
 def trimmed_at(p: FloatArray, flight: Flight) -> FloatArray:
-    """Driving numbers, shape (entries,), with the trim terms of a manoeuvre as the simulator began it."""
+    """Return driving numbers, shape (entries,), with the trim terms of a manoeuvre as the simulator began
+    it."""
     theta, reference = float(flight.trim[THETA_FROM]), float(flight.trim[REFERENCE])
     speed, height = float(flight.slow[SPEED, 0]), float(flight.slow[HEIGHT, 0])
     return trimmed(p, flight.alpha_trim, theta, speed, height, reference)

@@ -23,7 +23,7 @@ HEIGHT_M = 100.0
 
 
 def scenes() -> Mapping[str, Scene]:
-    """The paper's aircraft, and the bundled UAV as linear as its own linearisation is."""
+    """Return the paper's aircraft, and the bundled UAV as linear as its own linearisation is."""
     habits = AIRFRAMES["uav"][1]
     uav = NonlinearAircraft(UAV, habits.airspeed_m_s, HEIGHT_M).truth
     return {
@@ -121,7 +121,7 @@ def fly_input(scene: Scene, option: StepInput) -> Flight:
 
 
 def _crew(scene: Scene, standard: Flight, same: bool) -> Aircraft:
-    """The aircraft file, with an angle-of-attack limit where excursions are held."""
+    """Return the aircraft file, with an angle-of-attack limit where excursions are held."""
     limits = Limits()
     if same:
         # The advice keeps a margin of a tenth to the limit; the limit is set so that the standard

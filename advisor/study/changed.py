@@ -56,7 +56,7 @@ def measure(campaigns: int, seed: int, advance: Advance | None = None) -> list[D
 def _columns(
     scene: Scene, order: tuple[str, ...], noise: FloatArray, campaigns: int, rng: np.random.Generator
 ) -> list[list[Flown]]:
-    """Manoeuvres of each campaign."""
+    """Return manoeuvres of each campaign."""
     columns: list[list[Estimate]] = [
         estimate_copies(fly_named(scene, name), noise, campaigns, rng) for name in order
     ]
@@ -64,7 +64,7 @@ def _columns(
 
 
 def _unchanged(campaigns: list[list[Flown]], noise: float) -> Detection:
-    """False alarms: looked for after every manoeuvre, as in flight."""
+    """Return false alarms: looked for after every manoeuvre, as in flight."""
     suspected = confirmed = 0
     for campaign in campaigns:
         changes = [find_change(campaign[: n + 1]) for n in range(len(campaign))]

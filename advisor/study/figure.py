@@ -89,7 +89,7 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
 
 
 def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[str]:
-    """The medians of one rule as lines of text, logarithmic in the criterion."""
+    """Return the medians of one rule as lines of text, logarithmic in the criterion."""
     chosen = [c for c in curves if c.rule == rule]
     values = [q[1] for c in chosen for q in c.quantiles if q is not None]
     if not values:

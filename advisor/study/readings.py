@@ -96,7 +96,7 @@ class ReadingResult:
 
 
 def compare(campaigns: Sequence[Sequence[Estimate]], noise_percent: float) -> list[ReadingResult]:
-    """Every reading on the same campaigns."""
+    """Return every reading on the same campaigns."""
     results = []
     for reading in READINGS:
         for rule, accepting in reading.accepting.items():

@@ -34,7 +34,7 @@ def table_1(
     other_readings: bool = False,
     progress: Progress | None = None,
 ) -> Report:
-    """Table 1 and Figure 5, the paper's place in them, and the flaws of its rules."""
+    """Return the Table 1 and Figure 5, the paper's place in them, and the flaws of its rules."""
     scene, plan = Scene(), CampaignPlan()
     maneuvers = [as_maneuver(fly_named(scene, name)) for name in ORDER]
     flown_in_all = campaigns * len(NOISE_PERCENT) + min(campaigns, flaws.MOST_CAMPAIGNS)
@@ -93,7 +93,7 @@ def advice(campaigns: int, seed: int, progress: Progress | None = None) -> Repor
 
 
 def change(campaigns: int, seed: int, progress: Progress | None = None) -> Report:
-    """How soon a changed aircraft is noticed, and how often an unchanged one is suspected."""
+    """Return how soon a changed aircraft is noticed, and how often an unchanged one is suspected."""
     found = changed.measure(campaigns, seed, counter(len(NOISE_PERCENT), progress))
     entries = [
         {
@@ -110,7 +110,7 @@ def change(campaigns: int, seed: int, progress: Progress | None = None) -> Repor
 
 
 def early_stops(campaigns: int, seed: int, progress: Progress | None = None) -> Report:
-    """How often the rule ``information`` stops too early, and what each rule needs."""
+    """Return how often the rule ``information`` stops too early, and what each rule needs."""
     found = stops.measure(campaigns, seed, counter(len(stops.CASES), progress), stops.CASES)
     entries = [
         {

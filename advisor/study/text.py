@@ -36,7 +36,7 @@ def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
 
 
 def table(rows: Sequence[Row]) -> list[str]:
-    """Three lines a row: the median error, the range of the middle 80 %, the paper's error."""
+    """Return three lines a row: the median error, the range of the middle 80 %, the paper's error."""
     lines = [
         "Nominal error in % at the stop: median, 10 % to 90 % of the campaigns, and the paper's. "
         "Needed: median (90 %), never.",
@@ -56,7 +56,7 @@ def table(rows: Sequence[Row]) -> list[str]:
 
 
 def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
-    """A sentence a row on the paper's single realisation within our distribution."""
+    """Return a sentence a row on the paper's single realisation within our distribution."""
     lines = ["Where the paper's single campaign lies among ours:"]
     for row in rows:
         if row.paper is None:
@@ -78,7 +78,7 @@ def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
 
 
 def tolerances(rows: Sequence[Row]) -> list[str]:
-    """How often the rule `information` was wrong."""
+    """Return how often the rule `information` was wrong."""
     lines = []
     for row in rows:
         if row.outside_tolerance_percent is not None:
@@ -106,7 +106,7 @@ def flaws(found: Flaws) -> list[str]:
 
 
 def readings(results: Iterable[ReadingResult]) -> list[str]:
-    """How other readings of the paper fare."""
+    """Return how other readings of the paper fare."""
     lines = [
         "Other readings of the rules: median needed, never, share of campaigns that need exactly what the "
         "paper's did",
@@ -120,7 +120,7 @@ def readings(results: Iterable[ReadingResult]) -> list[str]:
 
 
 def savings(found: Sequence[Saving], campaigns: int) -> list[str]:
-    """Manoeuvres needed with and without the advice."""
+    """Return manoeuvres needed with and without the advice."""
     lines = [
         f"Manoeuvres until the response is known to {PLAN.tolerance_percent:g} % of its peak, the named "
         f"derivatives accordingly (rule information), {campaigns} campaigns each,",
@@ -139,7 +139,7 @@ def savings(found: Sequence[Saving], campaigns: int) -> list[str]:
 
 
 def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
-    """Changes noticed, and false alarms."""
+    """Return changes noticed, and false alarms."""
     lines = [f"Something changed, {campaigns} campaigns each:"]
     for one in found:
         if one.lost is None:
@@ -157,7 +157,8 @@ def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
 
 
 def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
-    """False stops of the rule ``information``, and manoeuvres needed beside those of the paper's rules."""
+    """Return false stops of the rule ``information``, and manoeuvres needed beside those of the paper's
+    rules."""
     lines = [
         "Stops of the rule information. False: the predicted response is wrong by more than the",
         f"tolerance. Needed by {campaigns} campaigns of seven manoeuvres: median (share without stop).",

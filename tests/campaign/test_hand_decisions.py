@@ -160,7 +160,7 @@ def test_the_diagnosis_reads_them_and_says_what_is_left_out(log: Path) -> None:
     write_by_hand(log, decisions(log))
     found = maneuvers_of([log], Aircraft(), by_hand=[read_by_hand(log)])
     assert [m.span.closed_by for m in found.maneuvers] == ["marked by hand"]
-    assert "flight.tlog: manoeuvre 2 is left out by hand: a gust." in found.notes
+    assert "flight.tlog: manoeuvre 2 is excluded by hand: a gust." in found.notes
 
 
 @pytest.mark.parametrize("command", ["analyze", "gap", "replay"])

@@ -1,4 +1,4 @@
-"""What a reader should know beside the answer: what was assumed, missing, unusual, or could not be done."""
+"""Notes on a diagnosis: assumptions, missing channels, unusual values, and manoeuvres left out."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -11,25 +11,25 @@ from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.usable import why_left_out
 from advisor.gap.result import Verdict, spelled
+from advisor.gap.search.path_energy import mean_speed
 from advisor.gap.search.stage import added_in
-from advisor.gap.search.work import mean_speed
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.text import place
 
 _ANOTHER_SPEED = 0.005
-"""Relative: by less two ways of taking the mean differ."""
+"""Least relative difference between two means of the air speed that is reported."""
 _MATTERS = 0.3
-"""Gap that a simulator at constant speed must leave besides, to be worth a word."""
+"""Least gap of a simulator at constant speed that is reported."""
 _FEW = 6
-"""Manoeuvres below which little can be told of what changes between them."""
+"""Number of manoeuvres below which changes between them can hardly be seen."""
 
 
 def notes_of(
-    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: Verdict, nobodys_fault: Collection[str]
+    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: Verdict, nuisances: Collection[str]
 ) -> tuple[str, ...]:
-    """Every note that these flights and their aircraft file call for, a sentence each.
+    """Return all notes that these flights and their aircraft file require, a sentence each.
 
-    ``nobodys_fault`` are effects that the improved simulator gets though they are no cause.
+    ``nuisances`` are effects that the improved simulator gets although they are no cause.
     """
     return (
         *_of_the_hold_out(holdout, len(e.problem.flights)),
@@ -39,7 +39,7 @@ def notes_of(
         *_of_the_unexplained(e),
         *_of_single_witnesses(e),
         *_of_the_air(e),
-        *_of_the_file(aircraft, nobodys_fault),
+        *_of_the_file(aircraft, nuisances),
         *_of_what_is_missing(e, aircraft),
     )
 
@@ -53,7 +53,7 @@ def _of_the_hold_out(holdout: int | None, flown: int) -> Iterator[str]:
 
 
 def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
-    """Where the air speed is from, and what is off about it."""
+    """Yield the source of the air speed, and its errors."""
     flights = e.problem.flights
     flown, reference = mean_speed(flights), flights.reference_m_s
     is_stated = aircraft.reference_airspeed_m_s is not None
@@ -66,18 +66,18 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
         )
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
-        if e.shear.is_feigned:
+        if e.shear.is_implausible:
             yield f"The air speed's error grows by {per_metre} a metre climbed: more than any wind changes."
         else:
             yield f"The wind changed with height, by {per_metre} a metre."
-    if e.true_speed is not None:
-        yield e.true_speed.sentence
+    if e.airspeed_scale is not None:
+        yield e.airspeed_scale.sentence
     if e.weight is not None:
         yield e.weight.sentence
 
 
 def _of_a_constant_speed(e: Evidence, verdict: Verdict) -> Iterator[str]:
-    """What "like the aircraft" takes for granted where the speed moved."""
+    """Yield the gap of a simulator at constant speed, where the verdict is none and the air speed varied."""
     if verdict != "none" or e.constant_speed is None or not e.problem.flights.speed_measured:
         return
     constant, given = (whole_gap(h.mean_square, e.floor) for h in (e.constant_speed, e.stages[-1].held_out))
@@ -100,14 +100,14 @@ def _without_air_speed(flights: Flights, is_known: bool) -> str:
 
 
 def _of_the_unexplained(e: Evidence) -> Iterator[str]:
-    if e.leftover is not None and e.leftover.note:
-        yield f"Unexplained {place(e.leftover.block)}: {e.leftover.note}"
+    if e.unexplained is not None and e.unexplained.note:
+        yield f"Unexplained {place(e.unexplained.block)}: {e.unexplained.note}"
 
 
 def _of_single_witnesses(e: Evidence) -> Iterator[str]:
     for judged in added_in(e.stages):
-        if judged.witness is not None:
-            number = e.problem.flights.flights[judged.witness].number
+        if judged.sole_maneuver is not None:
+            number = e.problem.flights.flights[judged.sole_maneuver].number
             yield (
                 f"Manoeuvre {number} alone shows the {spelled(judged.effect)}: "
                 "it is measured there, and no other manoeuvre could confirm it."
@@ -130,11 +130,11 @@ def _of_the_air(e: Evidence) -> Iterator[str]:
         )
 
 
-def _of_the_file(aircraft: Aircraft, nobodys_fault: Collection[str]) -> Iterator[str]:
-    """What the improved simulator gets besides, and what was made of the effects that the file has."""
-    if nobodys_fault:
+def _of_the_file(aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str]:
+    """Yield the additional terms of the improved simulator, and the treatment of the file's effects."""
+    if nuisances:
         yield (
-            f"The improved simulator has a propeller's terms, too ({_listed(sorted(nobodys_fault))}): "
+            f"The improved simulator has a propeller's terms, too ({_listed(sorted(nuisances))}): "
             "every aircraft with a propeller has them, and they are not counted as a cause."
         )
     aside = left_aside(aircraft.effects)
@@ -159,7 +159,7 @@ def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
 
 
 def _command(e: Evidence) -> str:
-    """How the command was taken to move between its stamps, and what looks the same."""
+    """Return how the command moved between its stamps, and what looks the same."""
     if not e.problem.held:
         return "The command was taken as linear between its stamps, its edges anywhere between two."
     half = 0.5 * float(np.median(np.diff(e.problem.flights.flights[0].t_u)))
@@ -170,7 +170,7 @@ def _command(e: Evidence) -> str:
 
 
 def left_out(maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
-    """Which manoeuvres were not used, and why."""
+    """Return the manoeuvres that were not used, each with the reason."""
     return tuple(f"Left out: manoeuvre {m.number}: {why_left_out(m)}." for m in maneuvers)
 
 
@@ -179,7 +179,7 @@ def _listed(effects: Sequence[str]) -> str:
 
 
 def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
-    """What of an aircraft file's model is right for few aircraft only."""
+    """Return a note on a sign of the aircraft file's model that is right for few aircraft only."""
     if model.get("M_delta_e", 0.0) <= 0.0:
         return ()
     return (

@@ -1,4 +1,4 @@
-"""The diagnosis in a sentence, as a pilot hears it."""
+"""The sentence of a diagnosis for pilots."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ from advisor.gap.result import VISIBLE, Cause, Gap, Shrink, Verdict, Where, spel
 from advisor.gap.verdict.statements import what
 
 _AS_LIKELY = 0.99
-"""Score beside the best from which on another block is as likely a place."""
+"""Score relative to the best block at which another block is equally likely."""
 _BLOCK = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
@@ -21,12 +21,12 @@ _BLOCK = {
 
 
 def place(block: str) -> str:
-    """Where a block is, in words."""
+    """Return the place of a block in words."""
     return _BLOCK[block]
 
 
-def where_of_one(where: Where) -> str:
-    """The sentence of a single manoeuvre, which shows where a gap lies and proves no cause of it."""
+def sentence_of_one_maneuver(where: Where) -> str:
+    """Return the sentence of a single manoeuvre, which shows where a gap lies and proves no cause."""
     return (
         f"Something acts {place(where.block)} that the simulator does not have; one manoeuvre cannot prove "
         "what: fly two more."
@@ -41,7 +41,8 @@ def sentence_of(
     shrink: Shrink | None,
     in_simulator: frozenset[str] = frozenset(),
 ) -> str:
-    """One sentence for the crew; ``in_simulator`` are effects that the aircraft file has some of."""
+    """Return one sentence for the crew; ``in_simulator`` has the effects that the aircraft file has some
+    of."""
     present = [c for c in causes if c.present]
     if verdict == "none":
         if gap.before < VISIBLE:
@@ -83,7 +84,7 @@ def sentence_of(
         removed = f"{shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
     added = "adding it"
     if shrink is not None and shrink.by_numbers_percent is not None:
-        # What the numbers do must not pass for the effect's work.
+        # The share of fitted derivatives must not pass for the effect's.
         added = "adding it and fitting the eight numbers anew"
         removed += f" (the numbers alone {shrink.by_numbers_percent:.0f} %)"
     return f"{named}; {added} removes {removed}{also}."

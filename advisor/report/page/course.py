@@ -1,4 +1,4 @@
-"""The course of whole flights: a few channels from take-off to landing, for a picture."""
+"""Time histories of whole flights: a few channels from take-off to landing, for a picture."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,8 @@ from advisor.flight.record import Channel
 SHOWN = ("elevator", "alpha", "q", "airspeed", "height")
 _SLICE_S = 40.0
 _LOOK_BACK_S = 100.0
-"""Shorter than what the stream keeps and longer than a slice, so that nothing is missed between two looks."""
+"""Length of each look back, s. Shorter than the stream keeps and longer than a slice, so that nothing is
+missed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +43,12 @@ def slices(columns: Sequence[Columns]) -> Iterator[list[Columns]]:
 
 
 class CourseWatch:
-    """Keeps what a campaign forgets: looks at its newest channels after every piece of a log.
+    """Collects channels that a campaign drops, by a look after every piece of a log.
 
     Parameters
     ----------
     campaign
-        Hears the logs.
+        Campaign that takes the logs.
     """
 
     def __init__(self, campaign: Campaign) -> None:
@@ -55,7 +56,7 @@ class CourseWatch:
         self._parts: dict[tuple[int, int], dict[str, list[Channel]]] = {}
 
     def look(self) -> None:
-        """Take what is new since the last look."""
+        """Take the samples since the last look."""
         at = self._campaign.power_on
         for name in SHOWN:
             recent = self._campaign.recent(name, _LOOK_BACK_S)
@@ -69,7 +70,7 @@ class CourseWatch:
 
     @property
     def courses(self) -> tuple[Course, ...]:
-        """What was kept, flight by flight."""
+        """Collected channels, flight by flight."""
         return tuple(
             Course(flight, boot, tuple(_joined(parts) for parts in channels.values()))
             for (flight, boot), channels in sorted(self._parts.items())
@@ -83,7 +84,8 @@ def _joined(parts: Sequence[Channel]) -> Channel:
 
 
 def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:
-    """Times and values that draw the same line: lowest and highest of each bin, a break in each gap.
+    """Return times and values that draw an equal line: lowest and highest of each bin, and a break in each
+    gap.
 
     Parameters
     ----------

@@ -12,14 +12,14 @@ from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, picture
 
 _EXPLAINED = (
-    "The rules continuous and separate weigh the scatter of the newest estimates (Eq. 12), the rule "
-    "information the tolerances that the aircraft file asks for (100 %: met). Dashes: the limit. Diamond: "
-    "the rule says stop."
+    "The rules continuous and separate compare the scatter of the newest estimates with a limit (Eq. 12). "
+    "The rule information compares errors with the tolerances of the aircraft file (100 %: met). "
+    "Dashes: the limit. Diamond: the rule says stop."
 )
 
 
 def criterion(content: Content) -> Section:
-    """A figure a rule, and the same as numbers."""
+    """Return a figure for each rule, and its values as a table."""
     return Section("criterion", "Stop criterion", tuple(_blocks(content)))
 
 

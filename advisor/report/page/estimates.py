@@ -1,4 +1,4 @@
-"""The estimates with their intervals: joint against the file's model, and manoeuvre by manoeuvre."""
+"""The estimates with their intervals: joint estimate against the file's model, and each manoeuvre."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -15,7 +15,8 @@ from advisor.report.text import SYMBOLS, UNITS, shown
 
 
 def estimates(content: Content) -> Section:
-    """Joint estimate as a table, a forest plot a parameter, then the table of the manoeuvres."""
+    """Return the joint estimate as a table, a forest plot for each parameter, then the table of
+    manoeuvres."""
     return Section("estimates", "Estimates", tuple(_blocks(content)))
 
 
@@ -35,7 +36,7 @@ def _blocks(content: Content) -> Iterator[Block]:
     accepted = [m for m in content.analysis["maneuvers"] if m["verdict"] == "accepted" and m["estimates"]]
     yield Gallery(tuple(_forest(name, accepted, model[name], believed.get(name)) for name in PARAMETERS))
     yield Table(
-        "by-maneuver", "Estimate of each accepted manoeuvre by itself, ± half the 95 % interval.",
+        "by-maneuver", "Estimate of each accepted manoeuvre alone, ± half the 95 % interval.",
         ("no.", *(f"{SYMBOLS[name]} [{UNITS[name]}]" for name in PARAMETERS)),
         tuple(map(_alone, accepted)),
         frozenset(range(len(PARAMETERS) + 1)),
@@ -65,7 +66,7 @@ def _alone(maneuver: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _narrow(cell: str) -> str:
-    """The cell with one place to break its line, before the interval."""
+    """Return the cell with one place for a line break, before the interval."""
     return cell.replace("± ", "±\N{NO-BREAK SPACE}")
 
 

@@ -23,7 +23,7 @@ _EXPLAINED = (
 
 
 def flight_picture(content: Content) -> Section:
-    """A picture of each power-on that holds a manoeuvre."""
+    """Return a picture of each power-on that holds a manoeuvre."""
     return Section("flight", "The flight in one picture", tuple(_blocks(content)))
 
 
@@ -75,7 +75,7 @@ def _mark(axes: Axes, judged: Sequence[JudgedManeuver]) -> None:
 
 
 def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
-    """The elevator turned the way the manoeuvres have it, where the sense was found only from them."""
+    """Return the elevator with the sign of the manoeuvres, where only they showed the sign."""
     flown = [j.maneuver.channels["elevator"] for j in judged if "elevator" in j.maneuver.channels]
     if channel.name != "elevator" or not flown:
         return channel

@@ -12,7 +12,7 @@ _HEAD = ("no.", "start [s]", "input", "mode", "verdict", "why")
 
 
 def maneuvers(content: Content) -> Section:
-    """One row a manoeuvre, then what does not reject one but belongs on its verdict."""
+    """Return a table with a row for each manoeuvre, then cautions that do not reject a manoeuvre."""
     found = content.analysis["maneuvers"]
     rows = tuple(_row(maneuver, len(content.names) > 1) for maneuver in found)
     table = Table(
