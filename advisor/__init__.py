@@ -45,7 +45,7 @@ def __dir__() -> list[str]:
 
 
 def _installed_version() -> str:
-    """Version of the installed package; of a checkout that is not installed, a version below all others."""
+    """Return the version of the installed package; without an installation one below all others."""
     from importlib.metadata import PackageNotFoundError, version
 
     try:

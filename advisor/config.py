@@ -123,7 +123,7 @@ def _sentence(item: Any) -> str:
 
 
 def _meant(key: str) -> str:
-    """The known key that an unknown one resembles, as a question; empty where none does."""
+    """Name the known key that an unknown one resembles, as a question; empty where none does."""
     known = sorted({one.name for part in _PARTS for one in fields(part)})
     near = get_close_matches(key, known, 1)
     return f" (did you mean {near[0]}?)" if near else ""
@@ -144,7 +144,7 @@ _PARTS = (
 )
 """The sections of the file, innermost first."""
 _EXAMPLE = "To see every key with its meaning, type: advisor aircraft new --blank -o example.yaml."
-"""What to do about a file that is not taken."""
+"""Next step after a file was refused."""
 _MOST_LISTED = 20
 """Most mistakes that are listed. A user with more has repeated one mistake."""
 _MOST_POINTS = 500

@@ -15,7 +15,7 @@ from pathlib import Path
 
 Tell = Callable[[str], None]
 Stages = Mapping[str, Callable[[], None]]
-"""What is compiled, and what compiles it."""
+"""Name of compiled code to the function that compiles the code."""
 
 
 def _called(module: str, function: str) -> Callable[[], None]:
@@ -63,7 +63,7 @@ def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
 
 
 def _folder() -> Path | None:
-    """Folder of the mark, chosen as numba chooses that of the machine code; None: none can be written to."""
+    """Return the folder of the mark, chosen as numba chooses the folder of machine code; None for none."""
     from platformdirs import user_cache_path
 
     given = os.environ.get("NUMBA_CACHE_DIR")
@@ -74,13 +74,13 @@ def _folder() -> Path | None:
 
 
 def _writable(folder: Path) -> bool:
-    """Whether files can be made in a folder, or the folder itself in the nearest one that exists."""
+    """Return whether files can be made in a folder, or the folder in the nearest parent that exists."""
     nearest = next(one for one in (folder, *folder.parents) if one.exists())
     return nearest.is_dir() and os.access(nearest, os.W_OK)
 
 
 def _key(stages: Stages) -> str:
-    """What machine code depends on besides the sources: versions, machine, and the place of the sources."""
+    """Return a hash of versions, machine and folder: all that machine code depends on but the sources."""
     parts = (version("numba"), _own_version(), sys.version, platform.machine(), __file__, *stages)
     return sha256("\0".join(parts).encode()).hexdigest()[:16]
 

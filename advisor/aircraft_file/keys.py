@@ -1,4 +1,4 @@
-"""The keys of an aircraft file that a crew fills in: what each means, what to ask, what its absence costs."""
+"""The keys of an aircraft file that a crew fills in: meaning, question, and cost of the missing key."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ class Key:
     question: str = ""
     """Question on the terminal; empty: never asked."""
     cost: str = ""
-    """What the absence of the key costs, one sentence; empty: nothing."""
+    """Sentence on the cost of the missing key; empty where a missing key costs nothing."""
     mend: str = ""
     """How a crew finds the value, a clause."""
 

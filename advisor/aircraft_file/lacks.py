@@ -1,4 +1,4 @@
-"""What an aircraft file lacks, and what each missing key costs."""
+"""Keys that an aircraft file lacks, and the cost of each missing key."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -20,15 +20,15 @@ class Lack:
     key: str
     """Path of the key."""
     cost: str
-    """What this costs, a sentence."""
+    """Sentence on the cost."""
     mend: str
-    """How to mend this, a clause."""
+    """Clause that tells how to mend the file."""
     wrong: bool = False
     """The key is there and contradicts the log."""
 
 
 def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, ...]:
-    """What an aircraft file lacks, in the order of the file; what contradicts the log comes first.
+    """Find the keys that a file lacks, in the order of the file, after those that contradict the log.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, .
 
 
 def _given(path: str, aircraft: Aircraft) -> bool:
-    """Whether the file gives the key, or another key that stands in its place."""
+    """Return whether the file gives the key, or another key in its place."""
     match path:
         case "elevator.output":
             return aircraft.elevator.output != "auto" or bool(aircraft.elevator.outputs)
@@ -61,7 +61,7 @@ def _given(path: str, aircraft: Aircraft) -> bool:
 
 
 def _counts(path: str, aircraft: Aircraft, facts: LogFacts | None) -> bool:
-    """Whether the absence of a key costs anything on this aircraft."""
+    """Return whether a missing key costs anything on this aircraft."""
     match path:
         case "elevator.output":
             return facts is None or not isinstance(facts.elevator, Surface)
@@ -99,7 +99,7 @@ def _contradictions(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
 
 
 def _beyond_calibration(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
-    """Outputs whose pulses go beyond their calibration, where the deflection is held at its end."""
+    """Yield the outputs whose pulses go beyond their calibration, where the deflection is held."""
     calibrations = {one.output: one.calibration for one in aircraft.elevator.outputs}
     if aircraft.elevator.calibration and len(facts.outputs) == 1:
         calibrations = {facts.outputs[0]: aircraft.elevator.calibration}
@@ -123,5 +123,5 @@ def _ends(pulses: Sequence[float]) -> tuple[float, float]:
 
 
 def known_keys(aircraft: Aircraft) -> list[str]:
-    """Paths of the keys that cost something when missing, and that the file gives."""
+    """List the paths of the given keys, of all keys that cost something when missing."""
     return [path for path, key in BY_PATH.items() if key.cost and _given(path, aircraft)]

@@ -1,4 +1,4 @@
-"""What a log tells about an aircraft: outputs and their limits, air speed, pressure, angle of attack."""
+"""Facts of a log about its aircraft: outputs and their limits, air speed, pressure, angle of attack."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ class LogFacts:
     guess: Guess | None
     """The output that the pitch rate answers to, where no parameter tells the elevator."""
     wiring: Wiring
-    """What the log's parameters say of all outputs."""
+    """All outputs as the log's parameters describe them."""
     pulses_us: Mapping[int, tuple[float, float]]
     """Servo output to its shortest and longest pulse, us."""
     airspeed_m_s: tuple[float, float, float] | None
@@ -77,7 +77,7 @@ class LogFacts:
         return (self.guess.output,) if self.guess else ()
 
     def stated_scale(self, output: int) -> Scale | None:
-        """Limits of an output by the log's parameters; None where the log has none of them."""
+        """Return the limits of an output by the log's parameters; None where the log has none of them."""
         return self.wiring.scales.get(output) if output in self.wiring.told else None
 
 

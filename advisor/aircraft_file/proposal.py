@@ -1,4 +1,4 @@
-"""What a new aircraft file says of an aircraft that one log shows."""
+"""A new aircraft file for the aircraft that one log shows."""
 
 from math import isfinite
 from statistics import median
@@ -84,7 +84,7 @@ def _unknown_elevator(facts: LogFacts, problem: Problem, draft: Draft) -> None:
 
 
 def _calibration(facts: LogFacts, output: int, draft: Draft) -> None:
-    """What the log tells of one output stands in place of the usual example."""
+    """Write the limits of one output in place of the usual example."""
     draft.comments["elevator.calibration"] = _limits(facts, output)
     scale = facts.stated_scale(output)
     if scale is not None:
@@ -92,7 +92,7 @@ def _calibration(facts: LogFacts, output: int, draft: Draft) -> None:
 
 
 def _limits(facts: LogFacts, output: int) -> str:
-    """What the log tells of an output's travel, a sentence or two."""
+    """Describe an output's travel in the log, in one sentence or two."""
     scale = facts.stated_scale(output)
     said = []
     if scale is not None:
@@ -123,7 +123,7 @@ def _alpha(facts: LogFacts, draft: Draft) -> None:
 
 
 def _kind(facts: LogFacts) -> str:
-    """What the angle of attack of a log is, in words."""
+    """Describe the source of the angle of attack."""
     if facts.alpha_source == DERIVED_ALPHA:
         return "made of attitude, climb rate and air speed: no vane"
     return {

@@ -1,4 +1,4 @@
-"""The text of a new aircraft file: what is known as values, what is unknown as comments with its cost."""
+"""The text of a new aircraft file: known keys as values, unknown keys as comments with their cost."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -78,6 +78,6 @@ def _commented(sentence: str, indent: str = "") -> list[str]:
 
 
 def _inline(value: Any) -> str:
-    """A value on one line of YAML."""
+    """Write a value on one line of YAML."""
     text: str = yaml.safe_dump(value, default_flow_style=True, allow_unicode=True, width=10_000)
     return text.removesuffix("\n").removesuffix("...").strip()

@@ -128,7 +128,7 @@ def _taken(values: dict[str, Any]) -> bool:
 
 
 def _pairs(question: str) -> list[list[float]] | None:
-    """Pairs of PWM and deflection; None: not measured."""
+    """Ask for pairs of PWM and deflection; None: not measured."""
     while True:
         text = _answer(question, "-")
         if text == "-":

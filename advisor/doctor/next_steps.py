@@ -21,7 +21,7 @@ _NO_AIRCRAFT = frozenset({"no_vehicle", "multicopter"})
 
 @dataclass(frozen=True, slots=True)
 class Examined:
-    """What was examined, as the user named it."""
+    """The log or connection that was examined, as the user named it."""
 
     target: str
     """Path of a log, or a connection."""
@@ -101,7 +101,7 @@ def _aircraft(examined: Examined) -> str:
 
 
 def _chosen(findings: Examination, examined: Examined) -> str:
-    """The vehicle, where the user chose one or several are heard."""
+    """Return the option that names the vehicle, where the user chose one or several are heard."""
     system = examined.target_system
     if system is None and findings.vehicle and any(x.code == "several_vehicles" for x in findings.limits):
         system = findings.vehicle.system

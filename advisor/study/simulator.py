@@ -1,4 +1,4 @@
-"""What the studies take from the bundled simulator, by the name that it is installed under."""
+"""The parts of the bundled simulator that studies use, by the name under which a wheel installs them."""
 
 from typing import TYPE_CHECKING
 

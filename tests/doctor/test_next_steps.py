@@ -7,7 +7,7 @@ import click
 import pytest
 
 from advisor.doctor.examination import Examination, Limit
-from advisor.doctor.expectation import NOISE, TYPICAL, Belief
+from advisor.doctor.expectation import NOISE, TYPICAL, Assumed
 from advisor.doctor.next_steps import Examined, next_commands
 from advisor.flight.vehicle import Vehicle
 
@@ -19,7 +19,7 @@ TWO = Limit("several_vehicles", "two are heard", "choose one")
 
 def _found(*limits: Limit) -> Examination:
     vehicle = Vehicle(7, 1, "ardupilot", 1)
-    return Examination(vehicle, (), None, None, None, limits, None, Belief(TYPICAL, NOISE, "none"))
+    return Examination(vehicle, (), None, None, None, limits, None, Assumed(TYPICAL, NOISE, "none"))
 
 
 def _log(name: str = "a.tlog", **known: object) -> Examined:
