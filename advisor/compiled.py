@@ -24,7 +24,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def kernel(**options: Any) -> Callable[[Function], Function]:
     """Compile a function at its first call, and keep the machine code on disk where a folder allows.
 
-    Numba keeps machine code in the folder ``NUMBA_CACHE_DIR``, next to the module, or in the user's own cache:
+    Numba keeps machine code in ``NUMBA_CACHE_DIR``, next to the module, or in the user's own cache:
     the first that can be written to. Without such a folder each process compiles for itself.
 
     Parameters
