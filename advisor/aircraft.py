@@ -106,7 +106,9 @@ class Reference:
     """Geometry and mass for non-dimensional coefficients."""
 
     mass_kg: float | None = None
+    """Mass of the aircraft as flown."""
     wing_area_m2: float | None = None
+    """Reference area of the coefficients."""
     chord_m: float | None = None
     """Mean aerodynamic chord."""
     iyy_kg_m2: float | None = None
@@ -143,8 +145,11 @@ class FmuVariables:
     elevator: str
     """Input for the elevator. The recorded deviation from trim is added to the start value."""
     alpha: str
+    """Output: angle of attack."""
     q: str
+    """Output: pitch rate."""
     theta: str
+    """Output: pitch angle."""
     a_z: str
     """Specific force along body z, -9.81 m/s² in level flight. See ``scale`` for a load factor."""
     airspeed: str | None = None
@@ -152,8 +157,11 @@ class FmuVariables:
     height: str | None = None
     """Height, m. None: the height of the flight condition, constant."""
     aileron: str | None = None
+    """Input: aileron, flown where the log has one."""
     rudder: str | None = None
+    """Input: rudder, flown where the log has one."""
     throttle: str | None = None
+    """Input: throttle, flown where the log has one."""
     force_increment: str | None = None
     """Input that the FMU adds to the rate of α, per second in ``units``. Needs ``moment_increment``."""
     moment_increment: str | None = None
@@ -172,9 +180,11 @@ class CampaignPlan:
     """Stop criterion that the crew chose."""
 
     rule: Rule = "information"
+    """Rule that decides; all rules are shown."""
     window: int = 3
     """n of Eq. (12)."""
     limit_percent: float = 25.0
+    """Limit of the criterion of Eq. (12) or (13)."""
     criterion: Criterion = "eq12"
     """Form of the scatter criterion: Eq. (12), or Eq. (13) as the paper prints it."""
     tolerance_percent: float = 5.0
@@ -195,8 +205,11 @@ class Limits:
     """Limits that a test manoeuvre may not exceed."""
 
     bank_deg: float = 30.0
+    """Largest bank angle in a manoeuvre."""
     airspeed_change_percent: float = 15.0
+    """Largest change of the air speed in a manoeuvre."""
     alpha_deg: float | None = None
+    """Largest angle of attack in a manoeuvre; None: no limit."""
 
 
 @dataclass(frozen=True)
@@ -204,11 +217,14 @@ class Aircraft:
     """All keys of the aircraft file."""
 
     name: str = "aircraft"
+    """Name on screens and pages."""
     elevator: Elevator = field(default_factory=Elevator)
     alpha: Alpha = field(default_factory=Alpha)
     accelerometer: Accelerometer = field(default_factory=Accelerometer)
     airspeed_m_s: float | None = None
+    """Air speed of the flight, only for a log without one."""
     reference_airspeed_m_s: float | None = None
+    """Speed at which derivatives are given; None: the mean over the accepted manoeuvres."""
     reference: Reference = field(default_factory=Reference)
     model: Mapping[str, float] = field(default_factory=dict)
     """Parameter name to its value in the simulator of today; any of ``PARAMETERS``."""

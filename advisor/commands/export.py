@@ -67,7 +67,7 @@ def command(
 ) -> int:
     """Write channels, manoeuvres, estimates and residuals for other tools, with names and units.
 
-    The numbers are those of `advisor analyze`. docs/export.md lists files, units and the grid.
+    The numbers are those of `advisor analyze`. The page of exports lists files, units and grid.
 
     \b
     Example:

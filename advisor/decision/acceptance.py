@@ -2,7 +2,7 @@
 
 The costs are those of usable manoeuvres. A quiet or spoilt record was refused earlier for its own reasons,
 and has None in place of a cost. Such a record neither passes a rule nor sets the limit for the next one. The
-reading chosen for each equation, and the others tried, are in ``docs/rules.md``.
+reading chosen for each equation, and the others tried, are in ``docs/explanation/rules.md``.
 """
 
 from collections.abc import Callable, Mapping, Sequence

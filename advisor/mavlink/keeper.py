@@ -23,7 +23,7 @@ from advisor.mavlink import running_links
 from advisor.mavlink.announce import Announcer
 from advisor.mavlink.health import Notice
 from advisor.mavlink.inquiry import Inquiry
-from advisor.mavlink.keeping import Door, Guard, Heard, Hello, Judged, Keeping, Listen, Order, Stop, Told
+from advisor.mavlink.keeping import Guard, Heard, Hello, Judged, Keeping, Listen, Order, Stop, Told
 from advisor.mavlink.link import Link
 from advisor.mavlink.outgoing import Talker
 from advisor.mavlink.rates import STREAMS, RateRequest
@@ -232,14 +232,6 @@ def _talkers(keeping: Keeping, announcer: Announcer | None) -> list[Talker]:
     return talkers
 
 
-def _clear(door: Door) -> None:
-    """Remove the files of a local socket."""
-    if os.name != "nt":
-        with contextlib.suppress(OSError):
-            Path(door.address).unlink(missing_ok=True)
-            Path(door.address).parent.rmdir()
-
-
 def main() -> None:
     """Keep the link that standard input describes; the first answer on standard output names its
     recording."""
@@ -258,13 +250,13 @@ def main() -> None:
     sys.stdout.buffer.flush()
     sys.stdout.close()
     if isinstance(answer, Exception):
-        _clear(keeping.door)
+        keeping.door.clear()
         sys.exit(0 if isinstance(answer, UnusableInputError) else 1)
     try:
         keeper.run()
     finally:
         running_links.forget(os.getpid())
-        _clear(keeping.door)
+        keeping.door.clear()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""``docs/effects.md``: the table of effects, from its traits and from what the fit is given of each."""
+"""``reference/effects.md``: the table of effects, from its traits and from what the fit is given of each."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -15,7 +15,7 @@ from benchmarks.pages.planned import PLANS, Plan, described
 
 _HEAD = """# The effects that a diagnosis can name
 
-Made by `make pages` from `advisor/gap/candidates`; edit the table there, not this page.
+This page is made from `advisor/gap/candidates`.
 
 {count} effects, by the block of the simulator that they belong to. For each this page says:
 
@@ -24,7 +24,7 @@ Made by `make pages` from `advisor/gap/candidates`; edit the table there, not th
   search covers. A dash marks what is not searched for: a choice between two descriptions, or a number that
   another module finds.
 - *Named from*: the least size of the first parameter. Where none stands, the change of the motion alone
-  decides ([decisions](decisions-of-the-gap.md), `search/merit.py` and `search/score.py`).
+  decides ([decisions](gap-decisions.md), `search/acceptance.py` and `search/score.py`).
 - *Needs*: channels, or a change in the flight, without which the effect cannot be seen.
 - *Apart from*: what looks alike, and what tells the two apart.
 

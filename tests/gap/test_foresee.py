@@ -21,6 +21,7 @@ from advisor.gap.search.baseline import prior_derivatives
 from advisor.problems import ConfigurationError
 from advisor.report.gap_plan import ForesightScreen, size_of
 from tests.gap.generator import UAV, Setup, fly
+from tests.schemas import breaches
 
 MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0), strict=True))
 PLANE = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
@@ -158,6 +159,7 @@ def test_json_has_every_effect_in_si_and_null_for_what_cannot_be_seen(tmp_path):
     arguments = ["gap", "--foresee", "--aircraft", str(path), "--plan", "3211,rev,rev", "--json"]
     result = CliRunner().invoke(advisor, arguments)
     document = json.loads(result.stdout)
+    assert breaches("foresee", document) == []
     effects = {e["effect"]: e for e in document["effects"]}
     assert set(effects) == set(TRAITS)
     assert effects["ground_effect"]["smallest"] is None

@@ -27,7 +27,7 @@ _FIRST, _OTHERS = 0.9, 0.05
 _KEPT, _IN_ADDITION = 0.96, 0.03
 """Share of its probability that a fitted cause keeps next to causes outside the fits, and the probability
 that these get together. All these values were calibrated on development flights against the share of right
-answers (``docs/gap-results.md``)."""
+answers (page "Gap results")."""
 _REFUTED, _RIVAL = 0.05, 0.2
 """Factor on the probability of an alternative: next to an answer that makes it needless, and next to a
 secondary cause."""
