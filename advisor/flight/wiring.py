@@ -46,7 +46,7 @@ class Words:
 
 @dataclass(frozen=True, slots=True)
 class Wiring:
-    """The outputs, where known."""
+    """Known roles, scales and directions of the servo outputs."""
 
     words: Words
     roles: Mapping[int, Role] = field(default_factory=dict)
