@@ -111,10 +111,13 @@ def _room(path: Path) -> str:
     return "/".join(parts[:2]) if parts[0] == "advisor" and len(parts) > 2 else parts[0]
 
 
+def _is_whole(text: Text, sentence: str) -> bool:
+    """Return whether a sentence can be judged: no cell of a table, no command, at least four words."""
+    return len(sentence.split()) >= 4 and (text.kind != "page" or sentence.endswith((".", "!", "?", ":")))
+
+
 def _print_sample(texts: list[Text], count: int, seed: int) -> None:
-    sentences = [
-        (text, sentence) for text in texts for sentence in text.sentences if len(sentence.split()) >= 4
-    ]
+    sentences = [(text, s) for text in texts for s in text.sentences if _is_whole(text, s)]
     for number, (text, sentence) in enumerate(random.Random(seed).sample(sentences, count), start=1):
         place = f"{text.path.relative_to(REPOSITORY)}:{text.line}"
         print(f"{number:2d}. {sentence}\n    ({text.kind} {text.owner}, {place})")

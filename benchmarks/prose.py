@@ -129,7 +129,7 @@ def _page_texts(path: Path) -> Iterator[Text]:
     for paragraph in re.split(r"(\n\s*\n)", page):
         if paragraph.strip() and not paragraph.startswith(("    ", "#", "<")):
             prose = re.sub(r"\]\([^)]*\)", "]", paragraph)
-            rows = prose.splitlines()
+            rows = [row.strip() for row in prose.splitlines()]
             parts = [[cell] for row in rows for cell in row.split("|")] if "|--" in prose else [rows]
             yield Text(path, line, "page", "", tuple(s for part in parts for s in _sentences(part)))
         line += paragraph.count("\n")
