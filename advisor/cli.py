@@ -22,6 +22,7 @@ COMMANDS = {
     "demo": "Fly the bundled aircraft through the paper's campaign over a real link, with advice.",
     "live": "Advise on a live link.",
     "replay": "Play a log on the screens of a live flight, with pause, speed and jump.",
+    "serve": "Show the screens of live and replay in a browser, for several viewers.",
     "analyze": "Print every manoeuvre's verdict, the estimates, and stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
     "export": "Write channels, manoeuvres, estimates and residuals for other tools.",

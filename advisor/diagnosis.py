@@ -9,7 +9,7 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.events import ManeuverFlown, Notice
 from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
-from advisor.flight.same import are_one, is_fuller
+from advisor.flight.repeated_maneuver import are_one, is_fuller
 from advisor.flight.stream import FlightStream
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis

@@ -67,9 +67,9 @@ OPENINGS = {
     r"as (?!long|soon|if|many|much)": "say the fact, not a comparison with another docstring",
 }
 _NO_VERB = re.compile(
-    r"(?:the|an?|whether|how|where|why|which|whose?|when|one|two|three|every\w*|all|nothing|of|for|another|each|no|as|per"
-    r"|from|share (?:of|by)|mean|shape|ratio|median|root|power|largest|smallest|(?!note that)\w+ (?:of|that|whose))\b"
-    r"|[(-]",
+    r"(?:the|an?|whether|how|where|why|which|whose?|when|one|two|three|every\w*|all|nothing|of|for|another|each"
+    r"|no|as|per|from|share (?:of|by)|mean|shape|ratio|median|root|power|largest|smallest"
+    r"|(?!note that)\w+ (?:of|that|whose))\b|[(-]",
     re.IGNORECASE,
 )
 """Openings of a docstring that has no verb in front. A function's docstring begins with an imperative."""

@@ -1,4 +1,4 @@
-"""Aircraft files as the simulator reads them: the linear aircraft that a file's ``model`` describes."""
+"""Aircraft files as read by the simulator: the linear aircraft of a file's ``model``."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from sim.servo import Calibration
 
 @dataclass(frozen=True)
 class AircraftFile:
-    """What of an aircraft file a flight needs; the rest of the file is the advisor's."""
+    """The part of an aircraft file that a flight needs."""
 
     model: ShortPeriod
     calibration: Calibration | None = None

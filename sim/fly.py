@@ -27,13 +27,13 @@ def serve(
     Parameters
     ----------
     flight
-        What to fly.
+        Flight to fly.
     connection
-        As pymavlink has it, e.g. ``udpout:127.0.0.1:14550``.
+        Connection string of pymavlink, e.g. ``udpout:127.0.0.1:14550``.
     speed
-        Times real time; None: as fast as it goes.
+        Multiple of real time. None: as fast as possible.
     tell
-        Called with a sentence as each manoeuvre begins.
+        Called with a sentence at the begin of each manoeuvre.
 
     Notes
     -----

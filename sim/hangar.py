@@ -1,4 +1,4 @@
-"""The aircraft that can be flown by name, each with the test inputs that suit it."""
+"""Aircraft by name, each with suitable test inputs."""
 
 from dataclasses import dataclass, replace
 
@@ -15,7 +15,7 @@ Aircraft = LinearAircraft | NonlinearAircraft | JsbsimAircraft
 
 @dataclass(frozen=True)
 class Habits:
-    """How an aircraft is usually flown in a flight test."""
+    """Usual flight-test inputs of an aircraft."""
 
     airspeed_m_s: float
     amplitude_deg: float
@@ -30,7 +30,7 @@ AIRFRAMES: dict[str, tuple[Airframe, Habits]] = {
 
 JSBSIM_HABITS = {"c172p": Habits(53.0, 2.5, 0.4)}
 OTHER_HABITS = Habits(55.0, 2.0, 0.5)
-"""Of a JSBSim aircraft nobody has flown here yet."""
+"""Usual inputs of a JSBSim aircraft without an entry."""
 
 LINEAR_HABITS = Habits(100.0, 2.0, 0.8)
 NAMES = (*AIRFRAMES, "linear")
@@ -52,7 +52,7 @@ def habits(scenario: Scenario) -> Habits:
 
 
 def build(scenario: Scenario, **changes: float) -> Aircraft:
-    """Return the scenario's aircraft, trimmed; ``changes`` replace fields of a nonlinear airframe."""
+    """Return the scenario's aircraft, trimmed. ``changes`` replace fields of a nonlinear airframe."""
     airspeed = scenario.airspeed_m_s or habits(scenario).airspeed_m_s
     if scenario.engine == "jsbsim":
         return JsbsimAircraft(scenario.aircraft, airspeed, scenario.height_m, scenario.step_s)

@@ -1,4 +1,4 @@
-"""The bundled aircraft's voice: MAVLink 2 as an ArduPlane speaks it."""
+"""MAVLink 2 messages of the bundled aircraft, in the manner of ArduPlane."""
 
 import math
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ HOME_LATITUDE, HOME_LONGITUDE, HOME_HEIGHT_M = 47.0, 11.0, 600.0
 METRES_PER_DEGREE = 111_319.5
 
 VERSION = (4, 5, 6)
-"""ArduPlane version whose habits these are."""
+"""ArduPlane version that is imitated."""
 
 ARMED_MANUAL = int(
     mavlink.MAV_MODE_FLAG_SAFETY_ARMED
@@ -30,7 +30,7 @@ ARMED_CRUISE = int(ARMED_MANUAL | mavlink.MAV_MODE_FLAG_STABILIZE_ENABLED)
 PARAMETERS_PER_TICK = 10
 
 SWITCH_ON_US, SWITCH_OFF_US = 1900, 1100
-"""Pulses of the pilot's switch, which is on from the change to MANUAL to that back."""
+"""Pulses of the pilot's switch, us. The switch is on in MANUAL."""
 
 Message = Any
 """A pymavlink message; the package carries no types."""
@@ -39,7 +39,7 @@ Message = Any
 class Voice:
     """Turns samples into due messages, and answers requests.
 
-    Rates asked for beyond the loop's are what the loop can do, as on the real autopilot. Servo outputs are
+    Requested rates beyond the loop's rate are limited to it, as on the real autopilot. Servo outputs are
     written ``output_late_s`` after the tick, and stamped so.
     """
 
@@ -77,13 +77,13 @@ class Voice:
             if now < due - 1e-6:
                 continue
             interval = self._interval[name]
-            # A stream that fell behind starts anew instead of catching up in a burst.
+            # A stream that fell behind restarts, instead of catching up in a burst.
             self._due[name] = due + interval if now < due + interval - 1e-6 else now + interval
             if interval != math.inf:
                 yield getattr(self, f"_{name.lower()}")(sample, boot_s)
 
     def hear(self, message: Message) -> list[Message]:
-        """Act on a message from outside and return the replies."""
+        """Act on a message from outside, and return the replies."""
         kind = message.get_type()
         if getattr(message, "target_system", SYSTEM) not in (0, SYSTEM):
             return []

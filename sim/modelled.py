@@ -1,4 +1,4 @@
-"""Flights of the aircraft that an aircraft file describes, with test inputs or recorded ones."""
+"""Flights of the aircraft in an aircraft file, with test inputs or recorded ones."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -18,10 +18,11 @@ from sim.scenario import Clock, Instruments, Scenario, Servo
 
 
 def modelled_flight(scenario: Scenario, path: Path, replayed: Path | None = None) -> Flight:
-    """Build a flight of the aircraft in ``path``; ``replayed`` is a log whose elevator is flown again.
+    """Build a flight of the aircraft in ``path``. ``replayed`` is a log whose elevator commands are flown
+    again.
 
-    The replay keeps the log's clocks, so that both logs can be laid over each other, and its airspeed,
-    when it holds one. Noise in percent has no meaning then and is left out.
+    The replay keeps the log's clocks, so that both logs can be compared, and its airspeed where the log has
+    one. Noise in percent has no meaning then and is left out.
 
     Raises
     ------

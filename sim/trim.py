@@ -37,7 +37,7 @@ def trim_level(record: NDArray[np.void], airspeed: float, height: float) -> Trim
     Parameters
     ----------
     record
-        Airframe as of :func:`sim.airframe.as_record`, with every effect already in it.
+        Airframe from :func:`sim.airframe.as_record`, with every effect already in it.
     airspeed, height
         m/s and m.
 

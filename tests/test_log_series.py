@@ -14,7 +14,7 @@ from advisor.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import ByHand, Remark
 from advisor.cli import main
-from advisor.flight.same import are_one
+from advisor.flight.repeated_maneuver import are_one
 from advisor.log_series import LogSeries
 from advisor.marks_file import write_by_hand
 from tests.flights import TWO, recorded

@@ -15,7 +15,7 @@ from advisor.commands.options import (
     rule_option,
     target_system_option,
 )
-from advisor.commands.screen import advise
+from advisor.commands.screen import Show, advise
 from advisor.interrupt import STOPPED, in_order
 from advisor.printable import printable
 from advisor.problems import ConfigurationError
@@ -90,6 +90,7 @@ def command(
     rule: Rule | None,
     target_system: int | None,
     no_marks: bool,
+    show: Show | None = None,
 ) -> None:
     """Advise during a flight. Nothing is sent to the vehicle unless an option here asks for it.
 
@@ -141,6 +142,7 @@ def command(
             by_hand=by_hand,
             kept=partial(_decided, (*start.earlier, process.recording)),
             names=[*(printable(log.name) for log in start.earlier), start.campaign.master],
+            show=show,
         )
 
 

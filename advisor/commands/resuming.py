@@ -12,7 +12,7 @@ from advisor.commands.options import NEWEST
 from advisor.mavlink.keeping import Keeping, new_door
 from advisor.mavlink.link_process import LinkProcess, end
 from advisor.mavlink.recording_file import default_recording, recordings_folder
-from advisor.mavlink.running import RunningLink, running_alone
+from advisor.mavlink.running_links import RunningLink, running_alone
 from advisor.problems import ConfigurationError
 
 

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from advisor.tui.remote import Task
 
 Listener = Callable[[object], object]
+Show = Callable[["Task", Aircraft, str, Tempo | None], object]
+"""Shows the campaign of a task until it is left: aircraft, title, and how a replay starts."""
 
 
 def headless() -> bool:
@@ -39,8 +41,9 @@ def advise(
     marks: "Sequence[Mark]" = (),
     kept: "Callable[[], ByHand] | None" = None,
     names: Sequence[str] = (),
+    show: "Show | None" = None,
 ) -> None:
-    """Run a campaign on a source: on screens, or as lines of text.
+    """Run a campaign on a source: on screens, as lines of text, or as ``show`` does.
 
     Parameters
     ----------
@@ -61,6 +64,8 @@ def advise(
         beginning. Such a source survives the death of the estimating process.
     names
         Names of the campaign's logs, in their order.
+    show
+        Shows the campaign elsewhere; None: the terminal does, or lines of text come without a terminal.
 
     Raises
     ------
@@ -73,9 +78,9 @@ def advise(
 
     before = by_hand or NOTHING
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
-    if not headless():
+    if show is not None or not headless():
         task = Task(open_source, partial(make_campaign, True), before, kept)
-        _show(task, aircraft, title, tempo)
+        (show or _show)(task, aircraft, title, tempo)
     elif kept is not None:
         task = Task(open_source, partial(make_campaign, False), before, kept)
         narrate(task, click.echo, partial(click.echo, err=True))

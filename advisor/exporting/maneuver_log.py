@@ -5,7 +5,7 @@ from advisor.exporting.cut import cut_tlog
 from advisor.exporting.reading import WholeFlights
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver
-from advisor.flight.same import are_one
+from advisor.flight.repeated_maneuver import are_one
 from advisor.flight.stream import FlightStream
 from advisor.mavlink.frames import FrameScanner
 from advisor.problems import ConfigurationError, UnusableInputError

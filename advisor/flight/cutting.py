@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from advisor.flight.elevator_sign import ElevatorSign, turned
 from advisor.flight.events import Activity, FlightEvent, ManeuverFlown
 from advisor.flight.ground import why_on_ground
 from advisor.flight.identity import Identity
@@ -16,7 +17,6 @@ from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.purpose import not_an_input
 from advisor.flight.record import AIR_UNITS, UNITS
 from advisor.flight.segmentation import LEAD_IN_S
-from advisor.flight.sense import Sense, turned
 from advisor.flight.tracks import Tracks
 from advisor.flight.trust import distrusted
 
@@ -34,7 +34,7 @@ class Cutting:
 
     def __init__(self, tracks: Tracks, who: Identity, calibrated: bool) -> None:
         self._tracks, self._who = tracks, who
-        self._sense = None if calibrated else Sense()
+        self._sense = None if calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
         self.maneuvers = 0

@@ -19,7 +19,7 @@ from advisor.flight.events import (
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import Mark
 from advisor.flight.messages import Columns
-from advisor.flight.same import are_one, is_fuller
+from advisor.flight.repeated_maneuver import are_one, is_fuller
 from advisor.flight.stream import FlightStream
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus

@@ -9,10 +9,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from advisor.flight.answer import answers
 from advisor.flight.channels import Decoded
 from advisor.flight.commanded import Commanded, joined
 from advisor.flight.events import Notice
+from advisor.flight.output_signs import answers
 from advisor.flight.surfaces import Surface, joined_numbers
 from advisor.flight.tracks import Tracks
 from advisor.problems import Problem

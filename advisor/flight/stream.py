@@ -20,6 +20,7 @@ from advisor.flight.cutting import Cutting
 from advisor.flight.derived_alpha import DERIVED_ALPHA, promised
 from advisor.flight.elevator_guess import ElevatorGuesses, Guess
 from advisor.flight.elevator_path import ElevatorPath
+from advisor.flight.elevator_sign import SAID
 from advisor.flight.events import FlightEvent, ModeChanged, Rebooted
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver
@@ -32,7 +33,6 @@ from advisor.flight.pieces import pieces
 from advisor.flight.power_on import PowerOn
 from advisor.flight.record import ALL_UNITS, Channel
 from advisor.flight.senders import SenderWatch
-from advisor.flight.sense import SAID
 from advisor.flight.service import Service
 from advisor.flight.suitability import problems, with_guess
 from advisor.flight.surfaces import Surface

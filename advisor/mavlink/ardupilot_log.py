@@ -21,7 +21,7 @@ from advisor.mavlink.ardupilot_vehicle import (
 from advisor.mavlink.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
 from advisor.mavlink.equivalent import air_data, message, nearest
-from advisor.mavlink.eras import SENSORS_APART, Clocked, in_todays_names
+from advisor.mavlink.former_records import SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.sdlog2 import SDLOG2_RECORDS, Sdlog2, is_sdlog2
 from advisor.mavlink.sensors import Said, flown, said, silent
 from advisor.problems import UnusableInputError

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 from advisor.flight.vehicle import is_aircraft
-from advisor.mavlink.company import is_ground_station
 from advisor.mavlink.framing import Frame, FrameCutter
+from advisor.mavlink.ground_stations import is_ground_station
 from advisor.mavlink.health import LinkCounters
 from advisor.mavlink.signing import RADIO_STATUS, SignatureCheck
 from advisor.mavlink.transport import Peer

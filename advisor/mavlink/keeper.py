@@ -21,13 +21,13 @@ from threading import Thread
 from advisor import interrupt
 from advisor.mavlink import running
 from advisor.mavlink.announce import Announcer
-from advisor.mavlink.aside import Aside
 from advisor.mavlink.health import Notice
 from advisor.mavlink.inquiry import Inquiry
-from advisor.mavlink.keeping import Door, Guard, Heard, Hello, Judged, Keeping, Listen, Order, Stop, Told
+from advisor.mavlink.keeping import Guard, Heard, Hello, Judged, Keeping, Listen, Order, Stop, Told
 from advisor.mavlink.link import Link
 from advisor.mavlink.outgoing import Talker
 from advisor.mavlink.rates import STREAMS, RateRequest
+from advisor.mavlink.separate_connection import SeparateConnection
 from advisor.problems import UnusableInputError
 
 TELL_EVERY_S = 0.2
@@ -224,18 +224,10 @@ class Keeper:
 def _talkers(keeping: Keeping, announcer: Announcer | None) -> list[Talker]:
     talkers: list[Talker] = [announcer] if announcer else []
     if announcer and keeping.announce_to:
-        talkers = [Aside(announcer, keeping.announce_to)]
+        talkers = [SeparateConnection(announcer, keeping.announce_to)]
     if keeping.request_rates:
         talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
     return talkers
-
-
-def _clear(door: Door) -> None:
-    """Remove the files of a local socket."""
-    if os.name != "nt":
-        with contextlib.suppress(OSError):
-            Path(door.address).unlink(missing_ok=True)
-            Path(door.address).parent.rmdir()
 
 
 def main() -> None:
@@ -256,13 +248,13 @@ def main() -> None:
     sys.stdout.buffer.flush()
     sys.stdout.close()
     if isinstance(answer, Exception):
-        _clear(keeping.door)
+        keeping.door.clear()
         sys.exit(0 if isinstance(answer, UnusableInputError) else 1)
     try:
         keeper.run()
     finally:
         running.forget(os.getpid())
-        _clear(keeping.door)
+        keeping.door.clear()
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Task of the link's process, and its messages to and from its readers."""
 
+import contextlib
 import os
 import secrets
 import tempfile
@@ -27,6 +28,13 @@ class Door:
             No process answers there.
         """
         return Client(self.address, authkey=self.key)
+
+    def clear(self) -> None:
+        """Remove the files of a local socket."""
+        if os.name != "nt":
+            with contextlib.suppress(OSError):
+                Path(self.address).unlink(missing_ok=True)
+                Path(self.address).parent.rmdir()
 
 
 def new_door() -> Door:

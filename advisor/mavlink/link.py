@@ -26,11 +26,11 @@ from advisor.mavlink.health import LinkStatistics, Notice
 from advisor.mavlink.inquiry import Inquiry
 from advisor.mavlink.intake import Intake
 from advisor.mavlink.line import Line
+from advisor.mavlink.link_watch import LinkWatch
 from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Ids, Talker
 from advisor.mavlink.recorder import Recorder
 from advisor.mavlink.signing import SignatureCheck
 from advisor.mavlink.transport import ConnectionCutError
-from advisor.mavlink.watch import LinkWatch
 from advisor.printable import printable
 
 if TYPE_CHECKING:

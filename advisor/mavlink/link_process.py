@@ -17,7 +17,7 @@ from advisor.aircraft import Elevator
 from advisor.interrupt import hung_up
 from advisor.mavlink.keeping import Guard, Keeping, Stop
 from advisor.mavlink.kept_link import KeptLink
-from advisor.mavlink.running import RunningLink
+from advisor.mavlink.running_links import RunningLink
 
 RETRY_EVERY_S = 1.0
 PATIENCE_S = 10.0

@@ -6,13 +6,13 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.mavlink.company import is_ground_station, who_sets_rates
 from advisor.mavlink.definitions import DEFINITIONS
 from advisor.mavlink.delivery import Delivery
 from advisor.mavlink.framing import Frame
+from advisor.mavlink.ground_stations import is_ground_station, who_sets_rates
+from advisor.mavlink.message_request import LONGEST_REST_S, MOST_TRIES, MessageRequest
 from advisor.mavlink.outgoing import Talker
 from advisor.mavlink.reboot import RebootWatch
-from advisor.mavlink.wish import LONGEST_REST_S, MOST_TRIES, Wish
 
 STREAMS = ("ATTITUDE", "AOA_SSA", "SERVO_OUTPUT_RAW", "RAW_IMU", "VFR_HUD", "GLOBAL_POSITION_INT")
 """Messages that identification needs, the indispensable first."""
@@ -44,7 +44,7 @@ class RateRequest(Talker):
     MAVLink, command protocol: SET_MESSAGE_INTERVAL (511) in a COMMAND_LONG is answered by a COMMAND_ACK that
     names no message. So only one request is open at a time. An unanswered one is sent again with a raised
     confirmation. A refused or unanswered request is repeated after a rest that doubles, see
-    `advisor.mavlink.wish`. After a reboot everything is requested again. A granted rate that falls is
+    `advisor.mavlink.message_request`. After a reboot everything is requested again. A granted rate that falls is
     requested again at once, a few times, then after rests. At the end every message gets its default rate
     back.
 
@@ -55,8 +55,10 @@ class RateRequest(Talker):
     """
 
     def __init__(self, rates_hz: Mapping[str, float]) -> None:
-        self._wishes = {DEFINITIONS[n].id: Wish(n, DEFINITIONS[n].id, hz) for n, hz in rates_hz.items()}
-        self._standing: Wish | None = None
+        self._wishes = {
+            DEFINITIONS[n].id: MessageRequest(n, DEFINITIONS[n].id, hz) for n, hz in rates_hz.items()
+        }
+        self._standing: MessageRequest | None = None
         self._asked_s = self._began_s = float("-inf")
         self._vehicle: tuple[int, int] | None = None
         self._reboots = RebootWatch()
@@ -129,7 +131,7 @@ class RateRequest(Talker):
         said, self._said = self._said, []
         return said
 
-    def _request(self, wish: Wish, now_s: float) -> Any:
+    def _request(self, wish: MessageRequest, now_s: float) -> Any:
         assert self._vehicle is not None
         wish.tries += 1
         self._asked_s = now_s
@@ -197,7 +199,7 @@ class RateRequest(Talker):
                 f"rates fell, asked for again {how}: {self._table(news)}; {who_sets_rates(self._stations)}"
             )
 
-    def _table(self, wishes: Iterable[Wish]) -> str:
+    def _table(self, wishes: Iterable[MessageRequest]) -> str:
         return ", ".join(
             f"{wish.name} {self.delivered_hz[wish.name]:.1f} Hz of {wish.rate_hz:g} asked" for wish in wishes
         )

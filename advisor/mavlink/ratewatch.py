@@ -2,10 +2,10 @@
 
 from collections.abc import Collection
 
-from advisor.mavlink.company import who_sets_rates
 from advisor.mavlink.definitions import DEFINITIONS
 from advisor.mavlink.delivery import Delivery
 from advisor.mavlink.framing import Frame
+from advisor.mavlink.ground_stations import who_sets_rates
 
 WATCHED = ("ATTITUDE", "SERVO_OUTPUT_RAW", "AOA_SSA")
 WINDOW_S = 3.0

@@ -34,7 +34,7 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
         case FlightBegan(_, name):
             say(f"{name}:")
         case ManeuverAgain(maneuver, takes_place):
-            better = ", and this record takes the place" if takes_place else ""
+            better = ", and this record replaces it" if takes_place else ""
             say(f"{maneuver.number:2d}  {maneuver.span.start_s:8.2f} s  comes again and counts once{better}")
         case VehicleFound(vehicle):
             say(f"following {vehicle}")

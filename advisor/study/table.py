@@ -1,4 +1,4 @@
-"""Table 1 as this study finds it, beside the paper's: medians, spread, and where the paper lies."""
+"""Table 1 of this study with the paper's: medians, spread, and the paper's place within them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,15 +18,15 @@ class Row:
     rule: Rule
     noise_percent: float
     needed: tuple[int | None, ...]
-    """Per campaign; None: never."""
+    """Manoeuvres needed in each campaign. None: never."""
     error_percent: FloatArray
     """(campaigns, 8) |error| at the stop, or at the end, in percent of the true value."""
     outside_tolerance_percent: FloatArray | None
-    """(8,) share of stops with the parameter outside its tolerance; only for ``information``."""
+    """(8,) share of stops with the parameter outside its tolerance, for ``information`` only."""
 
     @property
     def paper(self) -> PaperRow | None:
-        """The paper's row, for the paper's rules."""
+        """Row of the paper, for the paper's rules."""
         return TABLE_1.get((self.rule, self.noise_percent))
 
     @property
@@ -35,7 +35,8 @@ class Row:
         return 100.0 * float(np.mean([n is None for n in self.needed]))
 
     def needed_quantile(self, share: float) -> int | None:
-        """Return manoeuvres within which ``share`` of the campaigns stopped; None when fewer did."""
+        """Return the number of manoeuvres within which ``share`` of the campaigns stopped; None for fewer
+        stops."""
         order = sorted(np.inf if n is None else n for n in self.needed)
         value = order[max(0, int(np.ceil(share * len(order))) - 1)]
         return None if np.isinf(value) else int(value)

@@ -1,4 +1,4 @@
-"""Write sealed cases: logs and aircraft files under names that mean nothing."""
+"""Write sealed cases: logs and aircraft files under meaningless names."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -17,11 +17,11 @@ from sim.servo import Calibration
 
 LOG, AIRCRAFT = "flight.tlog", "aircraft.yaml"
 MADE_AT = 1_790_000_000
-"""Every file carries this time: the order of making says nothing."""
+"""Time stamp of every file, s since 1970, so that the order of making is hidden."""
 
 
 def key_beside(folder: Path) -> Path:
-    """Return where the key of a folder of cases is kept: beside it, not in it."""
+    """Return the path of the key of a folder of cases, next to the folder."""
     return folder.with_name(folder.name + ".key.json")
 
 
@@ -65,7 +65,7 @@ def write_case(case: Case, folder: Path) -> None:
 
 
 def aircraft_file(case: Case) -> dict[str, Any]:
-    """What the crew believes of the aircraft: the same keys for every case of a group."""
+    """Return the crew's aircraft file, with equal keys for every case of a group."""
     elevator: dict[str, Any] = {
         "output": "auto",
         "calibration": [list(point) for point in Calibration().points],

@@ -1,4 +1,4 @@
-"""Open the key of sealed cases and tell how well they were answered."""
+"""Open the key of sealed cases, and print the score of the answers."""
 
 import hashlib
 import json
@@ -11,12 +11,12 @@ from sim.blind.seal import SealError, unseal
 
 
 def read_answers(path: Path) -> dict[str, dict[str, Any]]:
-    """Read answers, one JSON object a line: ``case`` and ``answer`` (or ``document``).
+    """Read answers, one JSON object on each line: ``case`` and ``answer`` (or ``document``).
 
     Raises
     ------
     SealError
-        A line is no such object.
+        A line is no object with these keys.
     """
     answers: dict[str, dict[str, Any]] = {}
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
@@ -63,7 +63,7 @@ def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -
 def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
     """Return the score table as one JSON document, with the hash of the answers.
 
-    Each figure has ``trials``, and ``hits`` where it is a share, else ``value`` in percent.
+    Each figure has ``trials``. A share has ``hits``, any other figure ``value`` in percent.
 
     Raises
     ------
@@ -91,6 +91,6 @@ def _figure(rate: Rate) -> dict[str, Any]:
 
 
 def _seconds_of(answers: Path) -> list[float]:
-    """Return the processor time of each answer that says it."""
+    """Return the processor time of each answer that states one, s."""
     lines = (json.loads(line) for line in answers.read_text(encoding="utf-8").splitlines() if line.strip())
     return [float(line["cpu_s"]) for line in lines if line.get("cpu_s") is not None]

@@ -19,7 +19,7 @@ KINDS: Mapping[str, Kind] = {**CATALOGUE, **OUTSIDE}
 
 
 def sizes_of(name: str, given: Sizes) -> dict[str, float]:
-    """Return the effect's parameters: its defaults with the given ones in place.
+    """Return the effect's parameters: its defaults, replaced by the given values.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def sizes_of(name: str, given: Sizes) -> dict[str, float]:
 
 
 def flight_of(scenario: Scenario) -> Flight:
-    """Build the flight of a scenario with its effects fitted, trimmed with them present.
+    """Build the flight of a scenario with its effects, trimmed together with them.
 
     Raises
     ------
@@ -82,5 +82,5 @@ def flight_of(scenario: Scenario) -> Flight:
 
 
 def without_effects(scenario: Scenario) -> Scenario:
-    """Return the twin of a scenario that has none of its effects."""
+    """Return the scenario without its effects."""
     return replace(scenario, effects={})

@@ -9,9 +9,9 @@ import pytest
 
 from advisor.aircraft import Aircraft, Elevator
 from advisor.diagnosis import maneuvers_of
+from advisor.flight.elevator_sign import SAID, ElevatorSign, answers_backwards, turned
 from advisor.flight.events import ManeuverFlown, Notice
 from advisor.flight.pieces import between
-from advisor.flight.sense import SAID, Sense, answers_backwards, turned
 from advisor.flight.stream import FlightStream
 from advisor.mavlink.logs import open_log
 from tests.gap.generator import Setup, fly
@@ -84,7 +84,7 @@ def test_a_trailing_edge_that_goes_down_pitches_down(setup):
 
 
 def test_a_manoeuvre_that_tells_nothing_decides_nothing():
-    sense, rng = Sense(), np.random.default_rng(4)
+    sense, rng = ElevatorSign(), np.random.default_rng(4)
     first, second = (turned(maneuver) for maneuver in fly(Setup(maneuvers=2)))
     q = first.channels["q"]
     still = replace(q, y=0.01 * rng.standard_normal(len(q.y)))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft import Aircraft, Elevator, ElevatorOutput
-from advisor.flight.answer import answers
 from advisor.flight.events import ManeuverFlown
+from advisor.flight.output_signs import answers
 from advisor.flight.pieces import between
 from advisor.flight.record import Channel
 from advisor.flight.stream import FlightStream

@@ -15,7 +15,7 @@ HELD_S = 60.0
 
 
 @dataclass(slots=True)
-class Wish:
+class MessageRequest:
     """State of the request for one message."""
 
     name: str

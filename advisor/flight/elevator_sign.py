@@ -21,7 +21,7 @@ SAID = (
 )
 
 
-class Sense:
+class ElevatorSign:
     """Gives an elevator of assumed scale its sign: trailing edge down pitches down.
 
     An autopilot's parameters give the direction of an output, not of the surface linked to it. The first

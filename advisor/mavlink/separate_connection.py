@@ -10,7 +10,7 @@ from advisor.mavlink.transports import open_transport
 REOPEN_EVERY_S = 1.0
 
 
-class Aside(Talker):
+class SeparateConnection(Talker):
     """Sends to a ground station the messages that a talker would send on the link.
 
     MAVProxy forwards messages from its ``--out`` to the vehicle, and shows none of them. MAVProxy shows a
