@@ -19,7 +19,7 @@ from queue import Empty, SimpleQueue
 from threading import Thread
 
 from advisor import interrupt
-from advisor.mavlink import running
+from advisor.mavlink import running_links
 from advisor.mavlink.announce import Announcer
 from advisor.mavlink.health import Notice
 from advisor.mavlink.inquiry import Inquiry
@@ -218,7 +218,9 @@ class Keeper:
             link = self._keeping
             alone = self._guards == 0
             with contextlib.suppress(OSError):
-                running.note(running.RunningLink(os.getpid(), link.master, self.recording, link.door, alone))
+                running_links.note(
+                    running_links.RunningLink(os.getpid(), link.master, self.recording, link.door, alone)
+                )
 
 
 def _talkers(keeping: Keeping, announcer: Announcer | None) -> list[Talker]:
@@ -253,7 +255,7 @@ def main() -> None:
     try:
         keeper.run()
     finally:
-        running.forget(os.getpid())
+        running_links.forget(os.getpid())
         keeping.door.clear()
 
 
