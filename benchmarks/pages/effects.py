@@ -20,8 +20,8 @@ This page is made from `advisor/gap/candidates`.
 {count} effects, by the block of the simulator. Each entry says:
 
 - *Said*: the sentence of a verdict. Letters in italics stand for sizes.
-- *Parameters*: names and units as in `effects:` of the aircraft file, and the range of the search. A dash marks a
-  number that is not searched for.
+- *Parameters*: names and units as in `effects:` of the aircraft file, and the range of the search. A dash
+  marks a number that is not searched for.
 - *Named from*: the least size of the first parameter. Without an entry the change of the motion alone decides
   ([decisions](gap-decisions.md), `search/acceptance.py` and `search/score.py`).
 - *Needs*: channels, or a change in the flight, without which the effect cannot be seen.
