@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.compiled import kernel
-from sim.airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
+
+from .airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
 
 FloatArray = NDArray[np.float64]
 

@@ -9,6 +9,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from advisor.bundled import SIMULATOR
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.ledger import in_words
 from advisor.gap.verdict.text import place
@@ -95,7 +96,7 @@ class GapScreen:
     def _written(self) -> str:
         if self.improved is None:
             return ""
-        return f"The improved simulator is {self.improved}; python -m sim flies it with --aircraft."
+        return f"The improved simulator is {self.improved}; python -m {SIMULATOR} flies it with --aircraft."
 
 
 def _note(text: str) -> Table:

@@ -5,15 +5,15 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from sim import hangar
-from sim.blind.sizes import INSIDE, ON_ANY_ENGINE, OUTSIDE, Scale
-from sim.blind.visibility import structural_gap
-from sim.effects.fitting import KINDS, flight_of, without_effects
-from sim.flight import Sample, noise_sigma
-from sim.linear import ShortPeriod
-from sim.loading import DepartureError
-from sim.scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
-from sim.trim import TrimError
+from .. import hangar
+from ..effects.fitting import KINDS, flight_of, without_effects
+from ..flight import Sample, noise_sigma
+from ..linear import ShortPeriod
+from ..loading import DepartureError
+from ..scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
+from ..trim import TrimError
+from .sizes import INSIDE, ON_ANY_ENGINE, OUTSIDE, Scale
+from .visibility import structural_gap
 
 Group = Literal["clean", "hard", "jsbsim", "none", "parameters", "outside", "two", "simulator"]
 GROUPS: tuple[Group, ...] = get_args(Group)

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import yaml
 
-from sim.blind.draw import GROUPS, SHARES, Case, Group, draw_case
-from sim.blind.seal import seal
-from sim.blind.simulated import SimulatedCase, draw_simulated
-from sim.effects.fitting import flight_of
-from sim.record import record
-from sim.servo import Calibration
+from ..effects.fitting import flight_of
+from ..record import record
+from ..servo import Calibration
+from .draw import GROUPS, SHARES, Case, Group, draw_case
+from .seal import seal
+from .simulated import SimulatedCase, draw_simulated
 
 LOG, AIRCRAFT = "flight.tlog", "aircraft.yaml"
 MADE_AT = 1_790_000_000
