@@ -20,9 +20,9 @@ from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.model.short_period import ShortPeriod
+from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.solution import Solution
 
-HIGH_CORRELATION = 0.9
 LARGEST_ERROR = 0.5
 """Largest corrected standard deviation over the natural size of the parameter."""
 LARGEST_SHIFT = 0.5
@@ -122,9 +122,7 @@ def own_motion(solution: Solution) -> float:
 
 def correlated(covariance: FloatArray) -> tuple[tuple[str, str, float], ...]:
     """Return pairs of parameters whose errors are correlated above ``HIGH_CORRELATION``."""
-    scale = np.sqrt(np.diag(covariance))
-    scale = np.where(scale > 0.0, scale, 1.0)
-    correlation = covariance / np.outer(scale, scale)
+    correlation = correlation_matrix(covariance)
     return tuple(
         (PARAMETERS[i], PARAMETERS[j], float(correlation[i, j]))
         for i in range(len(PARAMETERS))

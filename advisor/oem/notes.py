@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.messages import FloatArray
-from advisor.oem.identifiability import HIGH_CORRELATION, SUPPOSED_LAG_S, correlated
+from advisor.oem.correlation import HIGH_CORRELATION
+from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated
 from advisor.oem.instruments import KNOWN_TO, Told
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
