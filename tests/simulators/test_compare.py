@@ -19,12 +19,12 @@ PLAIN = Nonlinear()
 
 @cache
 def of(aircraft: Nonlinear, simulator: Nonlinear) -> Compared:
-    """The diagnosis of an aircraft against a simulator."""
+    """Return the diagnosis of an aircraft against a simulator."""
     return compare(flown(aircraft), simulator, Aircraft())
 
 
 def scaled(name: str, y: FloatArray) -> FloatArray:
-    """A vane that reads a tenth too much."""
+    """Return a vane that reads a tenth too much."""
     return TRIM_RAD + 1.1 * (y - TRIM_RAD) if name == "alpha" else y
 
 
