@@ -24,7 +24,7 @@ TABLE = ROOM / "candidates"
 """Where names of effects belong."""
 BLOCKS = frozenset(trait.block for trait in TRAITS.values()) | {"attitude_sensor"}
 NAMES = frozenset(TRAITS) | BLOCKS
-LIMITS = {"lines of code": 7495, "constants": 340, "names compared": 20, "complex functions": 0}
+LIMITS = {"lines of code": 7493, "constants": 340, "names compared": 20, "complex functions": 0}
 MOST_COMPLEX = 15
 _LAYOUT = frozenset(
     {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}

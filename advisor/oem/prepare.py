@@ -232,8 +232,8 @@ def _reference(speeds: Sequence[Signal], aircraft: Aircraft, smooth: bool) -> fl
     reference = aircraft.reference_airspeed_m_s or float(np.mean(together))
     enough = SMOOTH_SPEED_CHANGE if smooth else SPEED_CHANGE
     moved = float(np.max(together) - np.min(together)) > enough * reference
-    apart = abs(float(np.mean(together)) / reference - 1.0) > enough / 2.0
-    return reference if moved or apart else None
+    differs = abs(float(np.mean(together)) / reference - 1.0) > enough / 2.0
+    return reference if moved or differs else None
 
 
 def _signal(channel: Channel) -> Signal:

@@ -116,8 +116,8 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     if all(judged.effect != "airspeed_variation" for judged in named):
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
     outweighs = _speed_outweighs(e, max(derivatives.gap, removed))
-    told = (named or bias or derivatives.are_wrong) and not outweighs
-    judge_speed = thrust_is_uncommanded if told else speed_is_a_cause
+    is_explained = (named or bias or derivatives.are_wrong) and not outweighs
+    judge_speed = thrust_is_uncommanded if is_explained else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         outside_fit = (speed, *outside_fit)
     return _Found(named, removed, derivatives, bias, speed, outweighs, outside_fit, e.unexplained is not None)
