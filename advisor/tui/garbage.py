@@ -1,32 +1,35 @@
-"""Looking for garbage while nobody waits.
+"""Garbage collection while nobody waits.
 
-Python looks whenever enough objects were made, which is most often amid what a key has set off: every few
-milliseconds at those just made, and now and then at all there are, which holds everything up for 10 to 50 ms.
+Python collects whenever enough objects were made, most often while a key is being answered. Every few
+milliseconds it examines the newest objects. Now and then it examines all objects, which delays everything by
+10 to 50 ms.
 """
 
 import gc
 
 _LOT = 5_000
-"""New objects worth a look, of a millisecond; repainting a large screen makes five times as many."""
+"""Number of new objects that is worth a collection of one millisecond. Repainting a large screen makes five
+times as many."""
 _LOTS = 5
-"""After so many, what was left of them is looked at with all the rest."""
+"""Number of collections after which their survivors are examined with all other objects."""
 
 
 class Garbage:
-    """Collections when told that nobody waits, instead of Python's own."""
+    """Runs collections at times when nobody waits, in place of Python's own."""
 
     def begin(self) -> None:
-        """Take over. What was imported so far lives as long as the application and is not looked at again."""
+        """Take over from Python. Objects imported so far live as long as the application and are never
+        examined."""
         gc.freeze()
         gc.disable()
 
     def end(self) -> None:
-        """Give back."""
+        """Give control back to Python."""
         gc.enable()
         gc.unfreeze()
 
     def collect_if_due(self) -> None:
-        """Collect if there is enough to look at."""
+        """Collect where enough new objects exist."""
         new, lots, _ = gc.get_count()
         if lots >= _LOTS:
             gc.collect()

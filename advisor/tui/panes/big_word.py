@@ -42,5 +42,5 @@ class Why(Part, Lines):
     """The sentence under the word."""
 
     def show(self, view: View) -> None:
-        """Write the advice's sentence."""
+        """Write the sentence of the advice."""
         self.write(without_word(advise(view).sentence))

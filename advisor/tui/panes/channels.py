@@ -1,4 +1,4 @@
-"""What arrives: the link, every channel, and where the angle of attack comes from."""
+"""Arriving data: the link, every channel, and the source of the angle of attack."""
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
@@ -27,7 +27,7 @@ gap. Below: the link.
 """
 
     def compose(self) -> ComposeResult:
-        """Text that scrolls."""
+        """Yield the text in a scrolling container."""
         with VerticalScroll():
             yield Lines(id="problems")
             yield HangingLines("Nothing has arrived yet.", id="arriving")

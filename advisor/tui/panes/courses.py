@@ -1,4 +1,4 @@
-"""Every parameter's course over the manoeuvres at a glance."""
+"""The history of every parameter's estimate over the manoeuvres, at a glance."""
 
 from dataclasses import replace
 
@@ -51,7 +51,8 @@ drifts shows an aircraft that changes.
         self._draw()
 
     def on_resize(self, event: Resize) -> None:
-        """Only the lowest plots have room for the numbers of the manoeuvres on a small terminal."""
+        """Number the manoeuvres only under the lowest plots on a small terminal, where the others have no
+        room."""
         self._draw()
 
     def _draw(self) -> None:

@@ -18,7 +18,7 @@ _Y, _X = "[% of limit]", "manoeuvre"
 
 
 class Criterion(Pane):
-    """One curve a rule against the limit, and what each rule says."""
+    """One curve for each rule against the limit, and each rule's decision."""
 
     TITLE = "6 Criterion"
     can_focus = False
@@ -41,7 +41,7 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
         yield Plot(_chart(None))
 
     def on_mount(self) -> None:
-        """Nothing is shown yet."""
+        """Begin without a curve."""
         super().on_mount()
         self._shown: FlightTestVerdict | None = None
 

@@ -38,7 +38,7 @@ _SHARE_OF_ELEVATOR = 8
 
 
 class Fit(Pane):
-    """The elevator, then two plots an output: measured with fitted, and what is left between them."""
+    """The elevator, then two plots for each output: measured with fitted, and the residual."""
 
     BINDINGS = keys.FIT
     TITLE = "4 Fit"
@@ -97,7 +97,7 @@ it away.
         self._draw()
 
     def lay_over(self, number: int | None) -> None:
-        """Choose the manoeuvre that the next ``show`` lays over the selected one; None: none."""
+        """Choose the manoeuvre that the next ``show`` lays over the selected one. None: none."""
         self._over_number = number
 
     def rows(self) -> Rows | None:

@@ -31,7 +31,7 @@ adds nothing, it says so: recover. Between manoeuvres nothing moves here; the la
 """
 
     def compose(self) -> ComposeResult:
-        """A line of numbers over three traces."""
+        """Yield a line of numbers over three traces."""
         yield Lines(
             "Nothing is being flown; the trace begins with the first step of the elevator.",
             id="settling",
@@ -41,7 +41,7 @@ adds nothing, it says so: recover. Between manoeuvres nothing moves here; the la
             yield Plot(empty, id=f"live-{name}")
 
     def show(self, view: View) -> None:
-        """Draw what is in the air; without anything, keep the last trace."""
+        """Draw the manoeuvre in the air. Without one, the last trace stays."""
         flying, settling = view.state.flying, view.state.settling
         if flying is None:
             self.subtitle("")

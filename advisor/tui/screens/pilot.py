@@ -18,7 +18,7 @@ _TALL = 38
 
 
 class PilotScreen(Face):
-    """Word, verdict, progress, what to fly next; nothing moves unless it matters."""
+    """Word, verdict, progress and next input. Nothing moves without a reason."""
 
     HELP = """\
 # Pilot
@@ -36,7 +36,7 @@ The large word is what to do now:
 """
 
     def compose(self) -> ComposeResult:
-        """From top to bottom in the order of urgency."""
+        """Yield the parts from top to bottom, in the order of urgency."""
         yield StatusLine()
         yield Alarm()
         yield BigWord()
@@ -49,5 +49,5 @@ The large word is what to do now:
         yield KeysLine()
 
     def on_resize(self, event: Resize) -> None:
-        """On a tall terminal the verdict is written large too."""
+        """Write the verdict large as well on a tall terminal."""
         self.set_class(event.size.height >= _TALL, "-tall")
