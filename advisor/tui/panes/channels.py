@@ -21,9 +21,8 @@ class Channels(Pane):
     HELP = """\
 # Channels and link
 
-Where the angle of attack comes from - a *vane*, *derived* by the autopilot from speed and wind (blind to
-gusts), or *simulated* - and every channel with its source, the rate at which it arrives and its longest
-gap. Below: the link.
+The source of the angle of attack: a *vane*, *derived* by the autopilot from speed and wind (blind to
+gusts), or *simulated*. Then every channel with its source, its rate and its longest gap. Below: the link.
 """
 
     def compose(self) -> ComposeResult:

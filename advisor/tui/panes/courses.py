@@ -25,9 +25,9 @@ class Courses(Pane):
 
 All eight parameters at a glance: each manoeuvre's estimate with its 95 % interval (1.96 σ, corrected for
 coloured residuals) against the number of the manoeuvre. The solid line is the joint estimate, the dashed
-line the aircraft file's model. A manoeuvre that does not tell a parameter has no bar.
+line the aircraft file's model. A manoeuvre without information about a parameter has no bar.
 
-An interval that leaves the joint estimate out shows a manoeuvre that disagrees; a row of intervals that
+An interval that excludes the joint estimate shows a manoeuvre that disagrees; a row of intervals that
 drifts shows an aircraft that changes.
 """
 

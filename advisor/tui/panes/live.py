@@ -27,7 +27,7 @@ class Live(Pane):
 
 The manoeuvre in the air: measured (dots) and the model fitted so far (line), as it comes in,
 and the moment derivatives with their 95 % intervals as they settle. When further free response
-adds nothing, it says so: recover. Between manoeuvres nothing moves here; the last trace stays.
+adds nothing, the pane says so: recover. Between manoeuvres nothing moves here; the last trace stays.
 """
 
     def compose(self) -> ComposeResult:

@@ -26,8 +26,8 @@ class Verdict(Pane):
     HELP = """\
 # Verdict
 
-The selected manoeuvre: the sentence the pilot saw, when it was flown, and each reason with its number beside
-the limit. Then the cost J (det R of Eq. 7) beside the limits of the paper's rules, and how well the model
+The selected manoeuvre: the sentence the pilot saw, when it was flown, and each reason with its number and
+limit. Then the cost J (det R of Eq. 7) with the limits of the paper's rules, and how well the model
 explains each output (R², Theil's coefficient TIC, lag-1 correlation of the residual: 0 is white). A line
 with **!** does not reject the manoeuvre but belongs on its verdict.
 """

@@ -63,7 +63,7 @@ focus. On a small terminal one pane is shown with the manoeuvres. On a wide one 
 residuals, correlation and history share one place.
 
 **c** copies the pane that has the focus to the clipboard: its numbers as CSV, its words as text. **s**
-saves the same into a file beside the log or the recording, and its plots as a picture (SVG). A browser
+saves them into a file next to the log or the recording, and its plots as a picture (SVG). A browser
 is offered the files instead.
 """
 

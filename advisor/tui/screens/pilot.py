@@ -26,13 +26,13 @@ class PilotScreen(Face):
 The large word is what to do now:
 
 - **CONTINUE**: fly the next manoeuvre.
-- **REPEAT**: the last one was of no use; the line below says why and what to change.
-- **RECOVER**: the manoeuvre in the air has told all it can.
+- **REPEAT**: the last manoeuvre is rejected; the line below gives the reason and the remedy.
+- **RECOVER**: further response of the manoeuvre in the air adds nothing.
 - **STOP TESTING**: the criterion fell below its limit.
 - **WAIT**, **NO LINK**: no vehicle is heard (any more).
 - **NO DATA**: the vehicle does not send what is needed; the line below says what to change.
 
-✓ a good manoeuvre, ✗ one to repeat, ∅ one taken out by hand.
+✓ a good manoeuvre, ✗ one to repeat, ∅ one excluded by hand.
 """
 
     def compose(self) -> ComposeResult:
