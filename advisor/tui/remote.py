@@ -11,9 +11,9 @@ from typing import IO
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.changes import Changes
+from advisor.tui.child_process import pause_s, said_of, start_child
 from advisor.tui.conducting import Report, Tell
 from advisor.tui.hand import HandDecision
-from advisor.tui.offspring import offspring, pause_s, said_of
 from advisor.tui.source import LinkHealth, Order, Source, Tempo
 
 Request = tuple[str, tuple[object, ...]]
@@ -102,7 +102,7 @@ class RemoteConductor:
 
     def _conduct(self, tell: Tell) -> int:
         """Run one process from its start to its end; return the exit code."""
-        with offspring("advisor.tui.worker") as process:
+        with start_child("advisor.tui.worker") as process:
             assert process.stdin is not None
             assert process.stdout is not None
             asking = Thread(target=self._pass_on, args=(process.stdin,), daemon=True)

@@ -7,7 +7,7 @@ from subprocess import DEVNULL, PIPE, Popen
 _LONGEST_PAUSE_S = 10.0
 
 
-def offspring(module: str, shows_errors: bool = False) -> "Popen[bytes]":
+def start_child(module: str, shows_errors: bool = False) -> "Popen[bytes]":
     """Start a module of the advisor as a process that exchanges pickles over its standard streams.
 
     Parameters
