@@ -17,6 +17,7 @@ from advisor.commands.options import INTERNAL, UNUSABLE, USAGE
 from advisor.interrupt import STOPPED, Interrupted
 from advisor.printable import printable
 from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.running.threads import pin_linear_algebra
 
 COMMANDS = {
     "demo": "The bundled aircraft flies the paper's campaign over a real link, the advisor advises.",
@@ -69,9 +70,7 @@ def advisor() -> None:
 
 def main() -> None:
     """Run the command line; every error a user may meet becomes one sentence and an exit code."""
-    # Matrices here are small: threads of the linear algebra library cost far more than they bring.
-    for library in ("OPENBLAS", "OMP", "MKL"):
-        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    pin_linear_algebra()
     speak_plainly()
     code = _ended_by(_run)
     for stream in (sys.stdout, sys.stderr):

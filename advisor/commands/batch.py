@@ -1,10 +1,6 @@
 """``advisor batch``: many flights, each analyzed once."""
 
-import os
-import sys
-import time
 from collections.abc import Callable, Iterator, Sequence
-from datetime import datetime, timedelta
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,6 +10,7 @@ import click
 
 from advisor.aircraft import Aircraft
 from advisor.commands.options import UNUSABLE, aircraft_option, read_aircraft
+from advisor.commands.running import Progress, runner_of, running_options
 from advisor.printable import printable
 from advisor.problems import ConfigurationError, Problem, UnusableInputError
 
@@ -26,8 +23,6 @@ INDEX = "index.html"
 """Page of all flights."""
 KEPT = "flights"
 """Folder of what came of each log, by its key."""
-_TELL_EVERY_S = 10.0
-"""Without a terminal, progress is told this often."""
 
 
 @click.command
@@ -43,12 +38,7 @@ _TELL_EVERY_S = 10.0
     metavar="MAP.yaml",
     help="Several aircraft: patterns of logs and their aircraft files, one a line.",
 )
-@click.option(
-    "--workers",
-    type=click.IntRange(1),
-    help="Processes that analyze at the same time; one a core unless told.",
-)
-@click.option("--scheduler", metavar="ADDRESS", help="Analyze on the Dask cluster at tcp://host:8786.")
+@running_options
 def command(
     places: tuple[Path, ...],
     out: Path,
@@ -70,13 +60,12 @@ def command(
     """
     if aircraft_file is not None and map_file is not None:
         raise ConfigurationError("Give --aircraft for one aircraft, or --aircraft-map for several, not both.")
-    if scheduler is not None and workers is not None:
-        raise ConfigurationError("Give --workers for this computer, or --scheduler for a cluster, not both.")
     if out.exists() and not out.is_dir():
         raise ConfigurationError(f"-o: {out} is a file; name a folder.")
+    from advisor.batch.flight import analyze, analyze_shared
     from advisor.batch.logs import find_logs
 
-    run = _here(workers or os.cpu_count() or 1) if scheduler is None else _on_cluster(scheduler)
+    run = partial(runner_of(workers, scheduler), analyze if scheduler is None else analyze_shared)
     logs = find_logs(places if scheduler is None else [place.absolute() for place in places], out)
     tasks, results = _tasks(logs, aircraft_file, map_file)
     try:
@@ -121,24 +110,6 @@ def _tasks(
     return list(tasks.values()), results
 
 
-def _here(workers: int) -> "Run":
-    """Analyzes in processes of this computer."""
-    from advisor.batch.flight import analyze
-    from advisor.batch.runner import run_all
-
-    return partial(run_all, analyze, workers=workers)
-
-
-def _on_cluster(scheduler: str) -> "Run":
-    """Analyzes in the workers of a Dask cluster."""
-    from advisor.batch.cluster import check_address, run_on_cluster
-    from advisor.batch.flight import analyze_shared
-
-    check_address(scheduler)
-    tell = partial(click.echo, err=True)
-    return partial(run_on_cluster, analyze_shared, address=scheduler, tell=tell)
-
-
 def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
     """The result of every task: kept before, or made now and kept."""
     from advisor.batch.flight import failed, keep, kept
@@ -148,7 +119,7 @@ def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Ana
     to_do = [task for task in tasks if task.log not in results]
     if results:
         click.echo(f"{len(results)} of {len(tasks)} logs were analyzed before.", err=True)
-    progress = _Progress(len(to_do))
+    progress = Progress(len(to_do), "logs")
     for task, result in run(to_do):
         if isinstance(result, Exception):
             results[task.log] = failed(task, [_fault(task, result)])
@@ -201,25 +172,3 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
         f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}; page: {INDEX}."
     )
     return UNUSABLE if len(failures) == len(flights) else 0
-
-
-class _Progress:
-    """How far the batch is, its rate, and when it ends, on standard error."""
-
-    def __init__(self, total: int) -> None:
-        self._total, self._done = total, 0
-        self._began_s = self._told_s = time.monotonic()
-
-    def advance(self) -> None:
-        """One more log is done."""
-        self._done += 1
-        now, last, watched = time.monotonic(), self._done == self._total, sys.stderr.isatty()
-        if not (watched or last or now - self._told_s > _TELL_EVERY_S):
-            return
-        self._told_s = now
-        took_s = now - self._began_s
-        line = f"{self._done} of {self._total} logs, {60.0 * self._done / took_s:.1f} a minute"
-        if not last:
-            ends = datetime.now() + timedelta(seconds=took_s / self._done * (self._total - self._done))
-            line += f", ends about {ends:%H:%M}"
-        click.echo(f"\r\033[K{line}" if watched else line, nl=last or not watched, err=True)

@@ -192,8 +192,7 @@ def _outcome(future: "Future[R]", address: str) -> R | Exception:
         return future.result()
     except CancelledError:
         raise ConfigurationError(
-            f"--scheduler: the connection to {address} is lost. What was done is kept: repeat the command"
-            " when the scheduler is back."
+            f"--scheduler: the connection to {address} is lost. Repeat the command when the scheduler is back."
         ) from None
     except KilledWorker as error:
         return BrokenExecutor(str(error))
