@@ -36,7 +36,6 @@ from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import MARK_NOTICES, Mark
 from advisor.flight.messages import Columns
-from advisor.flight.record import Channel
 from advisor.flight.stream import FlightStream
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
@@ -173,10 +172,6 @@ class Campaign:
     def power_on(self) -> tuple[int, int]:
         """Flight and power-on being heard, each 0 for the first."""
         return self._flights.flight, self._stream.boot
-
-    def recent(self, name: str, seconds: float) -> Channel | None:
-        """The newest stretch of a channel of the power-on being heard; None when nothing has arrived."""
-        return self._stream.recent(name, seconds)
 
     @property
     def problems(self) -> list[Problem]:

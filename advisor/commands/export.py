@@ -82,7 +82,8 @@ def command(
     chosen = () if cut is not None else parse_formats(formats or "csv")
     aircraft = read_aircraft(aircraft_file, rule)
     refuse_marks_on_several(marks, logs)
-    from advisor.exporting.reading import dataset, read_whole
+    from advisor.exporting.reading import dataset
+    from advisor.whole_flights import read_whole
 
     flights = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks)
     for note in flights.notes:
