@@ -61,9 +61,10 @@ imports: .venv/.developed ## the walls of the house
 sizes: .venv/.developed ## lines, constants and names of the gap diagnosis, which may only fall
 	$(BIN)/python -m benchmarks.gap_size
 
-bench: .venv/.developed ## every ratio of speed, each against its goal (about twelve minutes)
+bench: .venv/.developed ## every ratio of speed, each against its goal (about twenty minutes)
 	$(BIN)/python -m benchmarks.estimate
 	$(BIN)/python -m benchmarks.campaign
+	$(BIN)/python -m benchmarks.batch
 	$(BIN)/python -m benchmarks.simulator
 	$(BIN)/python -m benchmarks.tlog
 	$(BIN)/python -m benchmarks.link --seconds 60 --rate 2000

@@ -115,7 +115,7 @@ def _ended_by(run: Callable[[], int]) -> int:
             f"The system refused: {error.strerror or error}{where}. Make room or give another place, "
             "and repeat."
         )
-        return INTERNAL
+        return USAGE
     except Exception as error:
         if os.environ.get("ADVISOR_TRACEBACK"):
             raise

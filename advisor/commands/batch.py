@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft import Aircraft
-from advisor.commands.options import UNUSABLE, aircraft_option, read_aircraft
+from advisor.commands.options import (
+    UNUSABLE,
+    aircraft_option,
+    read_aircraft,
+    refuse_unwritable_folder,
+    writing,
+)
 from advisor.commands.running import Progress, runner_of, running_options
 from advisor.printable import printable
 from advisor.problems import ConfigurationError, Problem, UnusableInputError
@@ -60,21 +66,16 @@ def command(
     """
     if aircraft_file is not None and map_file is not None:
         raise ConfigurationError("Give --aircraft for one aircraft, or --aircraft-map for several, not both.")
-    if out.exists() and not out.is_dir():
-        raise ConfigurationError(f"-o: {out} is a file; name a folder.")
+    refuse_unwritable_folder("-o", out)
     from advisor.batch.flight import analyze, analyze_shared
     from advisor.batch.logs import find_logs
 
     run = partial(runner_of(workers, scheduler), analyze if scheduler is None else analyze_shared)
     logs = find_logs(places if scheduler is None else [place.absolute() for place in places], out)
     tasks, results = _tasks(logs, aircraft_file, map_file)
-    try:
+    with writing("-o", out):
         (out / KEPT).mkdir(parents=True, exist_ok=True)
         results |= _analyzed(tasks, out, run)
-    except OSError as error:
-        raise ConfigurationError(
-            f"-o: {out} cannot be written to: {error.strerror or error}. Make room or name another place."
-        ) from None
     return _told([results[log] for log in logs if log in results], out)
 
 
@@ -152,7 +153,7 @@ def _fault(task: "Task", error: Exception) -> Problem:
 def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     """Write the tables, and say what failed and what changed."""
     from advisor.batch.index import index_page
-    from advisor.batch.tables import changes_of, in_order, tables_of
+    from advisor.batch.tables import changes_of, in_order, mixed_up, tables_of
     from advisor.exporting.formats import write_formats
     from advisor.exporting.staging import staged
 
@@ -164,6 +165,8 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     failures = [flight for flight in flights if not flight.usable]
     for flight in failures:
         click.echo(printable(f"{flight.log}: {' '.join(flight.reasons)}"), err=True)
+    for sentence in mixed_up(flights):
+        click.echo(printable(sentence), err=True)
     for name, change in changes_of(flights).items():
         click.echo(printable(f"{name}: {change.sentence}"))
     maneuvers = sum(len(flight.document["maneuvers"]) for flight in flights)

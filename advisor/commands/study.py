@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from advisor.commands.options import json_option, refuse_unwritable
+from advisor.commands.options import json_option, refuse_unwritable, writing
 from advisor.commands.running import Progress, runner_of, running_options
 from advisor.problems import ConfigurationError
 
@@ -74,7 +74,8 @@ def command(
     if figure is not None:
         from advisor.study.figure import draw
 
-        draw(report.curves, figure)
+        with writing("--figure", figure):
+            draw(report.curves, figure)
     if as_json:
         click.echo(json.dumps(report.document, allow_nan=False))
     else:

@@ -1,6 +1,7 @@
 """``advisor study`` as a user calls it."""
 
 import json
+import resource
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from advisor.commands import demo
 from advisor.commands.study import command
 from advisor.problems import ConfigurationError
 from advisor.study import advised
+from advisor.study.figure import Curve, draw
 
 # The study runs once for each figure.
 pytestmark = pytest.mark.xdist_group("study")
@@ -57,6 +59,19 @@ def test_two_processes_give_the_study_of_one() -> None:
 
 def test_figure_five_is_written_as_a_picture(pictured: dict[Path, Result]) -> None:
     assert [path.read_bytes()[:5] for path in pictured] == [b"<?xml", b"\x89PNG\r"]
+
+
+def test_a_disk_that_fills_up_leaves_the_old_figure_and_no_half_one(tmp_path: Path) -> None:
+    figure = tmp_path / "figure.svg"
+    figure.write_text("the figure of yesterday")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, before[1]))
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            draw([Curve("continuous", 1.0, (None, (1.0, 2.0, 3.0)))], figure)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["the figure of yesterday"]
 
 
 def test_without_json_it_is_told_in_lines() -> None:
