@@ -37,10 +37,11 @@ def _blocks(content: Content) -> Iterator[Block]:
             continue
         drawn = True
         name = f"flight-{flight}-{power_on.boot}"
-        svg = picture(name, 7.4, 5.4, _paint, power_on, here)
+        broad = picture(name, 7.4, 5.4, _paint, power_on, here)
+        narrow = picture(f"{name}-narrow", 3.8, 5.4, _paint, power_on, here)
         later = f", power-on {power_on.boot + 1}" if power_on.boot else ""
         where = f"{content.names[flight]}{later}"
-        yield Gallery((Figure(svg, f"{where}. {_EXPLAINED}"),))
+        yield Gallery((Figure(broad, f"{where}. {_EXPLAINED}", narrow=narrow),))
     if not drawn:
         yield Paragraph("No manoeuvre was found, so there is nothing to mark.")
 
